@@ -47,9 +47,11 @@ impl Serialize for Outcome {
     }
 }
 
+/// As in a file, but that inputs, outputs, terms and blocks are lists of entries with a `name`: their order has a meaning, and many
+/// formats sort keys. Both forms are read.
 impl Serialize for Model {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        format::write(self).serialize(serializer)
+        format::write_lists(self).serialize(serializer)
     }
 }
 

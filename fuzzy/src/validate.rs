@@ -9,7 +9,7 @@ use core::ops::Range;
 use crate::{
     diagnostic::{Diagnostic, Findings, duplicate},
     model::{
-        Model, Variable,
+        MembershipFunction, Model, Term, Variable,
         chain::circles,
         document::{Document, RuleSpans, Spans, VariableSpans},
     },
@@ -25,8 +25,16 @@ const MOST_VARIABLES: usize = 1000;
 const MOST_TERMS: usize = 1000;
 /// Terms of all inputs and outputs.
 const MOST_TERMS_IN_ALL: usize = 10_000;
+/// Points of one `piecewise` term.
+const MOST_POINTS: usize = 2000;
+/// Points of all `piecewise` terms.
+const MOST_POINTS_IN_ALL: usize = 20_000;
 /// Rules of a model.
 const MOST_RULES: usize = 100_000;
+/// Conclusions of one rule.
+const MOST_CONCLUSIONS: usize = 1000;
+/// Rule blocks of a model.
+const MOST_BLOCKS: usize = 1000;
 /// Errors that are told of a model; what follows is not looked at.
 const MOST_FINDINGS: usize = 1000;
 
@@ -161,7 +169,22 @@ fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
     let most = variables().enumerate().max_by_key(|(_, v)| v.terms.len());
     let (widest, terms, of) = most.map_or((0, 0, ""), |(i, v)| (i, v.terms.len(), &*v.name));
     let in_all = variables().map(|v| v.terms.len()).sum();
+    let points = |term: &Term| match &term.membership_function {
+        MembershipFunction::Piecewise { points } => points.len(),
+        _ => 0,
+    };
+    let of_term = variables().enumerate().flat_map(|(i, v)| {
+        let terms = v.terms.iter();
+        terms.map(move |term| (i, points(term), &*term.name))
+    });
+    let (owner, most_points, term) = of_term.max_by_key(|one| one.1).unwrap_or((0, 0, ""));
+    let all_points = variables().flat_map(|v| &v.terms).map(points).sum();
     let rules = model.rules.len();
+    let conclusions = model.rules.iter().map(|rule| rule.rule.consequents.len());
+    let longest = conclusions.enumerate().max_by_key(|(_, count)| *count);
+    let (rule, conclusions) = longest.unwrap_or((0, 0));
+    let rule_span = spans.rules.get(rule).map(|spans| spans.whole.clone());
+    let block = spans.blocks.first().map(|spans| spans.name.clone());
     refuse(
         name(0),
         variables().count(),
@@ -170,7 +193,24 @@ fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
     )
     .or_else(|| refuse(name(widest), terms, MOST_TERMS, &format!("terms of `{of}`")))
     .or_else(|| refuse(name(0), in_all, MOST_TERMS_IN_ALL, "terms"))
+    .or_else(|| {
+        let what = format!("points of the term `{term}`");
+        refuse(name(owner), most_points, MOST_POINTS, &what)
+    })
+    .or_else(|| {
+        refuse(
+            name(0),
+            all_points,
+            MOST_POINTS_IN_ALL,
+            "points of `piecewise` terms",
+        )
+    })
     .or_else(|| refuse(Some(spans.rules_key.clone()), rules, MOST_RULES, "rules"))
+    .or_else(|| {
+        let what = format!("conclusions of rule {}", rule + 1);
+        refuse(rule_span, conclusions, MOST_CONCLUSIONS, &what)
+    })
+    .or_else(|| refuse(block, model.blocks.len(), MOST_BLOCKS, "rule blocks"))
 }
 
 struct Validator<'m> {

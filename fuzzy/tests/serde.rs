@@ -190,3 +190,88 @@ fn tags_duplicates_and_numbers() {
     assert_eq!(codes, ["duplicate-key", "unknown-key"]);
     assert!(theirs(&twice).is_err());
 }
+
+/// Names in an order that sorting changes.
+const UNSORTED: &str = "
+fuzzy: 1
+name: unsorted
+inputs:
+  speed: {range: [0, 10], partition: {none: 1, much: 9}}
+  load: {range: [0, 1], terms: {low: {left_shoulder: [0, 1]}, high: {right_shoulder: [0, 1]}}}
+outputs:
+  risk: {range: [0, 100], partition: [small, large]}
+  alarm: {range: [0, 1], terms: {quiet: {constant: 0}, loud: {linear: {speed: 0.1, load: -0.5, constant: 1}}}, defuzzifier: weighted_average}
+blocks:
+  second: {rules: [IF speed IS much THEN risk IS large AND alarm IS loud]}
+  first: {operators: {and: product}, rules: [IF speed IS none AND load IS low THEN risk IS small AND alarm IS quiet]}
+";
+
+/// The keys of all mappings in alphabetical order, as `serde_json` has them without its feature `preserve_order`.
+fn sorted(value: serde_json::Value) -> serde_json::Value {
+    match value {
+        serde_json::Value::Object(map) => {
+            let entries: BTreeMap<String, _> = map.into_iter().collect();
+            entries
+                .into_iter()
+                .map(|(key, value)| (key, sorted(value)))
+                .collect()
+        }
+        serde_json::Value::Array(items) => items.into_iter().map(sorted).collect(),
+        other => other,
+    }
+}
+
+#[test]
+fn every_format_keeps_the_order_of_inputs_outputs_terms_and_blocks() {
+    let model: Model = UNSORTED.parse().unwrap();
+    let json = sorted(serde_json::to_value(&model).unwrap());
+    let through = [
+        serde_json::from_value::<Model>(json).unwrap(),
+        serde_json::from_str(&serde_json::to_string(&model).unwrap()).unwrap(),
+        toml::from_str(&toml::to_string(&model).unwrap()).unwrap(),
+        toml::Value::try_from(&model).unwrap().try_into().unwrap(),
+        serde_yaml::from_str(&serde_yaml::to_string(&model).unwrap()).unwrap(),
+        // What serde writes, the readers of files read.
+        serde_json::to_string(&model).unwrap().parse().unwrap(),
+    ];
+    let engine = Engine::new(&model).unwrap();
+    for (index, mut again) in through.into_iter().enumerate() {
+        let values = |engine: &Engine| -> Vec<Option<u64>> {
+            let outcomes = engine.evaluate(&[8.0, 0.75]).unwrap();
+            outcomes
+                .iter()
+                .map(|one| Some(one.value()?.to_bits()))
+                .collect()
+        };
+        assert_eq!(
+            values(&Engine::new(&again).unwrap()),
+            values(&engine),
+            "{index}"
+        );
+        // The coefficients of a linear function are found by name; their order has no meaning.
+        for output in &mut again.outputs {
+            for term in &mut output.variable.terms {
+                if let fuzzy::model::MembershipFunction::Linear { coefficients, .. } =
+                    &mut term.membership_function
+                {
+                    coefficients.sort_by(|(a, _), (b, _)| b.cmp(a));
+                }
+            }
+        }
+        assert_eq!(again, model, "{index}");
+    }
+}
+
+#[test]
+fn mappings_that_were_sorted_are_read_as_before() {
+    // What earlier versions wrote: the peaks of a partition find their order by their values.
+    let mut text = UNSORTED.replace("{none: 1, much: 9}", "{much: 9, none: 1}");
+    let document = yaml::parse(&text).unwrap();
+    assert_eq!(document.model, UNSORTED.parse::<Model>().unwrap());
+    // In a text it may be a mistake.
+    assert_eq!(document.warnings.0[0].code, "inverted-parameters");
+    assert_eq!(document.warnings.0.len(), 1);
+    text = text.replace("much: 9", "much: 1");
+    let told = text.parse::<Model>().unwrap_err().to_string();
+    assert!(told.contains("have the same peak 1"), "{told}");
+}

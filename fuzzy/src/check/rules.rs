@@ -9,7 +9,7 @@ use alloc::{
 use super::logic::{Level, Logic};
 use crate::{
     model::{self, Activation, Aggregation, Model, Output, concludes},
-    rule::{Condition, Rule},
+    rule::{Condition, Consequent, Rule},
 };
 
 /// Two rules with the same condition that conclude different terms of one output, or one rule that does.
@@ -165,8 +165,11 @@ fn disagreement(model: &Model, first: usize, second: usize) -> Option<Contradict
         &model.rules.get(first)?.rule,
         &model.rules.get(second)?.rule,
     );
+    // Of several conclusions about one output the first counts.
+    let others = b.consequents.iter().rev();
+    let others: BTreeMap<&str, &Consequent> = others.map(|c| (&*c.output.text, c)).collect();
     a.consequents.iter().find_map(|one| {
-        let other = b.consequents.iter().find(|c| c.output == one.output)?;
+        let other = others.get(&*one.output.text)?;
         (one.term != other.term).then(|| Contradiction {
             first,
             second,

@@ -13,6 +13,7 @@ use crate::{
 };
 
 mod blocks;
+mod lists;
 mod provenance;
 mod rules;
 #[cfg(feature = "serde")]
@@ -69,7 +70,7 @@ fn read_lacking(
 ) -> Result<Document, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let mut spans = Spans::default();
-    let model = model(tree, &mut spans, &mut findings);
+    let model = model(&lists::to_mappings(tree), &mut spans, &mut findings);
     if let Some(model) = &model {
         let mut invalid = validate(model, &spans);
         for finding in invalid.iter_mut().filter(|f| may_lack(model, f)) {
@@ -104,7 +105,7 @@ pub struct Partial {
 #[doc(hidden)]
 pub fn read_partly(tree: &Node) -> Option<Partial> {
     let mut spans = Spans::default();
-    let model = model(tree, &mut spans, &mut Vec::new())?;
+    let model = model(&lists::to_mappings(tree), &mut spans, &mut Vec::new())?;
     Some(Partial {
         model,
         rules_unread: spans.rules_unread,
@@ -229,6 +230,12 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
 #[must_use]
 pub fn write(model: &Model) -> Node {
     write::model(model)
+}
+
+/// As [`write`], with a list of named entries for each mapping whose order has a meaning: many formats sort keys.
+#[cfg(feature = "serde")]
+pub(crate) fn write_lists(model: &Model) -> Node {
+    lists::from_mappings(write::model(model))
 }
 
 /// Text behind a key, where there is some.

@@ -262,10 +262,9 @@ fn partition(
             spans.terms = term_spans(names.iter().map(|(_, item)| &item.span));
         }
         Value::Mapping(_) => {
-            let entries = node.entries(what, "term", findings).unwrap_or_default();
+            let mut entries = node.entries(what, "term", findings).unwrap_or_default();
             let mut found = Vec::new();
             for entry in &entries {
-                names.push((entry.key, entry.value));
                 let peak = format!("the peak of `{}` of {what}", entry.key);
                 let before = findings.len();
                 found.extend(entry.value.finite(&peak, findings));
@@ -277,8 +276,18 @@ fn partition(
                     finding.help = Some("a decimal point is written as `.`: `20.5`".into());
                 }
             }
-            if found.len() == names.len() && rising(what, &names, &found, variable, findings) {
-                peaks = Some(found);
+            if found.len() == entries.len() {
+                let mut peaks_of: Vec<_> = entries.into_iter().zip(found).collect();
+                falling(what, &peaks_of, findings);
+                // Formats that sort keys do not keep the order in which the terms were written.
+                peaks_of.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+                (entries, found) = peaks_of.into_iter().unzip();
+                names = entries.iter().map(|one| (one.key, one.value)).collect();
+                if rising(what, &names, &found, variable, findings) {
+                    peaks = Some(found);
+                }
+            } else {
+                names = entries.iter().map(|one| (one.key, one.value)).collect();
             }
             spans.terms = term_spans(entries.iter().map(|entry| &entry.key_span));
             for (term, entry) in spans.terms.iter_mut().zip(&entries) {
@@ -322,7 +331,25 @@ fn term_spans<'a>(names: impl Iterator<Item = &'a Range<usize>>) -> Vec<TermSpan
     spans.collect()
 }
 
-/// Whether the peaks of a partition rise and lie in the range.
+/// Warns of peaks that fall in the order in which they are written: one of them may be a mistake.
+fn falling(what: &str, peaks: &[(Entry<'_>, f64)], findings: &mut Vec<Diagnostic>) {
+    for pair in peaks.windows(2) {
+        if let [(left, high), (right, low)] = pair
+            && low < high
+        {
+            let (name, other) = (right.key, left.key);
+            let message = format!(
+                "the peak {low} of `{name}` of {what} is left of the peak {high} of `{other}`"
+            );
+            findings.push(
+                Diagnostic::warning("inverted-parameters", right.value.span.clone(), message)
+                    .help("write the terms of a partition from left to right; they count in the order of their peaks"),
+            );
+        }
+    }
+}
+
+/// Whether ascending peaks of a partition differ and lie in the range.
 fn rising(
     what: &str,
     names: &[(&str, &Node)],
@@ -336,12 +363,11 @@ fn rising(
         if let Some((other, least)) = last
             && peak <= least
         {
-            let message = format!(
-                "the peak {peak} of `{name}` of {what} is not right of the peak {least} of `{other}`"
-            );
+            let message =
+                format!("the terms `{other}` and `{name}` of {what} have the same peak {peak}");
             findings.push(
                 Diagnostic::error("inverted-parameters", node.span.clone(), message)
-                    .help("the terms of a partition stand from left to right, each with a peak of its own"),
+                    .help("give each term of a partition a peak of its own"),
             );
         }
         if peak < variable.low || peak > variable.high {

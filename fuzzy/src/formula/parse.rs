@@ -47,6 +47,7 @@ pub(super) fn parse(text: &str) -> Result<Formula, Box<Diagnostic>> {
     let mut parser = Parser {
         text,
         variables: Vec::new(),
+        parts: 0,
     };
     let read = parser.level(text, 1, 0).and_then(|(rest, expression)| {
         let rest = after_space(rest);
@@ -62,10 +63,6 @@ pub(super) fn parse(text: &str) -> Result<Formula, Box<Diagnostic>> {
     match read {
         Ok(expression) => {
             let formula = Formula::new(expression, parser.variables);
-            if formula.code.len() > LONGEST {
-                let message = format!("the formula has more than {LONGEST} parts");
-                return whole(message, "let several terms share the work");
-            }
             if code::depth(&formula.code) > code::DEEPEST {
                 let message = format!(
                     "the formula keeps more than {} numbers at a time",
@@ -107,6 +104,7 @@ enum Wrong<'a> {
     /// Digits that are no number, or too large a one.
     Number(&'a str),
     TooDeep,
+    TooLong,
 }
 
 impl<'a> ParseError<&'a str> for Mistake<'a> {
@@ -175,57 +173,77 @@ fn operator(rest: &str, operation: Operation) -> Option<&str> {
     (!longer).then_some(after)
 }
 
+/// How tightly comparisons bind; one does not follow another.
+const COMPARISONS: u8 = 4;
+
+/// The operator between two operands that stands here, if it binds at least as tightly as `binds`.
+fn infix(rest: &str, binds: u8) -> Option<(Operation, &str)> {
+    let all = Operation::ALL.iter();
+    let mut infix = all.filter(|(operation, _, operands)| {
+        *operands == 2 && operation.binds().is_some_and(|own| own >= binds)
+    });
+    infix.find_map(|(operation, ..)| Some((*operation, operator(rest, *operation)?)))
+}
+
 struct Parser<'a> {
     text: &'a str,
     variables: Vec<Variable>,
+    /// How many numbers, names and operations were read.
+    parts: usize,
 }
 
 impl<'a> Parser<'a> {
-    /// What binds at least as tightly as `binds`.
+    /// An expression whose operators bind at least as tightly as `binds`. One call reads all of a level of brackets, so that the
+    /// stack grows with their nesting alone.
     fn level(&mut self, rest: &'a str, binds: u8, depth: usize) -> Step<'a, Expression> {
         if depth > DEEPEST_NESTING {
             return wrong(after_space(rest), Wrong::TooDeep);
         }
-        let prefix = [Operation::NOT, Operation::NEGATE]
-            .into_iter()
-            .find(|operation| operation.binds() == Some(binds));
-        if let Some(prefix) = prefix {
-            return match operator(rest, prefix) {
-                Some(after) => {
-                    let (after, inner) = self.level(after, binds, depth + 1)?;
-                    Ok((after, Expression::Apply(prefix, Vec::from([inner]))))
-                }
-                None => self.level(rest, binds + 1, depth),
-            };
-        }
-        if Some(binds) == Operation::POWER.binds() {
-            let (rest, base) = self.operand(rest, depth)?;
-            return match operator(rest, Operation::POWER) {
-                Some(after) => {
-                    let (after, exponent) = self.level(after, binds - 1, depth + 1)?;
-                    let both = Vec::from([base, exponent]);
-                    Ok((after, Expression::Apply(Operation::POWER, both)))
-                }
-                None => Ok((rest, base)),
-            };
-        }
-        let infix = |rest| {
-            let all = Operation::ALL.iter();
-            let mut here = all.filter(|(operation, ..)| operation.binds() == Some(binds));
-            here.find_map(|(operation, ..)| Some((*operation, operator(rest, *operation)?)))
-        };
-        let (mut rest, mut left) = self.level(rest, binds + 1, depth)?;
-        let mut count = 0;
-        while let Some((operation, after)) = infix(rest) {
-            count += 1;
-            if count > 1 && Some(binds) == Operation::LESS.binds() {
+        let (mut rest, mut left) = self.signed(rest, binds, depth)?;
+        let mut last = None;
+        while let Some((operation, after)) = infix(rest, binds) {
+            let own = operation.binds().unwrap_or(0);
+            if own == COMPARISONS && last == Some(own) {
                 return wrong(after_space(rest), Wrong::Chain);
             }
-            let (after, right) = self.level(after, binds + 1, depth)?;
-            left = Expression::Apply(operation, Vec::from([left, right]));
+            last = Some(own);
+            // A power is read from the right and may have a sign behind it: `2^-x^2` is `2^(-(x^2))`.
+            let (after, right) = match operation {
+                Operation::POWER => self.level(after, own - 1, depth + 1)?,
+                _ => self.level(after, own + 1, depth)?,
+            };
+            left = self.part(rest, Expression::Apply(operation, Vec::from([left, right])))?;
             rest = after;
         }
         Ok((rest, left))
+    }
+
+    /// An operand, or `not` or `-` and all that it applies to.
+    fn signed(&mut self, rest: &'a str, binds: u8, depth: usize) -> Step<'a, Expression> {
+        for prefix in [Operation::NOT, Operation::NEGATE] {
+            let own = prefix.binds().unwrap_or(0);
+            if own >= binds
+                && let Some(after) = operator(rest, prefix)
+            {
+                let (after, inner) = self.level(after, own, depth + 1)?;
+                let signed = self.part(rest, Expression::Apply(prefix, Vec::from([inner])))?;
+                return Ok((after, signed));
+            }
+        }
+        self.operand(rest, depth)
+    }
+
+    /// Counts a number, a name or an operation, so that a formula that is too long is refused before it becomes a deep tree.
+    fn part(
+        &mut self,
+        rest: &'a str,
+        expression: Expression,
+    ) -> Result<Expression, Err<Mistake<'a>>> {
+        self.parts += 1;
+        match self.parts > LONGEST {
+            true => wrong(rest, Wrong::TooLong),
+            false => Ok(expression),
+        }
     }
 
     fn operand(&mut self, rest: &'a str, depth: usize) -> Step<'a, Expression> {
@@ -239,11 +257,13 @@ impl<'a> Parser<'a> {
             };
         }
         if rest.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
-            return number(rest);
+            let (after, number) = number(rest)?;
+            return Ok((after, self.part(rest, number)?));
         }
         if let Some(quote @ ('"' | '\'')) = rest.chars().next() {
             let (after, name) = quoted(rest, quote)?;
-            return Ok((after, self.variable(rest, after, name)));
+            let variable = self.variable(rest, after, name);
+            return Ok((after, self.part(rest, variable)?));
         }
         let name = word(rest);
         if name.is_empty() || is_keyword(name) {
@@ -254,9 +274,11 @@ impl<'a> Parser<'a> {
             return self.call(rest, name, operands, depth);
         }
         if name == "pi" {
-            return Ok((after, Expression::Number(core::f64::consts::PI)));
+            let pi = Expression::Number(core::f64::consts::PI);
+            return Ok((after, self.part(rest, pi)?));
         }
-        Ok((after, self.variable(rest, after, name.into())))
+        let variable = self.variable(rest, after, name.into());
+        Ok((after, self.part(rest, variable)?))
     }
 
     fn variable(&mut self, rest: &'a str, after: &'a str, name: String) -> Expression {
@@ -304,7 +326,8 @@ impl<'a> Parser<'a> {
                 if found.len() != takes {
                     return wrong(start, Wrong::Count(name, takes, found.len()));
                 }
-                return Ok((after, Expression::Apply(operation, found)));
+                let called = self.part(start, Expression::Apply(operation, found))?;
+                return Ok((after, called));
             } else if after.is_empty() {
                 return wrong(start, Wrong::OpenBracket);
             } else {
@@ -445,6 +468,11 @@ impl Mistake<'_> {
             Wrong::TooDeep => {
                 let message = format!("brackets are nested deeper than {DEEPEST_NESTING}");
                 error(found.len(), message).help("let several terms share the work")
+            }
+            Wrong::TooLong => {
+                let message = format!("the formula has more than {LONGEST} parts");
+                Diagnostic::error("formula-syntax", 0..text.len(), message)
+                    .help("let several terms share the work")
             }
         }
     }

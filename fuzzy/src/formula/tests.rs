@@ -236,3 +236,54 @@ proptest! {
         }
     }
 }
+
+/// Runs in a thread with a stack as small as those of some hosts.
+fn in_a_small_thread(run: impl FnOnce() + Send + 'static) {
+    let thread = std::thread::Builder::new().stack_size(256 << 10);
+    thread.spawn(run).unwrap().join().unwrap();
+}
+
+#[test]
+fn texts_of_any_length_and_depth_take_little_stack() {
+    in_a_small_thread(|| {
+        for part in [
+            "1 + ",
+            "x*",
+            "-",
+            "not ",
+            "(",
+            "1 - (",
+            "2^",
+            "2^-",
+            "max(1, ",
+            "sin(",
+            "x < 1 and ",
+            "'a b' + ",
+        ] {
+            for count in [1_000, 1_000_000] {
+                let text = part.repeat(count) + "1";
+                let found = text.parse::<Formula>().unwrap_err();
+                assert_eq!(found.code, "formula-syntax", "{part}");
+            }
+        }
+    });
+}
+
+#[test]
+fn the_longest_and_the_deepest_formulas_take_little_stack() {
+    let sum = "x + ".repeat(499) + "1";
+    let deep = "(".repeat(64) + "x" + &")".repeat(64);
+    let calls = "sin(".repeat(63) + "x" + &")".repeat(63);
+    for text in [sum, deep, calls] {
+        in_a_small_thread(move || {
+            let formula: Formula = text.parse().unwrap();
+            let again: Formula = formula.to_string().parse().unwrap();
+            assert_eq!(again, formula.clone());
+            assert!(formula.evaluate(|_| 0.25).is_finite());
+            let count = formula.fold(&|_| 1, &|_| 1, &|_, parts: Vec<usize>| {
+                parts.into_iter().sum()
+            });
+            assert!((1..=500).contains(&count));
+        });
+    }
+}
