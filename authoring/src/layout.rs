@@ -1,25 +1,55 @@
 //! One layout for rule sets and profiles. Comments stay.
 
-use fuzzy::format::Document;
+use std::fmt;
+
+use fuzzy::{
+    Findings,
+    format::Document,
+    tree::{Node, Value},
+};
 use pretty_yaml::config::FormatOptions;
 
 /// The width of a line.
 const WIDTH: usize = 120;
 
+/// Why a text has no common layout.
+#[derive(Debug)]
+pub enum Unformatted {
+    /// The text is not YAML.
+    NotYaml(Findings),
+    /// It is neither a rule set nor a profile: another program may want its layout.
+    Foreign,
+    /// Another layout would change its meaning, or the formatter does not take it.
+    Other(String),
+}
+
+impl fmt::Display for Unformatted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Unformatted::NotYaml(findings) => findings.fmt(f),
+            Unformatted::Foreign => f.write_str("the file is neither a rule set nor a profile"),
+            Unformatted::Other(why) => f.write_str(why),
+        }
+    }
+}
+
 /// A text in the common layout: indentation by two spaces, one space where there were several, rules with keywords in
 /// capitals. It means the same, comments included.
 ///
 /// # Errors
-/// Why it cannot be laid out: it is no YAML, or would mean something else.
-pub fn formatted(text: &str) -> Result<String, String> {
-    let before = fuzzy::yaml::read(text).map_err(|findings| findings.to_string())?;
+/// Why it has no common layout.
+pub fn formatted(text: &str) -> Result<String, Unformatted> {
+    let before = fuzzy::yaml::read(text).map_err(Unformatted::NotYaml)?;
+    if !is_ours(&before) {
+        return Err(Unformatted::Foreign);
+    }
     let document = fuzzy::yaml::parse(text).ok();
     let capitals = document.as_ref().map(|rules| with_capitals(text, rules));
     let mut options = FormatOptions::default();
     options.layout.print_width = WIDTH;
     options.language.brace_spacing = false;
     let formatted = pretty_yaml::format_text(capitals.as_deref().unwrap_or(text), &options)
-        .map_err(|error| error.to_string())?;
+        .map_err(|error| Unformatted::Other(error.to_string()))?;
     let same = match document {
         Some(document) => {
             fuzzy::yaml::parse(&formatted).is_ok_and(|new| new.model == document.model)
@@ -31,12 +61,26 @@ pub fn formatted(text: &str) -> Result<String, String> {
     };
     match same {
         true => Ok(formatted),
-        false => Err("another layout would change its meaning".into()),
+        false => Err(Unformatted::Other(
+            "another layout would change its meaning".into(),
+        )),
     }
 }
 
+/// Whether a tree has the key that a rule set or a profile begins with, or two keys of a rule set that lacks it.
+fn is_ours(tree: &Node) -> bool {
+    let Value::Mapping(entries) = &tree.value else {
+        return false;
+    };
+    let has = |wanted: &str| {
+        let mut keys = entries.iter().map(|(key, _)| &key.value);
+        keys.any(|key| matches!(key, Value::Scalar(key) if key.text == wanted))
+    };
+    has("fuzzy") || has("flagred") || has("inputs") && has("outputs")
+}
+
 /// A tree without its places in the text.
-fn means(tree: &fuzzy::tree::Node) -> serde_json::Value {
+fn means(tree: &Node) -> serde_json::Value {
     serde_json::to_value(tree).unwrap_or_default()
 }
 
@@ -81,7 +125,17 @@ rules:
 
     #[test]
     fn what_cannot_be_read_is_left_alone() {
-        assert!(formatted("a: [1").is_err());
+        assert!(matches!(formatted("a: [1"), Err(Unformatted::NotYaml(_))));
+        for foreign in [
+            "services:\n   web: {image: nginx}\n",
+            "- flagred: 1\n",
+            "inputs: {token: x}\n",
+            "just text",
+            "",
+        ] {
+            let found = formatted(foreign);
+            assert!(matches!(found, Err(Unformatted::Foreign)), "{foreign}");
+        }
         assert_eq!(
             formatted("flagred: 1\nname:   x\n").unwrap(),
             "flagred: 1\nname: x\n"

@@ -1,6 +1,9 @@
 //! Commented texts to start from.
 
+use flagred::shipped::Shipped;
+
 const RULES: &str = include_str!("starter.yaml");
+/// What stands above a profile: how it is used.
 const PROFILE: &str = include_str!("starter-profile.yaml");
 
 /// A rule set of this name, which is one that [`is_name`] takes.
@@ -8,9 +11,15 @@ pub fn rules(name: &str) -> String {
     RULES.replace("my-rules", name)
 }
 
-/// A profile of this name, which is one that [`is_name`] takes.
-pub fn profile(name: &str) -> String {
-    PROFILE.replace("my-profile", name)
+/// A profile of this name, which is one that [`is_name`] takes, with the values and comments of a shipped profile.
+pub fn profile(name: &str, from: &Shipped) -> String {
+    format!("{}\n{}", PROFILE.replace("NAME", name), renamed(name, from))
+}
+
+/// The text of a shipped rule set or profile, comments included, with another name, which is one that [`is_name`] takes.
+pub fn renamed(name: &str, from: &Shipped) -> String {
+    let own = format!("\nname: {}\n", from.name);
+    from.text.replacen(&own, &format!("\nname: {name}\n"), 1)
 }
 
 /// Whether a name is a file name everywhere and needs no quotes in YAML.
@@ -21,6 +30,11 @@ pub fn is_name(text: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use flagred::{
+        profile::Profile,
+        shipped::{PROFILES, RULE_SETS},
+    };
+
     use super::*;
     use crate::Document;
 
@@ -29,9 +43,28 @@ mod tests {
         let rules = Document::new(rules("fan"), |_| None);
         assert_eq!(rules.findings().0, []);
         assert_eq!(rules.model().unwrap().name, "fan");
-        let flagred = || flagred::shipped::RULE_SETS[1].text.to_owned();
-        let profile = Document::new(profile("quad"), |_| Some(flagred()));
-        assert!(profile.is_profile() && !profile.findings().has_errors());
+        for (shipped, rules) in PROFILES.iter().zip(&RULE_SETS) {
+            let profile = Document::new(profile("quad", shipped), |_| Some(rules.text.to_owned()));
+            assert!(profile.is_profile() && !profile.findings().has_errors());
+        }
+    }
+
+    #[test]
+    fn a_copy_differs_from_the_shipped_one_by_its_name_alone() {
+        for shipped in &PROFILES {
+            let mut copy: Profile = profile("quad", shipped).parse().unwrap();
+            assert_eq!(copy.name, "quad");
+            copy.name = shipped.name.into();
+            assert_eq!(copy, shipped.text.parse().unwrap());
+            let comments = |text: &str| text.matches('#').count();
+            assert!(comments(&profile("quad", shipped)) > comments(shipped.text));
+        }
+        for shipped in &RULE_SETS {
+            let mut copy: fuzzy::Model = renamed("mine", shipped).parse().unwrap();
+            assert_eq!(copy.name, "mine");
+            copy.name = shipped.name.into();
+            assert_eq!(copy, shipped.text.parse().unwrap());
+        }
     }
 
     #[test]

@@ -21,6 +21,7 @@ use fuzzy::{
 
 use self::format::{Format, Sarif, write_github};
 use crate::{
+    built_in,
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
     output::{Files, Stdout},
@@ -29,7 +30,7 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Rule sets or profiles in YAML, or rule sets in FIS, FLL, FCL or FML; `-` is standard input
+    /// Rule sets or profiles in YAML, or rule sets in FIS, FLL, FCL or FML; the name of a built-in profile; `-` is standard input
     #[arg(required = true, value_name = "MODEL")]
     models: Vec<PathBuf>,
     /// How to print the findings
@@ -84,7 +85,11 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     let mut sarif = Sarif::default();
     let mut exit = Exit::Clean;
     for path in &arguments.models {
-        let text = read_text(path)?;
+        // A name that is built in is that of a profile, as in `assess`.
+        let text = match built_in::profile_at(path) {
+            Some(known) => known.text.to_owned(),
+            None => read_text(path)?,
+        };
         let file = path.display().to_string();
         let (profile, examined) = if is_profile(&text) {
             let (name, findings, alone) = examine_profile(path, &text)?;
@@ -162,7 +167,8 @@ fn examine_profile(
         Ok(profile) => profile,
         Err(findings) => return Ok((None, findings, Vec::new())),
     };
-    let folder = (path != Path::new("-")).then(|| path.parent()).flatten();
+    let is_file = path != Path::new("-") && built_in::profile_at(path).is_none();
+    let folder = is_file.then(|| path.parent()).flatten();
     let (model, _) = profile::model(&profile, folder)?;
     let (findings, estimator) = profile::examine(text, &model);
     let alone = estimator.as_ref().map(alone).unwrap_or_default();

@@ -17,7 +17,7 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set in YAML; `-` is standard input
+    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, a built-in one's name, or `-` for standard input
     #[arg(value_name = "MODEL")]
     model: PathBuf,
     /// A value for each input: `margin=0.07`

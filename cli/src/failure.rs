@@ -73,6 +73,15 @@ impl Failure {
         self
     }
 
+    /// As [`Failure::unreadable`], for an error that may have several lines, such as findings: all but the first are details.
+    pub(crate) fn unusable(what: impl fmt::Display, error: &impl fmt::Display) -> Self {
+        let error = error.to_string();
+        let mut lines = error.lines();
+        let first = lines.next().unwrap_or_default();
+        let details = lines.map(|line| line.trim_start().to_owned());
+        Failure::unreadable(format!("{what}: {first}")).details(details.collect())
+    }
+
     /// Adds what to do about it.
     pub(crate) fn help(mut self, help: impl fmt::Display) -> Self {
         self.help = Some(help.to_string());

@@ -2,11 +2,11 @@
 
 use std::{io::Write, path::PathBuf};
 
-use authoring::layout::formatted;
+use authoring::layout::{Unformatted, formatted};
 use fuzzy::drawing::visible;
 
 use crate::{
-    diagnostics::read_text,
+    diagnostics::{read_text, refuse},
     failure::{Exit, Failure},
     output::{Files, Replace, Stdout},
 };
@@ -27,9 +27,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     for path in &arguments.files {
         let text = read_text(path)?;
         let file = path.display().to_string();
-        let formatted = formatted(&text).map_err(|why| {
-            Failure::unreadable(format!("`{file}` cannot be formatted: {why}"))
-                .help("`flagred check` shows its mistakes")
+        let formatted = formatted(&text).map_err(|why| match why {
+            Unformatted::NotYaml(findings) => refuse(&findings, &file, &text),
+            Unformatted::Foreign => {
+                let message = format!("`{file}` is neither a rule set nor a profile");
+                Failure::unreadable(message)
+                    .help("a rule set begins with `fuzzy: 1`, a profile with `flagred: 1`")
+            }
+            Unformatted::Other(why) => {
+                Failure::unreadable(format!("`{file}` cannot be formatted: {why}"))
+                    .help("`flagred check` shows its mistakes")
+            }
         })?;
         let is_stdin = file == "-";
         if arguments.check {

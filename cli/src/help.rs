@@ -165,8 +165,14 @@ Examples:
 pub(crate) const NEW: &str = "\
 Examples:
   flagred new my-rules
-  flagred new my-profile --profile
+  flagred new my-profile --profile                       the default profile, to change its thresholds
+  flagred new my-profile --profile --from flagred-paper
   flagred new --output - my-rules";
+
+pub(crate) const SHOW: &str = "\
+Examples:
+  flagred show flagred
+  flagred show flagred --rules";
 
 pub(crate) const SCHEMA: &str = "\
 Examples:

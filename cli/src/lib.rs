@@ -3,6 +3,7 @@
 //! Each command has a file; this one reads the command line and dispatches.
 
 mod assess;
+mod built_in;
 mod check;
 mod completions;
 mod convert;
@@ -35,6 +36,7 @@ mod provenance;
 mod rows;
 mod rule_set;
 mod schema;
+mod show;
 mod simplify;
 mod studio;
 mod table;
@@ -74,6 +76,9 @@ enum Command {
     /// Write a commented rule set or profile to start from
     #[command(after_help = help::NEW)]
     New(new::Arguments),
+    /// Print a built-in profile or rule set with its comments
+    #[command(after_help = help::SHOW)]
+    Show(show::Arguments),
     /// Find errors, gaps and conflicts in a rule set, and whether a profile fits its rule set
     #[command(after_help = help::CHECK)]
     Check(check::Arguments),
@@ -141,6 +146,7 @@ impl Command {
             Command::Inspect(arguments) => inspect::run(&arguments),
             Command::Convert(arguments) => convert::run(&arguments),
             Command::New(arguments) => new::run(&arguments),
+            Command::Show(arguments) => show::run(&arguments),
             Command::Check(arguments) => check::run(&arguments),
             Command::Explain(arguments) => explain::run(&arguments),
             Command::Eval(arguments) => eval::run(&arguments),

@@ -6,8 +6,10 @@ use authoring::starter;
 use fuzzy::drawing::visible;
 
 use crate::{
+    built_in,
     failure::{Exit, Failure},
     output::{Files, Replace, Stdout},
+    profile,
 };
 
 #[derive(clap::Args)]
@@ -18,9 +20,12 @@ pub(crate) struct Arguments {
     /// The file to write [default: NAME.yaml]; `-` is standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Write a profile instead of a rule set
+    /// Write a profile instead of a rule set: a copy of the default profile with its comments
     #[arg(long)]
     profile: bool,
+    /// Copy this built-in rule set or profile: `flagred`, `flagred-battery` or `flagred-paper`
+    #[arg(long, value_name = "BUILT-IN", value_parser = built_in::name)]
+    from: Option<String>,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
@@ -34,9 +39,16 @@ fn name(text: &str) -> Result<String, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let from = arguments.from.as_deref();
     let text = match arguments.profile {
-        true => starter::profile(&arguments.name),
-        false => starter::rules(&arguments.name),
+        true => {
+            let from = built_in::profile(from.unwrap_or(profile::DEFAULT))?;
+            starter::profile(&arguments.name, from)
+        }
+        false => match from {
+            Some(from) => starter::renamed(&arguments.name, built_in::rule_set(from)?),
+            None => starter::rules(&arguments.name),
+        },
     };
     let path = match &arguments.output {
         Some(path) => path.clone(),
@@ -53,6 +65,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         writeln!(out, "  flagred check {shown}")?;
         match arguments.profile {
             true => writeln!(out, "  flagred assess --profile {shown} flight.bin")?,
+            false if from.is_some() => writeln!(out, "  flagred map {shown}")?,
             false => writeln!(out, "  flagred explain {shown} temperature=24 humidity=70")?,
         }
         out.finish()?;

@@ -4,8 +4,7 @@ use std::{io::Write as _, path::PathBuf};
 
 use fuzzy::{
     Engine, Model,
-    drawing::{Slice, variables_svg, variables_text},
-    map::{DecisionMap, Grid},
+    drawing::{Axis, Cell, Scale, Slice, variables_svg, variables_text},
 };
 
 use crate::{
@@ -17,7 +16,7 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set in YAML; `-` is standard input
+    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, a built-in one's name, or `-` for standard input
     #[arg(value_name = "MODEL")]
     model: PathBuf,
     /// Write an SVG picture to this file instead; `-` is standard output
@@ -43,19 +42,40 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// The outputs over the only input; none where there are more.
+/// The outputs over the only input; none where there are more. Each point is evaluated once for all outputs: in a chain one output
+/// needs those before it.
 fn curves(model: &Model, engine: &Engine) -> Result<Vec<Slice>, Failure> {
-    if model.inputs.len() != 1 {
+    let [input] = &model.inputs[..] else {
         return Ok(Vec::new());
-    }
-    let no_curve = |error: &dyn std::fmt::Display| {
-        Failure::unreadable(format!("the rule set cannot be drawn: {error}"))
     };
-    let mut curves = Vec::new();
-    for output in 0..model.outputs.len() {
-        let grid = Grid::new(engine, POINTS).map_err(|error| no_curve(&error))?;
-        let map = DecisionMap::new(engine, grid, output).map_err(|error| no_curve(&error))?;
-        curves.extend(Slice::new(model, &map));
+    let axis = Axis::new(input, Scale::new(input.low, input.high), POINTS);
+    let mut curves: Vec<Slice> = Vec::new();
+    for output in &model.outputs {
+        let variable = &output.variable;
+        curves.push(Slice {
+            model: model.name.clone(),
+            output: variable.name.clone(),
+            unit: variable.unit.clone(),
+            range: Scale::new(variable.low, variable.high),
+            x: axis.clone(),
+            y: None,
+            held: Vec::new(),
+            filling: None,
+            cells: Vec::with_capacity(POINTS),
+        });
+    }
+    for &x in &axis.points {
+        let outcomes = engine.evaluate(&[x]).map_err(|error| {
+            Failure::unreadable(format!("the rule set cannot be drawn: {error}"))
+        })?;
+        for (curve, outcome) in curves.iter_mut().zip(outcomes) {
+            curve.cells.push(Cell {
+                value: outcome.value(),
+                coverage: outcome.coverage,
+                rule: outcome.dominant,
+                filled_from: None,
+            });
+        }
     }
     Ok(curves)
 }

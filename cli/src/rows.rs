@@ -18,7 +18,7 @@ use crate::{
 /// The arguments of a command that makes a rule set of another one.
 #[derive(clap::Args)]
 pub(crate) struct Rewrite {
-    /// The rule set to begin with
+    /// The rule set to begin with: a file or a built-in one's name
     #[arg(value_name = "MODEL")]
     pub(crate) model: PathBuf,
 

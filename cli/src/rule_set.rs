@@ -1,4 +1,4 @@
-//! A rule set from a file, for the commands that use it: in YAML, or in a format of another program.
+//! A built-in rule set, or one from a file, for the commands that use it: in YAML, or in a format of another program.
 
 use std::path::Path;
 
@@ -6,14 +6,18 @@ use flagred::profile::Profile;
 use fuzzy::{Engine, Model, format::Document};
 
 use crate::{
+    built_in,
     diagnostics::{read_text, refuse},
     failure::Failure,
 };
 
-/// Reads a rule set, which may have no rules yet. What is wrong with it is drawn on standard error; warnings are not:
+/// Reads a rule set, which is a built-in one's name or a file, and may have no rules yet. What is wrong with it is drawn on standard error; warnings are not:
 /// `flagred check` tells them.
 pub(crate) fn read(path: &Path) -> Result<(Document, String), Failure> {
-    let text = read_text(path)?;
+    let text = match built_in::rule_set_at(path) {
+        Some(known) => known.text.to_owned(),
+        None => read_text(path)?,
+    };
     let document = parse(&path.display().to_string(), &text)?;
     Ok((document, text))
 }

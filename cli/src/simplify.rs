@@ -60,13 +60,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         seed: arguments.seed,
     };
     let simplified = simplify(&model, &rows, &settings).map_err(|error| {
-        let message = format!("`{name}`: {error}");
-        match error {
-            SimplifyError::NoRows => Failure::unreadable(message)
-                .help("the tables have a header and no rows; leave out `--rows-only`"),
-            _ => Failure::unreadable(message)
-                .help("`flagred check` shows what is wrong with the rule set"),
-        }
+        let help = match error {
+            SimplifyError::NoRows => {
+                "the tables have a header and no rows; leave out `--rows-only`"
+            }
+            _ => "`flagred check` shows what is wrong with the rule set",
+        };
+        Failure::unusable(format!("`{name}`"), &error).help(help)
     })?;
     let outcome = Outcome {
         arguments,

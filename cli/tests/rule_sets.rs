@@ -441,3 +441,150 @@ fn new_writes_a_rule_set_that_passes_check() {
     let (output, _) = flagred(&["new", "../evil"], "");
     assert_eq!(output.status.code(), Some(2));
 }
+
+#[test]
+fn a_new_profile_is_the_default_one_under_another_name() {
+    let (output, profile) = flagred(&["new", "mine", "--profile", "--output", "-"], "");
+    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    let (_, shipped) = flagred(&["show", "flagred"], "");
+    assert!(profile.contains("name: mine\n") && profile.contains("rules: flagred "));
+    let lines = shipped.lines().filter(|line| !line.starts_with("name:"));
+    assert!(lines.clone().count() > 20);
+    for line in lines {
+        assert!(profile.lines().any(|own| own == line), "{line}");
+    }
+    // The verdicts are those of the default profile, too.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.yaml");
+    fs::write(&path, &profile).unwrap();
+    let flight = "../examples/flights/steady.BIN";
+    let by = |name: &str| flagred(&["assess", flight, "--json", "--profile", name], "").1;
+    let risks = |text: &str| {
+        let json: serde_json::Value = serde_json::from_str(text).unwrap();
+        (json["verdict"].clone(), json["summary"].clone())
+    };
+    assert_eq!(risks(&by(path.to_str().unwrap())), risks(&by("flagred")));
+
+    let from = [
+        "new",
+        "mine",
+        "--profile",
+        "--from",
+        "flagred-paper",
+        "--output",
+        "-",
+    ];
+    let (_, paper) = flagred(&from, "");
+    assert!(paper.contains("rules: flagred-paper "));
+    let (_, rules) = flagred(&["new", "mine", "--from", "flagred", "--output", "-"], "");
+    let (_, shown) = flagred(&["show", "flagred", "--rules"], "");
+    assert_eq!(rules, shown.replace("\nname: flagred\n", "\nname: mine\n"));
+    let (output, _) = flagred(&["new", "mine", "--from", "paper"], "");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(errors(&output).contains("`flagred-paper`"));
+}
+
+#[test]
+fn commands_take_the_names_of_what_is_built_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = folder.path().join("points.csv");
+    fs::write(&points, "margin,spread\n0.1,0.2\n").unwrap();
+    let points = points.to_str().unwrap();
+    for name in ["flagred", "flagred-paper"] {
+        for arguments in [
+            &["show", name][..],
+            &["show", name, "--rules"],
+            &["check", name],
+            &["map", name],
+            &["plot", name],
+            &["export", "--fll", name],
+            &["export", "--fcl", name],
+            &["export", "--c", name],
+            &["export", "--rust", name],
+        ] {
+            let (output, text) = flagred(arguments, "");
+            assert_eq!(
+                output.status.code(),
+                Some(0),
+                "{arguments:?}: {}",
+                errors(&output)
+            );
+            assert!(!text.is_empty(), "{arguments:?}");
+        }
+    }
+    // The default of `export` works with each format that can carry it.
+    assert_eq!(
+        flagred(&["export", "--fll"], "").1,
+        flagred(&["export", "--fll", "flagred"], "").1
+    );
+    let paper = "../rules/flagred-paper.yaml";
+    for (built_in, file) in [
+        (
+            &["eval", "flagred-paper", points][..],
+            &["eval", paper, points][..],
+        ),
+        (
+            &["explain", "flagred-paper", "margin=0.1", "spread=0.2"],
+            &["explain", paper, "margin=0.1", "spread=0.2"],
+        ),
+        (&["plot", "flagred-paper"], &["plot", paper]),
+    ] {
+        let (output, text) = flagred(built_in, "");
+        assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+        assert_eq!(text, flagred(file, "").1);
+    }
+}
+
+#[test]
+fn a_built_in_name_wins_over_a_file_and_a_path_is_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("flagred"), "fuzzy: 1\nname: mine\n").unwrap();
+    let run = |name: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_flagred"));
+        let command = command.current_dir(folder.path()).args(["plot", name]);
+        command.output().unwrap().status.code()
+    };
+    assert_eq!((run("flagred"), run("./flagred")), (Some(0), Some(3)));
+}
+
+#[test]
+fn fmt_leaves_files_of_other_programs_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("compose.yaml");
+    let file = path.to_str().unwrap();
+    for (text, said) in [
+        (
+            "services:\n    web:   {image: nginx}\n",
+            "is neither a rule set nor a profile",
+        ),
+        ("fuzzy: 1\nname: [a\n", "error[yaml-syntax]"),
+    ] {
+        fs::write(&path, text).unwrap();
+        for arguments in [&["fmt", file][..], &["fmt", "--check", file]] {
+            let (output, shown) = flagred(arguments, "");
+            assert_eq!(
+                (output.status.code(), shown.as_str()),
+                (Some(3), ""),
+                "{text}"
+            );
+            let told = errors(&output);
+            assert!(told.contains(said) && !told.contains("\\u{a}"), "{told}");
+        }
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    }
+}
+
+#[test]
+fn a_target_is_not_an_input() {
+    let arguments = [
+        "identify", "-", "--target", "x", "--input", "x", "--output", "-",
+    ];
+    let (output, _) = flagred(&arguments, "x,y\n1,2\n2,3\n");
+    assert_eq!(output.status.code(), Some(2));
+    let told = errors(&output);
+    assert!(
+        told.contains("`x` is both the target and an input"),
+        "{told}"
+    );
+    assert!(!told.contains("\\u{a}"), "{told}");
+}

@@ -23,7 +23,7 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set in YAML
+    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, or a built-in one's name
     #[arg(value_name = "MODEL")]
     model: PathBuf,
 

@@ -57,7 +57,7 @@ pub(crate) struct Arguments {
     /// Leave out what the format cannot say, and `samples` in Rust and C: values may be others
     #[arg(long, conflicts_with = "lua")]
     lossy: bool,
-    /// Profile: `flagred`, `flagred-battery`, `flagred-paper`, or a file; but for Lua also a rule set in any format
+    /// Profile: `flagred`, `flagred-battery`, `flagred-paper`, or a file; except for Lua, a rule set in any format, too
     #[arg(value_name = "FILE", default_value = profile::DEFAULT)]
     file: String,
     /// The file to write; `-` is standard output
@@ -118,6 +118,7 @@ impl Arguments {
 /// Writes a rule set for another program.
 fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
     let path = Path::new(&arguments.file);
+    // The name of a built-in profile is that of its rule set, too.
     let (document, text) = rule_set::read(path)?;
     rule_set::compile(&document, &arguments.file, &text)?;
     let output = Files::reading([path])?.output(&arguments.output, Replace::Yes)?;

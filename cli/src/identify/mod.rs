@@ -119,6 +119,10 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if arguments.input.contains(&arguments.target) {
+        let message = format!("`{}` is both the target and an input", arguments.target);
+        return Err(Failure::usage(message).help("name the other columns with `--input`"));
+    }
     let mut files = Files::reading(&arguments.data)?;
     let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
     // A table is read once: it may be standard input.
@@ -248,10 +252,13 @@ fn data(
 
 fn failure(arguments: &Arguments, names: &[String], error: &TuneError) -> Failure {
     let target = &arguments.target;
-    let failure = Failure::unreadable(format!("`{target}`: {error}"));
+    let failure = Failure::unusable(format!("`{target}`"), error);
     match error {
         TuneError::NoInputHelps => failure
             .help("give columns that have to do with it, more rows, or a smaller `--least-gain`"),
+        TuneError::TooManyColumns { .. } => failure.help(
+            "name those that may be inputs with `--input`, or leave some out with `--ignore`",
+        ),
         TuneError::Unknown { name } => {
             failure.help_if(suggest(name, names.iter().map(String::as_str)))
         }

@@ -193,7 +193,7 @@ fn monotone_help(arguments: &Arguments, outcome: &Outcome) -> Option<&'static st
 }
 
 fn unusable(error: impl std::fmt::Display) -> Failure {
-    Failure::unreadable(format!("the learned rules cannot be used: {error}"))
+    Failure::unusable("the learned rules cannot be used", &error)
 }
 
 /// The shares of the map that rules cover, and that have a value after filling.

@@ -21,6 +21,7 @@ use fuzzy::{
 };
 
 use crate::{
+    built_in,
     diagnostics::read_text,
     failure::{Exit, Failure},
     output::{self, Files, Stdout},
@@ -30,7 +31,8 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set in YAML, or a profile: its rule set, interpolated as the profile says; `-` is standard input
+    /// A rule set, or a profile: its rule set, interpolated as the profile says. A file, a built-in profile's name, or `-` for
+    /// standard input
     #[arg(value_name = "MODEL")]
     model: PathBuf,
 
@@ -228,9 +230,16 @@ pub(crate) fn painted(cell: char, colour: Option<Colour>) -> String {
 
 fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
     let file = arguments.model.display().to_string();
-    let text = read_text(&arguments.model)?;
+    let built_in = built_in::profile_at(&arguments.model);
+    let text = match built_in {
+        Some(known) => known.text.to_owned(),
+        None => read_text(&arguments.model)?,
+    };
     let (model, engine, estimator) = if authoring::is_profile(&text) {
-        let Loaded { estimator, .. } = profile::from_text(&arguments.model, text)?;
+        let Loaded { estimator, .. } = match built_in {
+            Some(known) => profile::load(known.name)?,
+            None => profile::from_text(&arguments.model, text)?,
+        };
         let engine = estimator.engine().clone();
         (engine.model().clone(), engine, Some(estimator))
     } else {

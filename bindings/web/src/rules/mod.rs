@@ -80,7 +80,7 @@ pub fn starting_points() -> Result<String, JsError> {
         start(
             "my-profile".into(),
             "a profile, with a comment on each line",
-            &starter::profile("my-profile"),
+            &starter::profile("my-profile", profile),
         ),
         start(
             profile_name(profile),

@@ -1,0 +1,40 @@
+//! Rule sets and profiles that are built in, by their names. A name wins over a file that is called so: `./flagred` is the file.
+
+use std::path::Path;
+
+use flagred::shipped::{PROFILES, RULE_SETS, Shipped};
+
+use crate::failure::Failure;
+
+/// The built-in rule set that a path names, if it names one.
+pub(crate) fn rule_set_at(path: &Path) -> Option<&'static Shipped> {
+    RULE_SETS.iter().find(|known| path == Path::new(known.name))
+}
+
+/// The built-in profile that a path names, if it names one.
+pub(crate) fn profile_at(path: &Path) -> Option<&'static Shipped> {
+    PROFILES.iter().find(|known| path == Path::new(known.name))
+}
+
+/// The built-in rule set of a name.
+pub(crate) fn rule_set(name: &str) -> Result<&'static Shipped, Failure> {
+    rule_set_at(Path::new(name)).ok_or_else(|| unknown(name))
+}
+
+/// The built-in profile of a name.
+pub(crate) fn profile(name: &str) -> Result<&'static Shipped, Failure> {
+    profile_at(Path::new(name)).ok_or_else(|| unknown(name))
+}
+
+fn unknown(name: &str) -> Failure {
+    Failure::usage(format!("there is no built-in `{name}`"))
+}
+
+/// The name of a built-in rule set or profile, for an argument; each rule set has a profile of its name.
+pub(crate) fn name(text: &str) -> Result<String, String> {
+    let names: Vec<&str> = PROFILES.iter().map(|known| known.name).collect();
+    match names.contains(&text) {
+        true => Ok(text.into()),
+        false => Err(format!("built in are `{}`", names.join("`, `"))),
+    }
+}
