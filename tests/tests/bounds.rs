@@ -336,6 +336,234 @@ fn rule_set(
     text
 }
 
+const VARIABLES: &str = "fuzzy: 1\nname: large\n\
+    inputs: {x: {range: [0, 1], partition: [low, high]}}\n\
+    outputs: {y: {range: [0, 1], partition: [small, large]}}\n";
+
+/// A rule set whose output has so many terms of so many points.
+fn piecewise(terms: usize, points: usize) -> String {
+    let mut text = "fuzzy: 1\nname: large\ninputs: {x: {range: [0, 1], partition: [low, high]}}\n\
+                    outputs: {y: {range: [0, 1], terms: {"
+        .to_owned();
+    for term in 0..terms {
+        let point = |i: usize| {
+            let x = i as f64 / points as f64;
+            format!(
+                "[{x}, {}]",
+                0.5 + (i * 7919 % points) as f64 / (2 * points) as f64
+            )
+        };
+        let points: Vec<String> = (0..points).map(point).collect();
+        text += &format!("t{term}: {{piecewise: [{}]}}, ", points.join(", "));
+    }
+    text += "}}}\nrules:\n";
+    for rule in 0..terms.max(2) {
+        let x = ["low", "high"][rule % 2];
+        text += &format!("  - IF x IS {x} THEN y IS t{}\n", rule % terms);
+    }
+    text
+}
+
+/// A rule set of so many rules with so many conclusions each.
+fn conclusions(rules: usize, count: usize) -> String {
+    let conclusions = vec!["y IS large"; count].join(" AND ");
+    let rule = format!("  - IF x IS low THEN {conclusions} AND y IS small\n");
+    let rule = match rules {
+        1 => rule.replace(" AND y IS small", ""),
+        _ => rule.replacen("y IS large AND ", "", 1),
+    };
+    format!("{VARIABLES}rules:\n{}", rule.repeat(rules))
+}
+
+fn blocks(count: usize) -> String {
+    let block = |i| format!("  b{i}: {{rules: [IF x IS low THEN y IS small]}}\n");
+    let blocks: String = (0..count).map(block).collect();
+    format!("{VARIABLES}blocks:\n{blocks}")
+}
+
+fn formula(start: &str) -> String {
+    VARIABLES.replace(
+        "partition: [small, large]",
+        &format!("terms: {{small: {{function: \"{start}1\"}}}}"),
+    ) + "rules: [IF x IS low THEN y IS small]\n"
+}
+
+/// Files of other programs, below 4 MB, in which something is repeated without end.
+#[test]
+fn files_of_other_programs_are_refused_in_time() {
+    let folder = Folder::new();
+    let input = "InputVariable: x\n range: 0 1\n term: a Triangle 0 0.2 1\n";
+    let output = |name: usize| {
+        format!(
+            "OutputVariable: o{name}\n range: 0 1\n aggregation: Maximum\n defuzzifier: Centroid 10\n term: t Triangle 0 0.2 1\n"
+        )
+    };
+    let fll = |sections: String| format!("Engine: large\n{input}{sections}");
+    let terms: String = (0..100_000)
+        .map(|i| format!(" term: t{i} Triangle 0 0.5 1\n"))
+        .collect();
+    let inputs: String = (0..80_000)
+        .map(|i| format!("InputVariable: x{i}\n range: 0 1\n"))
+        .collect();
+    let outputs: String = (0..60).map(output).collect();
+    // Each rule repeats the one before twice.
+    let doubled: String = (1..60)
+        .map(|i| format!(" rule: if o{0} is t or o{0} is t then o{i} is t\n", i - 1))
+        .collect();
+    let nested: String = (1..60)
+        .map(|i| {
+            format!(
+                " rule: if x is a and (not o{0} is t or x is a) then o{i} is t\n",
+                i - 1
+            )
+        })
+        .collect();
+    let block = "RuleBlock:\n conjunction: Minimum\n disjunction: Maximum\n implication: Minimum\n rule: if x is a then o0 is t\n";
+    let conclusions = vec!["o0 is very t"; 150_000].join(" and ");
+    let attributes: String = (0..100_000).map(|i| format!(" a{i}=\"1\"")).collect();
+    let sums = "1 + ".repeat(900_000);
+    for (name, file, text, said) in [
+        (
+            "terms",
+            "large.fll",
+            fll(terms),
+            "there are more than 1000 terms of `x`",
+        ),
+        (
+            "inputs",
+            "large.fll",
+            fll(inputs),
+            "there are more than 1000 inputs",
+        ),
+        (
+            "blocks",
+            "large.fll",
+            fll(output(0) + &"RuleBlock:\n".repeat(300_000)),
+            "there are more than 1000 rule blocks",
+        ),
+        (
+            "doubled",
+            "large.fll",
+            fll(format!("{outputs}{block}{doubled}")),
+            "are too many",
+        ),
+        (
+            "nested",
+            "large.fll",
+            fll(format!("{outputs}{block}{nested}")),
+            "are too many",
+        ),
+        (
+            "hedges",
+            "large.fll",
+            fll(format!(
+                "{}RuleBlock:\n rule: if x is a then {conclusions}\n",
+                output(0)
+            )),
+            "at most 64 hedges",
+        ),
+        (
+            "formula",
+            "large.fll",
+            fll(format!(" term: f Function {sums}1\n")),
+            "the formula has more than 1000 parts",
+        ),
+        (
+            "attributes",
+            "large.fml",
+            format!("<fuzzySystem name=\"large\"><knowledgeBase{attributes}/></fuzzySystem>"),
+            "an element has more than 1000 attributes",
+        ),
+        (
+            "elements in elements",
+            "large.fml",
+            format!(
+                "<fuzzySystem name=\"large\">{}</fuzzySystem>",
+                "<a>".repeat(900_000)
+            ),
+            "this is no xml",
+        ),
+    ] {
+        assert!(text.len() < 4_000_000, "{name}");
+        let path = folder.file(file, text);
+        for command in ["check", "import"] {
+            let started = Instant::now();
+            let output = flagred().args([command, &path]).output().unwrap();
+            assert!(
+                started.elapsed() < Duration::from_secs(30),
+                "{name}: {:?}",
+                started.elapsed()
+            );
+            let told = [output.stdout, output.stderr].concat();
+            let told = String::from_utf8(told).unwrap();
+            assert!(matches!(output.status.code(), Some(1 | 3)), "{name}");
+            assert!(
+                told.contains(said),
+                "{name}: {}",
+                &told[..told.len().min(1_000)]
+            );
+        }
+    }
+}
+
+/// A chain is evaluated once for all its curves.
+#[test]
+fn a_long_chain_is_drawn_in_time() {
+    let folder = Folder::new();
+    let mut text =
+        "fuzzy: 1\nname: chain\ninputs: {x: {range: [0, 1], partition: [low, high]}}\noutputs:\n"
+            .to_owned();
+    let mut rules = String::new();
+    for i in 0..999 {
+        text += &format!("  y{i}: {{range: [0, 1], partition: [low, high]}}\n");
+        let before = if i == 0 {
+            "x".to_owned()
+        } else {
+            format!("y{}", i - 1)
+        };
+        for term in ["low", "high"] {
+            rules += &format!("  - IF {before} IS {term} THEN y{i} IS {term}\n");
+        }
+    }
+    let path = folder.file("chain.yaml", format!("{text}rules:\n{rules}"));
+    let svg = folder.at("chain.svg");
+    let started = Instant::now();
+    let output = flagred()
+        .args(["plot", &path, "--svg", &svg])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    assert!(
+        started.elapsed() < Duration::from_secs(30),
+        "{:?}",
+        started.elapsed()
+    );
+}
+
+#[test]
+fn wide_tables_are_no_candidates_for_inputs() {
+    let folder = Folder::new();
+    let names: Vec<String> = (0..50_000).map(|i| format!("c{i}")).collect();
+    let row = |i: usize| format!("{i}{}\n", format!(",{}", i * i).repeat(names.len()));
+    let rows: String = (0..5).map(row).collect();
+    let table = folder.file("wide.csv", format!("y,{}\n{rows}", names.join(",")));
+    let started = Instant::now();
+    let output = folder.at("identified.yaml");
+    let output = flagred()
+        .args(["identify", &table, "--target", "y", "--output", &output])
+        .output()
+        .unwrap();
+    assert!(
+        started.elapsed() < Duration::from_secs(30),
+        "{:?}",
+        started.elapsed()
+    );
+    assert_eq!(output.status.code(), Some(3));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("50000 columns are more than 500"), "{told}");
+    assert!(told.contains("--input"), "{told}");
+}
+
 #[test]
 fn large_rule_sets_are_checked_in_time() {
     let folder = Folder::new();
@@ -383,6 +611,54 @@ fn large_rule_sets_are_checked_in_time() {
             rule_set(1, 2, 100_001, |_| 0),
             1,
             "100001 rules are more than 100000",
+        ),
+        (
+            "points of a term",
+            piecewise(1, 200_000),
+            1,
+            "200000 points of the term `t0` are more than 2000",
+        ),
+        (
+            "points in all",
+            piecewise(200, 1_000),
+            1,
+            "200000 points of `piecewise` terms are more than 20000",
+        ),
+        (
+            "as many points as there may be",
+            piecewise(10, 2_000),
+            0,
+            "",
+        ),
+        (
+            "conclusions of a rule",
+            conclusions(1, 200_000),
+            1,
+            "200000 conclusions of rule 1 are more than 1000",
+        ),
+        (
+            "as many conclusions as there may be",
+            conclusions(50, 1_000),
+            0,
+            "contradict",
+        ),
+        (
+            "rule blocks",
+            blocks(50_000),
+            1,
+            "50000 rule blocks are more than 1000",
+        ),
+        (
+            "a sum in a formula",
+            formula(&"1 + ".repeat(900_000)),
+            1,
+            "the formula has more than 1000 parts",
+        ),
+        (
+            "brackets in a formula",
+            formula(&"(".repeat(900_000)),
+            1,
+            "brackets are nested deeper than 64",
         ),
     ] {
         let path = folder.file("large.yaml", text);

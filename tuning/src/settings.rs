@@ -106,6 +106,14 @@ pub enum TuneError {
         /// What is wrong.
         what: &'static str,
     },
+    /// More columns may be inputs than a search looks at.
+    #[error("{columns} columns are more than {most}")]
+    TooManyColumns {
+        /// How many there are.
+        columns: usize,
+        /// How many there may be.
+        most: usize,
+    },
     /// A value or a weight that cannot be used.
     #[error("row {row}: {what}")]
     Row {

@@ -115,6 +115,9 @@ const LEAST_GAIN_OF_ALL: f64 = 1e-3;
 /// The radii that are tried, as shares of the ranges.
 const RADII: [f64; 4] = [0.3, 0.5, 0.7, 1.0];
 
+/// Columns that may be inputs: each step of the search tries all of them.
+const MOST_COLUMNS: usize = 500;
+
 /// Finds inputs, partitions or clusters, and rules, for columns of data and the truths. The search goes forward: each step takes
 /// the input that is new, or the term that is new, with the smallest error on rows left out, as long as it helps enough. Peaks
 /// are at quantiles, rounded; consequents are solved for by least squares with a ridge. [`crate::tune`] moves both from there.
@@ -150,6 +153,12 @@ pub fn identify(
     settings: &Identification,
 ) -> Result<Identified, TuneError> {
     data.check_columns(names.len(), Loss::Squared)?;
+    if names.len() > MOST_COLUMNS {
+        return Err(TuneError::TooManyColumns {
+            columns: names.len(),
+            most: MOST_COLUMNS,
+        });
+    }
     let named = |name: &String| {
         let found = names.iter().position(|known| known == name);
         found.ok_or_else(|| TuneError::Unknown { name: name.clone() })
