@@ -97,8 +97,8 @@ pub struct Partial {
     pub model: Model,
     /// Where its parts stand.
     pub spans: Spans,
-    /// Some rule could not be read.
-    pub rules_unread: bool,
+    /// Some rule or spelt-out term could not be read, so that the names in it are unknown.
+    pub names_unread: bool,
 }
 
 /// Reads as much as possible of a model from a tree; `None` without inputs and outputs.
@@ -106,9 +106,13 @@ pub struct Partial {
 pub fn read_partly(tree: &Node) -> Option<Partial> {
     let mut spans = Spans::default();
     let model = model(&lists::to_mappings(tree), &mut spans, &mut Vec::new())?;
+    let mut variables = spans.inputs.iter().chain(&spans.outputs);
+    let has_unread = |variable: &VariableSpans| {
+        variable.partition.is_empty() && variable.terms.iter().any(|term| term.unread)
+    };
     Some(Partial {
         model,
-        rules_unread: spans.rules_unread,
+        names_unread: spans.rules_unread || variables.any(has_unread),
         spans,
     })
 }

@@ -62,7 +62,7 @@ fn one(
         note: None,
     };
     if let Value::Scalar(_) = &node.value {
-        found.rule = parse(node.words(&what, findings)?, findings)?;
+        (found.rule, spans.weight) = parse(node.words(&what, findings)?, findings)?;
         return Some(found);
     }
     let Value::Mapping(pairs) = &node.value else {
@@ -91,13 +91,14 @@ fn one(
         let what = format!("`against` of {what}");
         let items = node.items(&what, findings).unwrap_or_default();
         for item in items {
-            if let Some((beaten, span)) = beaten(&what, item, findings) {
+            if let Some((beaten, term, degree)) = beaten(&what, item, findings) {
                 found.against.push(beaten);
-                spans.against.push(span);
+                spans.against.push(degree);
+                spans.against_terms.push(term);
             }
         }
     }
-    found.rule = parse(text?.words(&what, findings)?, findings)?;
+    (found.rule, spans.weight) = parse(text?.words(&what, findings)?, findings)?;
     Some(found)
 }
 
@@ -122,15 +123,16 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
     Some(Diagnostic::error("wrong-type", key.span.clone(), message).help(help))
 }
 
-/// `{term: high, degree: 0.4, support: 3}`
+/// `{term: high, degree: 0.4, support: 3}`, with the spans of the term and the degree
 fn beaten(
     what: &str,
     node: &Node,
     findings: &mut Vec<Diagnostic>,
-) -> Option<(Beaten, Range<usize>)> {
+) -> Option<(Beaten, Range<usize>, Range<usize>)> {
     let fields = node.fields(what, &["term", "degree", "support"], findings)?;
     let help = "write `{term: high, degree: 0.4, support: 3}`";
     let term = fields.require("term", help, findings);
+    let term_span = term.map_or(0..0, |node| node.span.clone());
     let term = term.and_then(|node| node.words(&format!("the term in {what}"), findings));
     let degree = fields.require("degree", help, findings);
     let span = degree.map_or(0..0, |node| node.span.clone());
@@ -143,15 +145,15 @@ fn beaten(
         degree: degree?,
         support: support?,
     };
-    Some((beaten, span))
+    Some((beaten, term_span, span))
 }
 
-/// Parses the rule in a scalar; its spans become spans of the document.
-fn parse(scalar: &Scalar, findings: &mut Vec<Diagnostic>) -> Option<rule::Rule> {
-    match rule::parse(&scalar.text) {
-        Ok(mut rule) => {
+/// Parses the rule in a scalar, with the span of its weight; its spans become spans of the document.
+fn parse(scalar: &Scalar, findings: &mut Vec<Diagnostic>) -> Option<(rule::Rule, Range<usize>)> {
+    match rule::parse_with_weight(&scalar.text) {
+        Ok((mut rule, weight)) => {
             rule.names_mut(&mut |name| name.span = scalar.span(name.span.clone()));
-            Some(rule)
+            Some((rule, scalar.span(weight)))
         }
         Err(mut finding) => {
             finding.span = scalar.span(finding.span.clone());

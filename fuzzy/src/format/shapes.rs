@@ -9,6 +9,7 @@ use alloc::{
 use crate::{
     diagnostic::{Diagnostic, suggest},
     model::{Form, Formula, MembershipFunction, Parts, document::TermSpans},
+    rule::Name,
     tree::{Fields, Node, Value},
 };
 
@@ -196,6 +197,12 @@ fn function(
         Ok(formula) => {
             let places = formula.spans().map(|span| scalar.span(span.clone()));
             spans.parameters.extend(places);
+            spans
+                .names
+                .extend(formula.places().map(|(name, span)| Name {
+                    text: name.into(),
+                    span: scalar.span(span.clone()),
+                }));
             Some(MembershipFunction::Function { formula })
         }
         Err(mut finding) => {
@@ -213,17 +220,23 @@ fn linear(
 ) -> Option<MembershipFunction> {
     let entries = node.entries("the linear term", "key", findings)?;
     let mut coefficients = Vec::new();
-    let mut constant = 0.0;
+    let (mut constant, mut constant_span) = (0.0, 0..0);
     for entry in entries {
         let what = format!("`{}` of the linear term", entry.key);
         let number = entry.value.finite(&what, findings)?;
         if entry.key == "constant" {
-            constant = number;
+            (constant, constant_span) = (number, entry.value.span.clone());
         } else {
             coefficients.push((entry.key.to_string(), number));
             spans.parameters.push(entry.key_span.clone());
+            spans.numbers.push(entry.value.span.clone());
+            spans.names.push(Name {
+                text: entry.key.to_string(),
+                span: entry.key_span.clone(),
+            });
         }
     }
+    spans.numbers.push(constant_span);
     Some(MembershipFunction::Linear {
         coefficients,
         constant,

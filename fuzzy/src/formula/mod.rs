@@ -51,8 +51,8 @@ pub struct Formula {
 #[derive(Debug, Clone)]
 pub(crate) struct Variable {
     pub(crate) name: String,
-    /// Where it is first named.
-    pub(crate) span: Range<usize>,
+    /// Where it is named, from left to right.
+    pub(crate) spans: Vec<Range<usize>>,
 }
 
 #[cfg(feature = "alloc")]
@@ -143,7 +143,16 @@ impl Formula {
 
     /// Where its variables are first named in the text it was parsed from.
     pub(crate) fn spans(&self) -> impl Iterator<Item = &Range<usize>> {
-        self.variables.iter().map(|variable| &variable.span)
+        let firsts = self.variables.iter().map(|variable| variable.spans.first());
+        firsts.flatten()
+    }
+
+    /// Each place where a variable is named in the text it was parsed from, with its name.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (&str, &Range<usize>)> {
+        self.variables.iter().flat_map(|variable| {
+            let spans = variable.spans.iter();
+            spans.map(|span| (&*variable.name, span))
+        })
     }
 
     /// Its code, which reads variables by their index.

@@ -282,12 +282,16 @@ impl<'a> Parser<'a> {
     }
 
     fn variable(&mut self, rest: &'a str, after: &'a str, name: String) -> Expression {
+        let span = self.text.len() - rest.len()..self.text.len() - after.len();
         let known = self.variables.iter().position(|v| v.name == name);
         let index = known.unwrap_or_else(|| {
-            let span = self.text.len() - rest.len()..self.text.len() - after.len();
-            self.variables.push(Variable { name, span });
+            let spans = Vec::new();
+            self.variables.push(Variable { name, spans });
             self.variables.len() - 1
         });
+        if let Some(variable) = self.variables.get_mut(index) {
+            variable.spans.push(span);
+        }
         Expression::Variable(index)
     }
 

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::Model;
-use crate::diagnostic::Findings;
+use crate::{diagnostic::Findings, rule::Name};
 
 /// A model as it was read, and where its parts stand in the text.
 ///
@@ -110,8 +110,11 @@ pub struct TermSpans {
     /// The parameters of its membership function: empty in a partition.
     pub parameters: Vec<Range<usize>>,
     /// The numbers of its membership function, one by one: x and degree of each point of a piecewise one, the peak in a partition
-    /// that says it. Empty of a formula, of a linear function and in an even partition.
+    /// that gives it, the coefficients of a linear function and then its constant (`0..0` where it is left out). Empty for a
+    /// formula and in an even partition.
     pub numbers: Vec<Range<usize>>,
+    /// The variables that a formula or a linear function names, at each place.
+    pub names: Vec<Name>,
     /// Its height.
     pub height: Range<usize>,
     /// The membership function could not be read; a finding says why.
@@ -126,6 +129,10 @@ pub struct RuleSpans {
     pub whole: Range<usize>,
     /// Its confidence.
     pub confidence: Range<usize>,
+    /// The number behind WITH; without one, the empty place behind the conclusion.
+    pub weight: Range<usize>,
     /// The degrees of the consequents that it beat.
     pub against: Vec<Range<usize>>,
+    /// The terms of the consequents that it beat.
+    pub against_terms: Vec<Range<usize>>,
 }

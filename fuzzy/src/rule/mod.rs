@@ -14,6 +14,7 @@ mod print;
 mod tests;
 
 pub use crate::table::Hedge;
+pub(crate) use parse::parse_with_weight;
 pub use parse::{DEEPEST_NESTING, parse};
 
 /// A name with its byte span in the source text. Names with equal text are equal, whatever their spans.

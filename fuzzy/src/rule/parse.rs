@@ -15,6 +15,7 @@
 //! knows what could have stood in its place.
 
 use alloc::{boxed::Box, string::String, vec::Vec};
+use core::ops::Range;
 
 use nom::{
     Err, IResult, Parser,
@@ -50,9 +51,14 @@ pub const DEEPEST_NESTING: usize = 64;
 /// # Ok::<(), Box<fuzzy::diagnostic::Diagnostic>>(())
 /// ```
 pub fn parse(text: &str) -> Result<Rule, Box<Diagnostic>> {
+    parse_with_weight(text).map(|(rule, _)| rule)
+}
+
+/// Reads one rule, with the span of its weight: the number behind WITH, or the empty place behind the conclusion.
+pub(crate) fn parse_with_weight(text: &str) -> Result<(Rule, Range<usize>), Box<Diagnostic>> {
     let source = Source { text };
     match source.rule(text) {
-        Ok((_, rule)) => Ok(rule),
+        Ok((_, found)) => Ok(found),
         Err(Err::Error(mistake) | Err::Failure(mistake)) => Err(Box::new(mistake.explain(text))),
         // Only nom's streaming parsers ask for more, and none is used.
         Err(Err::Incomplete(_)) => Err(Box::new(Diagnostic::error(
@@ -109,7 +115,7 @@ impl<'a> Source<'a> {
         self.text.len() - rest.len()
     }
 
-    fn rule(&self, rest: &'a str) -> Step<'a, Rule> {
+    fn rule(&self, rest: &'a str) -> Step<'a, (Rule, Range<usize>)> {
         let Some(rest) = keyword(rest, "IF") else {
             return wrong(rest, Wrong::Keyword(&["IF"], "at the start of a rule"));
         };
@@ -129,12 +135,13 @@ impl<'a> Source<'a> {
                 }
             }
         }
-        let (rest, weight, expected): (_, _, &[&str]) = match keyword(rest, "WITH") {
+        let (rest, weight, span, expected): (_, _, _, &[&str]) = match keyword(rest, "WITH") {
             Some(rest) => {
-                let (rest, weight) = weight(rest)?;
-                (rest, weight, &[])
+                let (number, ()) = space(rest)?;
+                let (rest, weight) = weight(number)?;
+                (rest, weight, self.at(number)..self.at(rest), &[])
             }
-            None => (rest, 1.0, &["AND", "WITH"]),
+            None => (rest, 1.0, self.at(rest)..self.at(rest), &["AND", "WITH"]),
         };
         let (rest, ()) = space(rest)?;
         if !rest.is_empty() {
@@ -145,7 +152,7 @@ impl<'a> Source<'a> {
             consequents,
             weight,
         };
-        Ok((rest, rule))
+        Ok((rest, (rule, span)))
     }
 
     fn any_of(&self, rest: &'a str, depth: usize) -> Step<'a, Condition> {
