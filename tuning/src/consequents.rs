@@ -3,11 +3,15 @@
 
 use fuzzy::{
     Engine, Model,
-    model::{Defuzzifier, MembershipFunction, Output, Term, Variable},
+    model::{Defuzzifier, MembershipFunction, Output, Variable},
 };
 use nalgebra::{DMatrix, DVector};
 
-use crate::{TuneError, data::Data};
+use crate::{
+    TuneError,
+    data::Data,
+    parameters::{UNBOUNDED, bounds},
+};
 
 /// Pulls numbers that the rows say nothing about to what they are; relative to the largest curvature.
 const RIDGE: f64 = 1e-8;
@@ -15,8 +19,14 @@ const RIDGE: f64 = 1e-8;
 /// The rows whose firing strengths are held at a time.
 const ROWS: usize = 4096;
 
-/// Moves the numbers of the terms `fitted` of the only output to where the sum of squared errors is smallest.
-pub(crate) fn fit(model: &mut Model, fitted: &[usize], data: &Data) -> Result<(), TuneError> {
+/// Moves the numbers of the terms `fitted` of the only output to where the sum of squared errors is smallest, constants within
+/// their [`bounds`].
+pub(crate) fn fit(
+    model: &mut Model,
+    fitted: &[usize],
+    data: &Data,
+    beyond_range: bool,
+) -> Result<(), TuneError> {
     let Some((probe, terms)) = probe(model) else {
         return Ok(());
     };
@@ -70,37 +80,83 @@ pub(crate) fn fit(model: &mut Model, fitted: &[usize], data: &Data) -> Result<()
     }
     squares.fill_upper_triangle_with_lower_triangle();
     let variable = &output.variable;
-    let before = variable.terms.clone();
+    // The limits of the steps.
+    let limits = |beyond_range: bool| -> Vec<(f64, f64)> {
+        let limits = consequents.iter().flat_map(|consequent| {
+            let term = variable.terms.get(consequent.term);
+            let (low, high) = term.map_or(UNBOUNDED, |term| bounds(variable, term, beyond_range));
+            let limits = (low - consequent.constant, high - consequent.constant);
+            std::iter::repeat_n(limits, consequent.free())
+        });
+        limits.collect()
+    };
+    let (near, limits) = (limits(true), limits(beyond_range));
+    let is_near = |(step, (low, high)): (&f64, &(f64, f64))| (*low..=*high).contains(step);
     let mut ridge = RIDGE;
     while let Some(steps) = solve(squares.clone(), &products, ridge) {
-        let mut terms = before.clone();
-        let mut steps = steps.iter();
+        // Rules that always fire together could have constants of any size whose errors cancel, on these rows and no others. A
+        // larger ridge holds them at less than the width of the range from it.
+        if !steps.iter().zip(&near).all(is_near) {
+            ridge *= 10.0;
+            continue;
+        }
+        let steps = within(&limits, steps, &squares, &products, ridge);
+        let mut terms = variable.terms.clone();
+        let mut rest = steps.iter();
         for consequent in &consequents {
             if let Some(term) = terms.get_mut(consequent.term) {
-                consequent.move_by(&mut term.membership_function, &mut steps);
+                let (low, high) = bounds(variable, term, beyond_range);
+                consequent.move_by(&mut term.membership_function, &mut rest);
+                // Sums round.
+                if let MembershipFunction::Constant { value } = &mut term.membership_function {
+                    *value = value.clamp(low, high);
+                }
             }
         }
-        if terms.iter().all(|term| is_near(term, variable)) || ridge > 1.0 {
-            if let Some(output) = model.outputs.first_mut() {
-                output.variable.terms = terms;
-            }
-            break;
+        if steps.iter().all(|step| step.is_finite())
+            && let Some(output) = model.outputs.first_mut()
+        {
+            output.variable.terms = terms;
         }
-        ridge *= 10.0;
+        break;
     }
     Ok(())
 }
 
-/// Whether a constant is less than the width of the range away from it. Rules that always fire together could have constants
-/// of any size whose errors cancel, on these rows and no others.
-fn is_near(term: &Term, variable: &Variable) -> bool {
-    let width = variable.high - variable.low;
-    match term.membership_function {
-        MembershipFunction::Constant { value } => {
-            (variable.low - width..=variable.high + width).contains(&value)
-        }
-        _ => true,
+/// The best steps within limits, from the best steps without: each in turn goes where the error is smallest while the others
+/// stay, until none moves any more. The error is convex, so that this is its minimum.
+fn within(
+    limits: &[(f64, f64)],
+    mut steps: DVector<f64>,
+    squares: &DMatrix<f64>,
+    products: &DVector<f64>,
+    ridge: f64,
+) -> DVector<f64> {
+    const MOST_SWEEPS: u32 = 1000;
+    let is_within = |(step, (low, high)): (&f64, &(f64, f64))| step >= low && step <= high;
+    if steps.iter().zip(limits).all(is_within) {
+        return steps;
     }
+    let squares = ridged(squares.clone(), ridge);
+    for (step, (low, high)) in steps.iter_mut().zip(limits) {
+        *step = step.clamp(*low, *high);
+    }
+    for _ in 0..MOST_SWEEPS {
+        let mut largest = 0.0_f64;
+        for (i, (low, high)) in limits.iter().enumerate() {
+            let curvature = squares[(i, i)];
+            let slope = products[i] - squares.column(i).dot(&steps);
+            if curvature > 0.0 {
+                let step = (steps[i] + slope / curvature).clamp(*low, *high);
+                largest = largest.max((step - steps[i]).abs());
+                steps[i] = step;
+            }
+        }
+        if largest <= 1e-12 * steps.amax() {
+            break;
+        }
+    }
+    steps
 }
 
 /// Solves `(squares + ridge) x = products`. The ridge is a share of each diagonal, and grows until the matrix is positive.
@@ -115,16 +171,21 @@ pub(crate) fn solve(
     }
     let mut ridge = ridge;
     while ridge <= 1.0 {
-        let mut ridged = squares.clone();
-        for i in 0..ridged.nrows() {
-            ridged[(i, i)] += ridge * (ridged[(i, i)] + 1e-3 * largest);
-        }
-        if let Some(cholesky) = ridged.cholesky() {
+        if let Some(cholesky) = ridged(squares.clone(), ridge).cholesky() {
             return Some(cholesky.solve(products));
         }
         ridge *= 100.0;
     }
     None
+}
+
+/// A matrix whose diagonal is larger by a share of it.
+fn ridged(mut squares: DMatrix<f64>, ridge: f64) -> DMatrix<f64> {
+    let largest = squares.diagonal().max();
+    for i in 0..squares.nrows() {
+        squares[(i, i)] += ridge * (squares[(i, i)] + 1e-3 * largest);
+    }
+    squares
 }
 
 /// A model whose outputs are the firing strengths of the consequents, and the terms that they are of: the same rules, each

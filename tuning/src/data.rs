@@ -1,5 +1,7 @@
 //! The rows that a model is tuned on.
 
+use std::borrow::Cow;
+
 use fuzzy::Model;
 
 use crate::{Loss, TuneError};
@@ -18,6 +20,31 @@ pub struct Data {
 }
 
 impl Data {
+    /// The largest value and weight of a row, and the inverse of the smallest weight above 0. Squares of larger numbers, and their
+    /// products, would overflow.
+    pub const LARGEST: f64 = 1e50;
+
+    /// Why a row cannot be used: its values, the output's last, and its weight.
+    pub fn problem(values: &[f64], weight: f64, loss: Loss) -> Option<String> {
+        let largest = Data::LARGEST;
+        if values.iter().any(|x| !x.is_finite()) {
+            return Some("a value is not a finite number".into());
+        }
+        if let Some(x) = values.iter().find(|x| x.abs() > largest) {
+            let range =
+                format!("outside the range from -{largest:e} to {largest:e} that tuning supports");
+            return Some(format!("the value {x:e} is {range}"));
+        }
+        if !(weight == 0.0 || (1.0 / largest..=largest).contains(&weight)) {
+            let range = format!("0, or a number from {:e} to {largest:e}", 1.0 / largest);
+            return Some(format!("the weight is {weight:?}, but must be {range}"));
+        }
+        let truth = values.last().filter(|truth| ![0.0, 1.0].contains(*truth));
+        truth
+            .filter(|_| loss != Loss::Squared)
+            .map(|truth| format!("the output's value is {truth}, but must be 0 or 1 for this loss"))
+    }
+
     /// The number of rows.
     pub fn len(&self) -> usize {
         self.truths.len()
@@ -31,6 +58,14 @@ impl Data {
     /// The weight of a row.
     pub(crate) fn weight(&self, row: usize) -> f64 {
         self.weights.get(row).copied().unwrap_or(1.0)
+    }
+
+    /// The rows with a weight above 0: the others must not fill a part of cross-validation.
+    pub(crate) fn weighted(&self) -> Cow<'_, Data> {
+        match self.weights.contains(&0.0) {
+            true => Cow::Owned(self.filtered(|row| self.weight(row) > 0.0)),
+            false => Cow::Borrowed(self),
+        }
     }
 
     /// The inputs of all rows, as the engine takes them.
@@ -83,25 +118,21 @@ impl Data {
         {
             return wrong("the columns are not of one length");
         }
+        let mut values = Vec::with_capacity(inputs + 1);
         for row in 0..rows {
-            let wrong = |what| Err(TuneError::Row { row, what });
-            let values = self.inputs.iter().chain([&self.truths]);
-            if values
-                .filter_map(|column| column.get(row))
-                .any(|x| !x.is_finite())
-            {
-                return wrong("a value is not a finite number");
-            }
-            if !(self.weight(row) >= 0.0 && self.weight(row).is_finite()) {
-                return wrong("the weight is not a number from 0");
-            }
-            let truth = self.truths.get(row);
-            if loss != Loss::Squared && truth.is_none_or(|truth| *truth != 0.0 && *truth != 1.0) {
-                return wrong("the truth is neither 0 nor 1");
+            values.clear();
+            let columns = self.inputs.iter().chain([&self.truths]);
+            values.extend(columns.filter_map(|column| column.get(row)));
+            if let Some(what) = Data::problem(&values, self.weight(row), loss) {
+                return Err(TuneError::Row { row, what });
             }
         }
-        let first = self.truths.first();
-        if loss == Loss::Ranking && self.truths.iter().all(|truth| Some(truth) == first) {
+        let truths = self.truths.iter().enumerate();
+        let mut truths = truths.filter(|(row, _)| self.weight(*row) > 0.0);
+        let Some((_, first)) = truths.next() else {
+            return Err(TuneError::NoWeight);
+        };
+        if loss == Loss::Ranking && truths.all(|(_, truth)| truth == first) {
             return Err(TuneError::OneClass);
         }
         Ok(())

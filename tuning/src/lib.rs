@@ -32,7 +32,7 @@ use fuzzy::{Model, check};
 
 pub use data::Data;
 pub use folds::Interval;
-pub use numbers::{Moved, Number, numbers};
+pub use numbers::{Moved, Number, numbers, with_numbers_of};
 pub use reliability::Bin;
 pub use settings::{Loss, Settings, TuneError};
 pub use simplify::{Difference, EQUAL, Simplified, SimplifyError, SimplifySettings, simplify};
@@ -127,6 +127,9 @@ pub fn tune(
         });
     }
     let before = (objective.measure(&before), before);
+    if !(before.0.is_finite() && before.1.slopes.loss.is_finite()) {
+        return Err(TuneError::NotFinite);
+    }
     let mut best = before.clone();
     let improve = |best: &mut (f64, Point), point: &Point| {
         if point.slopes.loss < best.1.slopes.loss {
@@ -190,7 +193,8 @@ fn rounded(
     digits: u32,
 ) -> Result<Point, TuneError> {
     let originals = numbers(before);
-    for (index, original) in originals.iter().enumerate() {
+    let widths = numbers::widths(before);
+    for (index, (original, width)) in originals.iter().zip(widths).enumerate() {
         let known = numbers(&at.model);
         let Some(number) = known
             .get(index)
@@ -206,7 +210,7 @@ fn rounded(
         let equal = known.iter().enumerate().filter(is_equal).map(|(i, _)| i);
         let equal: Vec<usize> = equal.collect();
         let mut nearest: Option<Point> = None;
-        for value in numbers::round(number.value, digits) {
+        for value in numbers::round(number.value, digits, width) {
             let model = numbers::with(&at.model, &equal, value);
             if !parameters.keeps(&model) || objective.broken_claim(&model)?.is_some() {
                 continue;

@@ -5,6 +5,8 @@ use fuzzy::{
     model::{MembershipFunction, Term, Variable},
 };
 
+use crate::parameters::is_width;
+
 /// A number of a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Number {
@@ -46,7 +48,7 @@ pub(crate) fn moved(before: &Model, after: &Model) -> Vec<Moved> {
 /// The numbers of a model, in the order in which it has them.
 pub fn numbers(model: &Model) -> Vec<Number> {
     let mut numbers = Vec::new();
-    change(&mut model.clone(), &mut |number| {
+    change(&mut model.clone(), &mut |number, _| {
         let value = number.value;
         numbers.push(number);
         value
@@ -54,62 +56,94 @@ pub fn numbers(model: &Model) -> Vec<Number> {
     numbers
 }
 
+/// The width of the range that each of the [`numbers`] is a position in; infinite for other numbers.
+pub(crate) fn widths(model: &Model) -> Vec<f64> {
+    let mut widths = Vec::new();
+    change(&mut model.clone(), &mut |number, width| {
+        widths.push(width);
+        number.value
+    });
+    widths
+}
+
+/// The model with the numbers of another one. `None` where that one has other numbers: of other terms, shapes or rules.
+pub fn with_numbers_of(model: &Model, other: &Model) -> Option<Model> {
+    let (own, others) = (numbers(model), numbers(other));
+    let name = |number: &Number| (number.of.clone(), number.name.clone());
+    if !own.iter().map(name).eq(others.iter().map(name)) {
+        return None;
+    }
+    let mut values = others.into_iter();
+    let mut model = model.clone();
+    change(&mut model, &mut |number, _| {
+        values.next().map_or(number.value, |other| other.value)
+    });
+    Some(model)
+}
+
 /// The model with another value of the numbers of these indices in [`numbers`]. Values that a shape cannot have change
 /// nothing.
 pub(crate) fn with(model: &Model, indices: &[usize], value: f64) -> Model {
     let mut model = model.clone();
     let mut index = 0..;
-    change(&mut model, &mut |number| match index.next() {
+    change(&mut model, &mut |number, _| match index.next() {
         Some(index) if indices.contains(&index) => value,
         _ => number.value,
     });
     model
 }
 
+/// Returns the new value of a number, which is a position in a range of this width; infinite for other numbers.
+type Change<'a> = dyn FnMut(Number, f64) -> f64 + 'a;
+
 /// Gives each number of a model the value that `value` returns for it.
-fn change(model: &mut Model, value: &mut dyn FnMut(Number) -> f64) {
+fn change(model: &mut Model, value: &mut Change<'_>) {
     let outputs = model.outputs.iter_mut().map(|output| &mut output.variable);
     for variable in model.inputs.iter_mut().chain(outputs) {
         match variable.partition_peaks() {
             Some(peaks) => partition(variable, &peaks, value),
             None => {
+                let width = variable.high - variable.low;
                 for term in &mut variable.terms {
-                    shape(&variable.name, term, value);
+                    shape(&variable.name, width, term, value);
                 }
             }
         }
     }
     for (i, rule) in model.rules.iter_mut().enumerate() {
-        rule.rule.weight = value(Number {
+        let number = Number {
             of: format!("rule {}", i + 1),
             name: "weight".into(),
             value: rule.rule.weight,
-        });
+        };
+        rule.rule.weight = value(number, f64::INFINITY);
     }
 }
 
-fn partition(variable: &mut Variable, peaks: &[f64], value: &mut dyn FnMut(Number) -> f64) {
+fn partition(variable: &mut Variable, peaks: &[f64], value: &mut Change<'_>) {
+    let width = variable.high - variable.low;
     let terms = std::mem::take(&mut variable.terms);
     let moved = terms.iter().zip(peaks).map(|(term, peak)| {
-        let moved = value(Number {
+        let number = Number {
             of: format!("{}.{}", variable.name, term.name),
             name: "peak".into(),
             value: *peak,
-        });
-        (term.name.as_str(), moved)
+        };
+        (term.name.as_str(), value(number, width))
     });
     let moved: Vec<(&str, f64)> = moved.collect();
     *variable = variable.clone().partition_at(moved);
 }
 
-fn shape(variable: &str, term: &mut Term, value: &mut dyn FnMut(Number) -> f64) {
+fn shape(variable: &str, width: f64, term: &mut Term, value: &mut Change<'_>) {
     let of = format!("{variable}.{}", term.name);
-    let mut moved = |name: &str, number: f64| {
-        value(Number {
+    let mut moved = |name: &str, number: f64, width: f64| {
+        let number = Number {
             of: of.clone(),
             name: name.into(),
             value: number,
-        })
+        };
+        value(number, width)
     };
     if let MembershipFunction::Linear {
         coefficients,
@@ -117,27 +151,37 @@ fn shape(variable: &str, term: &mut Term, value: &mut dyn FnMut(Number) -> f64) 
     } = &mut term.membership_function
     {
         for (input, coefficient) in coefficients {
-            *coefficient = moved(input, *coefficient);
+            *coefficient = moved(input, *coefficient, f64::INFINITY);
         }
-        *constant = moved("constant", *constant);
+        *constant = moved("constant", *constant, f64::INFINITY);
         return;
     }
     let parameters = term.membership_function.parameters();
-    let values = parameters
-        .iter()
-        .map(|(name, _, number)| moved(name, *number));
+    let values = parameters.iter().map(|(name, role, number)| {
+        let is_position = !is_width(name, *role);
+        moved(
+            name,
+            *number,
+            if is_position { width } else { f64::INFINITY },
+        )
+    });
     let values: Vec<f64> = values.collect();
     if let Ok(moved) = term.membership_function.with_parameters(&values) {
         term.membership_function = moved;
     }
 }
 
-/// The two numbers with so many significant digits on either side of a number; one where it has no more itself.
-pub(crate) fn round(value: f64, digits: u32) -> Vec<f64> {
+/// The two numbers with so many significant digits on either side of a number; one where it has no more itself. A position in a
+/// range of a smaller width is rounded to so many digits of the width.
+pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {
     if value == 0.0 || !value.is_finite() {
         return vec![value];
     }
-    let exponent = value.abs().log10().floor() as i32 - (digits.max(1) as i32 - 1);
+    // The remainder of a difference of equal numbers.
+    if width.is_finite() && value.abs() < 1e-9 * width {
+        return vec![0.0];
+    }
+    let exponent = value.abs().min(width).log10().floor() as i32 - (digits.max(1) as i32 - 1);
     let steps = value / 10_f64.powi(exponent);
     let mut rounded: Vec<f64> = [steps.floor(), steps.ceil()]
         .into_iter()
@@ -158,10 +202,15 @@ mod tests {
 
     #[test]
     fn numbers_have_round_neighbours() {
-        assert_eq!(round(0.3271, 2), [0.32, 0.33]);
-        assert_eq!(round(-1234.0, 2), [-1300.0, -1200.0]);
-        assert_eq!(round(0.3, 2), [0.3]);
-        assert_eq!(round(0.0, 2), [0.0]);
-        assert_eq!(round(99.7, 2), [99.0, 100.0]);
+        let free = f64::INFINITY;
+        assert_eq!(round(0.3271, 2, free), [0.32, 0.33]);
+        assert_eq!(round(-1234.0, 2, free), [-1300.0, -1200.0]);
+        assert_eq!(round(0.3, 2, free), [0.3]);
+        assert_eq!(round(0.0, 2, free), [0.0]);
+        assert_eq!(round(99.7, 2, free), [99.0, 100.0]);
+        // A pressure from 950 to 1050.
+        assert_eq!(round(1013.27, 3, 100.0), [1013.0, 1014.0]);
+        assert_eq!(round(0.3271, 2, 100.0), [0.32, 0.33]);
+        assert_eq!(round(-3.1e-15, 2, 100.0), [0.0]);
     }
 }

@@ -61,7 +61,8 @@ impl<'a> Objective<'a> {
     /// What a model is worth, its consequents fitted first.
     pub(crate) fn fitted(&self, mut model: Model) -> Result<Point, TuneError> {
         if !self.fitted.is_empty() {
-            consequents::fit(&mut model, &self.fitted, self.data)?;
+            let beyond_range = self.settings.beyond_range;
+            consequents::fit(&mut model, &self.fitted, self.data, beyond_range)?;
         }
         self.point(model)
     }

@@ -11,6 +11,7 @@ use crate::{TuneError, ordered::Ordered, settings::Settings};
 #[derive(Debug, Clone)]
 pub(crate) struct Parameters {
     model: Model,
+    beyond_range: bool,
     variables: Vec<(Place, Movable)>,
     /// The rules whose weights may move, by their index.
     weights: Vec<usize>,
@@ -32,7 +33,15 @@ enum Movable {
     /// Terms with shapes of their own: their anchors from left to right, and what hangs on each.
     Terms { anchors: Ordered, hung: Vec<Hung> },
     /// The consequents of a Takagi-Sugeno output: for each number of each term its scale.
-    Consequents(Vec<(usize, Vec<f64>)>),
+    Consequents(Vec<(usize, Vec<Scale>)>),
+}
+
+/// A number of a consequent that moves by `step` times its free number, within bounds.
+#[derive(Debug, Clone, Copy)]
+struct Scale {
+    step: f64,
+    value: f64,
+    bounds: (f64, f64),
 }
 
 /// A term whose parameters hang on its anchor: the place where it is highest.
@@ -66,6 +75,25 @@ fn factor(z: f64) -> f64 {
     (most * (z / most).tanh()).exp()
 }
 
+/// The bounds of a number that has none.
+pub(crate) const UNBOUNDED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+/// Between what the constant of a term stays: in the range of its output, or outside on the side where it is already. With
+/// `beyond_range` it may leave the range by its width. Other terms have no bounds.
+pub(crate) fn bounds(variable: &Variable, term: &Term, beyond_range: bool) -> (f64, f64) {
+    let MembershipFunction::Constant { value } = term.membership_function else {
+        return UNBOUNDED;
+    };
+    let margin = match beyond_range {
+        true => variable.high - variable.low,
+        false => 0.0,
+    };
+    (
+        value.min(variable.low - margin),
+        value.max(variable.high + margin),
+    )
+}
+
 /// A weight of 1 begins here: at 1 itself it could not move.
 const LARGEST_WEIGHT: f64 = 0.98;
 
@@ -87,6 +115,7 @@ impl Parameters {
         };
         let mut parameters = Parameters {
             model: model.clone(),
+            beyond_range: settings.beyond_range,
             variables: Vec::new(),
             weights: Vec::new(),
             fitted: Vec::new(),
@@ -105,7 +134,10 @@ impl Parameters {
                     parameters.fitted = fitted.map(|(term, _)| term).collect();
                     continue;
                 }
-                true => Movable::Consequents(consequents(model, output, &moves)),
+                true => {
+                    let beyond_range = settings.beyond_range;
+                    Movable::Consequents(consequents(model, output, beyond_range, &moves))
+                }
             };
             parameters.add(Place::Output(i), movable);
         }
@@ -130,15 +162,49 @@ impl Parameters {
         variables.sum::<usize>() + self.weights.len()
     }
 
-    /// Whether a model keeps order and least distances, and what is fixed.
+    /// The least and the greatest value of each free number.
+    pub(crate) fn limits(&self) -> Vec<(f64, f64)> {
+        let mut limits = Vec::with_capacity(self.free());
+        for (_, movable) in &self.variables {
+            match movable {
+                Movable::Consequents(terms) => {
+                    let scales = terms.iter().flat_map(|(_, scales)| scales);
+                    limits.extend(scales.map(|scale| {
+                        let (low, high) = scale.bounds;
+                        let free = |bound: f64| (bound - scale.value) / scale.step;
+                        (free(low), free(high))
+                    }));
+                }
+                _ => limits.resize(limits.len() + movable.free(), UNBOUNDED),
+            }
+        }
+        limits.resize(self.free(), UNBOUNDED);
+        limits
+    }
+
+    /// Whether a model keeps order and least distances, constants their bounds, and what is fixed stays.
     pub(crate) fn keeps(&self, model: &Model) -> bool {
-        self.variables.iter().all(|(place, movable)| {
-            let variable = match *place {
-                Place::Input(input) => model.inputs.get(input),
-                Place::Output(output) => model.outputs.get(output).map(|o| &o.variable),
-            };
-            variable.is_some_and(|variable| movable.keeps(variable))
-        })
+        let outputs = self.model.outputs.iter().zip(&model.outputs);
+        let keeps_constants = |(before, after): (&Output, &Output)| {
+            let (before, after) = (&before.variable, &after.variable);
+            let mut terms = before.terms.iter().zip(&after.terms);
+            terms.all(|(term, moved)| match moved.membership_function {
+                MembershipFunction::Constant { value } => {
+                    let (low, high) = bounds(before, term, self.beyond_range);
+                    (low..=high).contains(&value)
+                }
+                _ => true,
+            })
+        };
+        let keeps_constants = outputs.into_iter().all(keeps_constants);
+        keeps_constants
+            && self.variables.iter().all(|(place, movable)| {
+                let variable = match *place {
+                    Place::Input(input) => model.inputs.get(input),
+                    Place::Output(output) => model.outputs.get(output).map(|o| &o.variable),
+                };
+                variable.is_some_and(|variable| movable.keeps(variable))
+            })
     }
 
     /// The model for free numbers.
@@ -247,7 +313,7 @@ fn anchor(parameters: &[(&str, Role, f64)]) -> Option<usize> {
     top.or(parameters.first().map(|_| 0))
 }
 
-fn is_width(name: &str, role: Role) -> bool {
+pub(crate) fn is_width(name: &str, role: Role) -> bool {
     role == Role::Positive || name.ends_with("slope")
 }
 
@@ -255,8 +321,9 @@ fn is_width(name: &str, role: Role) -> bool {
 fn consequents(
     model: &Model,
     output: &Output,
+    beyond_range: bool,
     moves: &dyn Fn(&Term) -> bool,
-) -> Vec<(usize, Vec<f64>)> {
+) -> Vec<(usize, Vec<Scale>)> {
     let height = output.variable.high - output.variable.low;
     let width = |name: &String| {
         let input = model.inputs.iter().find(|input| input.name == *name);
@@ -264,10 +331,26 @@ fn consequents(
     };
     let scales = |(index, term): (usize, &Term)| match &term.membership_function {
         _ if !moves(term) => None,
-        MembershipFunction::Constant { .. } => Some((index, vec![height])),
-        MembershipFunction::Linear { coefficients, .. } => {
-            let scales = coefficients.iter().map(|(name, _)| height / width(name));
-            Some((index, scales.chain([height]).collect()))
+        MembershipFunction::Constant { value } => {
+            let scale = Scale {
+                step: height,
+                value: *value,
+                bounds: bounds(&output.variable, term, beyond_range),
+            };
+            Some((index, vec![scale]))
+        }
+        MembershipFunction::Linear {
+            coefficients,
+            constant,
+        } => {
+            let scale = |step: f64, value: f64| Scale {
+                step,
+                value,
+                bounds: UNBOUNDED,
+            };
+            let scales = coefficients.iter();
+            let scales = scales.map(|(name, value)| scale(height / width(name), *value));
+            Some((index, scales.chain([scale(height, *constant)]).collect()))
         }
         _ => None,
     };
@@ -341,22 +424,25 @@ impl Movable {
             Movable::Consequents(terms) => {
                 let mut z = free.iter();
                 for (index, scales) in terms {
-                    let mut steps = scales.iter().map(|scale| scale * z.next().unwrap_or(&0.0));
+                    let mut moved = scales.iter().map(|scale| {
+                        let moved = scale.value + scale.step * z.next().unwrap_or(&0.0);
+                        moved.clamp(scale.bounds.0, scale.bounds.1)
+                    });
                     match variable
                         .terms
                         .get_mut(*index)
                         .map(|t| &mut t.membership_function)
                     {
                         Some(MembershipFunction::Constant { value }) => {
-                            *value += steps.next().unwrap_or(0.0);
+                            *value = moved.next().unwrap_or(*value);
                         }
                         Some(MembershipFunction::Linear {
                             coefficients,
                             constant,
                         }) => {
                             let numbers = coefficients.iter_mut().map(|(_, number)| number);
-                            for (number, step) in numbers.chain([constant]).zip(steps) {
-                                *number += step;
+                            for (number, moved) in numbers.chain([constant]).zip(moved) {
+                                *number = moved;
                             }
                         }
                         _ => {}

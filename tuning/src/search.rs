@@ -35,7 +35,8 @@ pub(crate) fn search(
     iterations: u32,
     watch: &mut Watch<'_>,
 ) -> Result<(Option<Point>, ControlFlow<()>), TuneError> {
-    let mut z = from.to_vec();
+    let limits = parameters.limits();
+    let mut z = within(&limits, from.iter().copied());
     let mut at = objective.fitted(parameters.model(&z))?;
     let mut holds = objective.broken_claim(&at.model)?.is_none();
     let mut damping = 1e-2;
@@ -47,10 +48,11 @@ pub(crate) fn search(
         if z.is_empty() {
             break;
         }
-        let (squares, products) = normal_equations(objective, parameters, &z, &at)?;
+        let (squares, products) = normal_equations(objective, parameters, &limits, &z, &at)?;
         let before = at.slopes.loss;
+        let bounded = (parameters, limits.as_slice());
         let Some((step, next, used)) =
-            step(objective, parameters, &z, &at, &squares, &products, damping)?
+            step(objective, bounded, &z, &at, &squares, &products, damping)?
         else {
             break;
         };
@@ -71,21 +73,33 @@ pub(crate) fn search(
     Ok((holds.then_some(at), ControlFlow::Continue(())))
 }
 
+/// Free numbers within their limits.
+fn within(limits: &[(f64, f64)], free: impl Iterator<Item = f64>) -> Vec<f64> {
+    let pairs = free.zip(limits);
+    pairs.map(|(z, (low, high))| z.clamp(*low, *high)).collect()
+}
+
 /// The curvature of the loss in the free numbers, and minus its gradient.
 fn normal_equations(
     objective: &Objective<'_>,
     parameters: &Parameters,
+    limits: &[(f64, f64)],
     z: &[f64],
     at: &Point,
 ) -> Result<(DMatrix<f64>, DVector<f64>), TuneError> {
     let mut columns: Vec<Vec<f64>> = Vec::with_capacity(z.len());
-    for i in 0..z.len() {
+    for (i, (_, high)) in limits.iter().enumerate() {
+        // At the upper limit, and only there, the number can only fall.
+        let difference = match z[i] + DIFFERENCE > *high {
+            true => -DIFFERENCE,
+            false => DIFFERENCE,
+        };
         let mut moved = z.to_vec();
-        moved[i] += DIFFERENCE;
+        moved[i] += difference;
         let moved = objective.fitted(parameters.model(&moved))?;
         let pairs = moved.predictions.iter().zip(&at.predictions);
         let slope = |(moved, at): (&f64, &f64)| {
-            let slope = (moved - at) / DIFFERENCE;
+            let slope = (moved - at) / difference;
             if slope.is_finite() { slope } else { 0.0 }
         };
         columns.push(pairs.map(slope).collect());
@@ -111,7 +125,7 @@ fn normal_equations(
 /// The next point: more and more damped until the loss falls and no constraint breaks. `None` where no step helps.
 fn step(
     objective: &Objective<'_>,
-    parameters: &Parameters,
+    (parameters, limits): (&Parameters, &[(f64, f64)]),
     z: &[f64],
     at: &Point,
     squares: &DMatrix<f64>,
@@ -124,9 +138,8 @@ fn step(
             return Ok(None);
         };
         let moved = z.iter().zip(step.iter());
-        let moved: Vec<f64> = moved
-            .map(|(z, step)| z + step.clamp(-LONGEST, LONGEST))
-            .collect();
+        let moved = moved.map(|(z, step)| z + step.clamp(-LONGEST, LONGEST));
+        let moved = within(limits, moved);
         let next = objective.fitted(parameters.model(&moved))?;
         if next.slopes.loss < at.slopes.loss && objective.broken_claim(&next.model)?.is_none() {
             return Ok(Some((moved, next, damping)));

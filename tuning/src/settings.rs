@@ -39,7 +39,10 @@ pub struct Settings {
     /// What the output must do when an input rises. A step after which [`fuzzy::check::counterexamples`] finds that it does
     /// not is not taken.
     pub monotone: Vec<Monotone>,
-    /// The significant digits of what moved; `None`: all.
+    /// Whether constants of an output may leave its range, by the width of the range at most.
+    pub beyond_range: bool,
+    /// The significant digits of numbers that moved; `None`: all. A position has as many as the width of its range needs:
+    /// three digits of a pressure from 950 to 1050 are 1013.
     pub digits: Option<u32>,
     /// How often the search starts: first at the model, then at random places around it.
     pub starts: u32,
@@ -50,7 +53,8 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// Squared error; all terms may move, at least 1 % of the range apart; weights stay; one start of 100 steps.
+    /// Squared error; all terms may move, at least 1 % of the range apart and within it; weights stay; three digits; one start
+    /// of 100 steps.
     fn default() -> Self {
         Settings {
             loss: Loss::Squared,
@@ -59,7 +63,8 @@ impl Default for Settings {
             weights: false,
             least_distance: 0.01,
             monotone: Vec::new(),
-            digits: None,
+            beyond_range: false,
+            digits: Some(3),
             starts: 1,
             seed: 0,
             iterations: 100,
@@ -120,8 +125,16 @@ pub enum TuneError {
         /// The row, counted from 0.
         row: usize,
         /// What is wrong.
-        what: &'static str,
+        what: String,
     },
+    /// No row counts.
+    #[error("the weights of all rows are 0")]
+    NoWeight,
+    /// The error of the model on the rows overflows.
+    #[error(
+        "the error on these rows is not a finite number: they are too far outside the range of the output"
+    )]
+    NotFinite,
     /// Truths of 0 and of 1 are both needed.
     #[error("all rows have the same truth")]
     OneClass,

@@ -296,7 +296,7 @@ fn wrong_rows_are_errors() {
     data.truths[3] = 0.5;
     assert_eq!(
         error(&data, Loss::Log),
-        "row 3: the truth is neither 0 nor 1"
+        "row 3: the output's value is 0.5, but must be 0 or 1 for this loss"
     );
     data.inputs[1][2] = f64::NAN;
     assert_eq!(
@@ -311,6 +311,141 @@ fn wrong_rows_are_errors() {
     let mut same = classes(20);
     same.truths.fill(0.0);
     assert_eq!(error(&same, Loss::Ranking), "all rows have the same truth");
+    // Rows of one truth count, the others do not.
+    let mut one = classes(20);
+    one.weights = one.truths.clone();
+    assert_eq!(error(&one, Loss::Ranking), "all rows have the same truth");
+    one.weights.fill(0.0);
+    assert_eq!(error(&one, Loss::Squared), "the weights of all rows are 0");
+    for (weight, told) in [
+        (-1.0, "the weight is -1.0"),
+        (1e308, "the weight is 1e308"),
+        (f64::NAN, "the weight is NaN"),
+    ] {
+        one.weights.fill(weight);
+        let error = error(&one, Loss::Squared);
+        assert!(
+            error.starts_with("row 0: ") && error.contains(told),
+            "{error}"
+        );
+    }
+    one.weights.clear();
+    one.truths[7] = -1e308;
+    assert_eq!(
+        error(&one, Loss::Squared),
+        "row 7: the value -1e308 is outside the range from -1e50 to 1e50 that tuning supports"
+    );
+}
+
+/// A part of the rows may have no weight: it is no part of cross-validation.
+#[test]
+fn rows_without_weight_change_no_figure() {
+    let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
+    let data = rows_of(&tipper([1.0, 4.0, 9.0], [3.0, 14.0, 27.0]), 60, 2);
+    let mut more = data.clone();
+    more.weights = vec![1.0; 60];
+    for (column, x) in more.inputs.iter_mut().zip([1.0, 1.0]) {
+        column.extend([x; 60]);
+    }
+    more.truths.extend([30.0; 60]);
+    more.weights.extend([0.0; 60]);
+    let settings = Settings {
+        iterations: 3,
+        ..Settings::default()
+    };
+    let mut ok = |_: u32, _: &Progress<'_>| ControlFlow::Continue(());
+    let worth = |data: &Data, ok: &mut dyn FnMut(u32, &Progress<'_>) -> ControlFlow<()>| {
+        cross_validate(&begun, data, &settings, 4, ok)
+            .unwrap()
+            .unwrap()
+    };
+    assert_eq!(worth(&data, &mut ok), worth(&more, &mut ok));
+}
+
+fn constants(values: [f64; 2]) -> Model {
+    let [slow, fast] = values;
+    parse(&format!(
+        "
+fuzzy: 1
+name: fan
+inputs: {{heat: {{range: [0, 10], partition: {{cool: 2, hot: 8}}}}}}
+outputs:
+  speed: {{range: [0, 10], terms: {{slow: {{constant: {slow}}}, fast: {{constant: {fast}}}}}, defuzzifier: weighted_average}}
+rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
+"
+    ))
+}
+
+/// Solved for or searched, constants end at the best place within the range: the error is that of the best of all places.
+#[test]
+fn constants_end_at_the_best_place_within_the_range() {
+    let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
+    let truths: Vec<f64> = heat.iter().map(|heat| 4.0 + 1.2 * heat).collect();
+    let data = Data {
+        truths,
+        inputs: vec![heat],
+        ..Data::default()
+    };
+    let only = vec!["speed".to_owned()];
+    let rmse = |slow: f64| {
+        let settings = Settings {
+            only: only.clone(),
+            iterations: 1,
+            digits: None,
+            ..Settings::default()
+        };
+        tune(&constants([slow, 10.0]), &data, &settings, &mut |_| {
+            ControlFlow::Break(())
+        })
+        .unwrap()
+        .before
+    };
+    let places = (0..=1000).map(|i| f64::from(i) / 100.0);
+    let best = places.min_by(|a, b| rmse(*a).total_cmp(&rmse(*b))).unwrap();
+    let rising = Monotone {
+        input: "heat".into(),
+        direction: check::Direction::Increasing,
+        output: None,
+    };
+    for monotone in [Vec::new(), vec![rising]] {
+        // From inside, and from the upper end, where it can only fall.
+        for begun in [[3.0, 4.0], [10.0, 10.0]] {
+            let settings = Settings {
+                only: only.clone(),
+                digits: None,
+                monotone: monotone.clone(),
+                ..Settings::default()
+            };
+            let tuned = tune(&constants(begun), &data, &settings, &mut go_on).unwrap();
+            let values: Vec<f64> = numbers(&tuned.model)[2..4]
+                .iter()
+                .map(|n| n.value)
+                .collect();
+            assert!(
+                (values[0] - best).abs() < 0.05 && values[1] == 10.0,
+                "{values:?} {best}"
+            );
+        }
+    }
+    // What is outside already may stay, but goes no farther.
+    let outside = tune(
+        &constants([3.0, 12.0]),
+        &data,
+        &Settings {
+            only,
+            ..Settings::default()
+        },
+        &mut go_on,
+    );
+    assert_eq!(numbers(&outside.unwrap().model)[3].value, 12.0);
+}
+
+#[test]
+fn numbers_of_another_model_are_taken_where_it_has_the_same_terms() {
+    let (one, other) = (constants([1.0, 2.0]), constants([3.0, 4.0]));
+    assert_eq!(with_numbers_of(&one, &other), Some(other));
+    let tip = tipper([1.0, 4.0, 9.0], [3.0, 14.0, 27.0]);
+    assert_eq!(with_numbers_of(&one, &tip), None);
 }
 
 proptest! {

@@ -42,6 +42,7 @@ pub fn cross_validate(
     watch: &mut dyn FnMut(u32, &Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Option<Validation>, TuneError> {
     data.check(model, settings.loss)?;
+    let data = &*data.weighted();
     let parameters = Parameters::new(model, settings)?;
     let whole = Objective::new(model, &parameters, data, settings);
     let before = whole.point(model.clone())?.predictions;
@@ -94,6 +95,7 @@ pub fn learning_curve(
     watch: &mut dyn FnMut(u32, &Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Option<Vec<CurvePoint>>, TuneError> {
     data.check(model, settings.loss)?;
+    let data = &*data.weighted();
     let parameters = Parameters::new(model, settings)?;
     let whole = Objective::new(model, &parameters, data, settings);
     let folds = Folds::new(data, folds, settings.seed);

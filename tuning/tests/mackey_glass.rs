@@ -99,6 +99,7 @@ fn the_chaotic_series_is_predicted_as_well_as_by_anfis() {
     });
     let settings = Settings {
         iterations: 60,
+        digits: None,
         ..Settings::default()
     };
     let mut steps = 0;

@@ -159,6 +159,7 @@ pub fn identify(
             most: MOST_COLUMNS,
         });
     }
+    let data = &*data.weighted();
     let named = |name: &String| {
         let found = names.iter().position(|known| known == name);
         found.ok_or_else(|| TuneError::Unknown { name: name.clone() })

@@ -48,6 +48,7 @@ pub fn judge(
     watch: &mut dyn FnMut(u32) -> ControlFlow<()>,
 ) -> Result<Option<Judged>, TuneError> {
     data.check_columns(names.len(), crate::Loss::Squared)?;
+    let data = &*data.weighted();
     // Other parts than those that steps are chosen by.
     let folds = Folds::new(data, folds, settings.seed.wrapping_add(1));
     let mut predictions = [const { Vec::new() }; 3].map(|_: Vec<f64>| vec![f64::NAN; data.len()]);
