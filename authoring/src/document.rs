@@ -117,7 +117,7 @@ impl OpenProfile {
     }
 }
 
-fn partial(text: &str) -> Option<Partial> {
+pub(crate) fn partial(text: &str) -> Option<Partial> {
     format::read_partly(&fuzzy::yaml::read(text).ok()?)
 }
 

@@ -33,6 +33,7 @@ mod document;
 pub mod handles;
 pub mod layout;
 pub mod names;
+mod numbers;
 pub mod provenance;
 pub mod slice;
 pub mod starter;

@@ -8,7 +8,11 @@ use fuzzy::{
     rule::{self, Name},
 };
 
-use crate::document::Document;
+use crate::{
+    Edit,
+    document::{Document, partial},
+    edited,
+};
 
 /// What a name in the text means.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -63,12 +67,29 @@ fn all(rules: &Partial) -> Vec<(Range<usize>, Meaning)> {
             found.push((term.span.clone(), Meaning::Term(v, t)));
         }
     };
-    for rule in &rules.model.rules {
+    let spans = rules.spans.inputs.iter().chain(&rules.spans.outputs);
+    for name in spans
+        .flat_map(|spans| &spans.terms)
+        .flat_map(|term| &term.names)
+    {
+        used(name, None);
+    }
+    for (rule, spans) in rules.model.rules.iter().zip(&rules.spans.rules) {
         rule.rule.condition.visit(&mut |proposition| {
             used(&proposition.variable, proposition.term.as_ref());
         });
         for consequent in &rule.rule.consequents {
             used(&consequent.output, Some(&consequent.term));
+        }
+        for (beaten, span) in rule.against.iter().zip(&spans.against_terms) {
+            let term = Name {
+                text: beaten.term.clone(),
+                span: span.clone(),
+            };
+            // A learned rule concludes one output.
+            if let Some(consequent) = rule.rule.consequents.first() {
+                used(&consequent.output, Some(&term));
+            }
         }
     }
     found
@@ -148,8 +169,10 @@ pub fn definition(document: &Document, offset: usize) -> Option<Range<usize>> {
 pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range<usize>>, String> {
     let (rules, _, meaning) =
         at(document, offset).ok_or("there is no variable and no term here")?;
-    if rules.rules_unread {
-        return Err("a rule cannot be read, so its names are unknown; mend it first".into());
+    if rules.names_unread {
+        return Err(
+            "a rule or a term cannot be read, so its names are unknown; correct it first".into(),
+        );
     }
     let plain = rule::parse(&format!("IF {new} IS {new} THEN {new} IS {new}"));
     if plain.is_err() || new.contains(|c: char| c.is_whitespace() || "'\":#,[]{}".contains(c)) {
@@ -174,5 +197,82 @@ pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range
         .collect();
     spans.sort_by_key(|span| span.start);
     spans.dedup();
-    Ok(spans)
+    let edit = |span: &Range<usize>| Edit {
+        span: span.clone(),
+        text: new.to_owned(),
+    };
+    let edits: Vec<Edit> = spans.iter().map(edit).collect();
+    let meanings = |rules: &Partial| -> Vec<Meaning> {
+        let names = all(rules).into_iter();
+        names.map(|(_, meaning)| meaning).collect()
+    };
+    let renamed = partial(&edited(document.text(), &edits));
+    match renamed.is_some_and(|renamed| meanings(&renamed) == meanings(rules)) {
+        true => Ok(spans),
+        false => Err(format!(
+            "`{new}` would not mean the same in a formula or a linear function; write letters, digits and `_`"
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RULES: &str = "fuzzy: 1
+name: fan
+inputs:
+  heat: {range: [0, 10], terms: {low: {left_shoulder: [2, 8]}, high: {function: heat / 10 * min(heat, 1)}}}
+  damp: {range: [0, 1], partition: [dry, wet]}
+outputs:
+  speed:
+    range: [0, 10]
+    terms:
+      slow: {linear: {heat: 1, constant: 2}}
+      fast: {function: 'heat^2 + 2 * damp - \"heat\"'}
+    defuzzifier: weighted_average
+rules:
+  - {rule: IF heat IS low THEN speed IS slow, against: [{term: fast, degree: 0.4, support: 3}]}
+  - IF heat IS high THEN speed IS fast
+";
+
+    fn renamed(text: &str, at: &str, new: &str) -> Result<String, String> {
+        let document = Document::new(text, |_| None);
+        assert!(!document.findings().has_errors(), "{}", document.findings());
+        let spans = rename(&document, text.find(at).unwrap(), new)?;
+        let edits = spans.into_iter().map(|span| Edit {
+            span,
+            text: new.to_owned(),
+        });
+        Ok(edited(text, &edits.collect::<Vec<_>>()))
+    }
+
+    #[test]
+    fn formulas_linear_functions_and_beaten_terms_follow() {
+        let expected = RULES.replace("\"heat\"", "t_in").replace("heat", "t_in");
+        assert_eq!(renamed(RULES, "heat", "t_in").unwrap(), expected);
+        let from_formula = renamed(RULES, "heat / 10", "t_in").unwrap();
+        assert_eq!(from_formula, expected);
+        let expected = RULES.replace("fast", "quick");
+        assert_eq!(renamed(RULES, "fast,", "quick").unwrap(), expected);
+    }
+
+    #[test]
+    fn a_name_that_a_formula_would_read_as_something_else_is_refused() {
+        for new in ["t-in", "pi", "constant"] {
+            let refused = renamed(RULES, "heat", new).unwrap_err();
+            assert!(
+                refused.contains("would not mean the same"),
+                "{new}: {refused}"
+            );
+        }
+        assert_eq!(
+            renamed(RULES, "dry", "t-in").unwrap(),
+            RULES.replace("dry", "t-in")
+        );
+        let broken = RULES.replace("heat^2 +", "heat^2 + +* ");
+        let document = Document::new(&*broken, |_| None);
+        let refused = rename(&document, broken.find("heat").unwrap(), "t").unwrap_err();
+        assert!(refused.contains("cannot be read"), "{refused}");
+    }
 }

@@ -9,15 +9,95 @@ use fuzzy::{
 };
 use sha2::{Digest as _, Sha256};
 
-/// The rule set that a command made, under the comments that the one it began with has at its head.
-pub fn rule_set(begun_with: &str, mut model: Model, step: Step) -> String {
-    let head = begun_with.split_inclusive('\n');
-    let head: String = head.take_while(|line| line.starts_with('#')).collect();
-    model.provenance.push(Step {
+use crate::{Edit, edited, numbers};
+
+/// The text of a rule set that a command made, with the step that made it. Where only numbers differ from the text that the
+/// command began with, they change in that text; any other rule set is written anew, below the comments at the head of that text.
+///
+/// # Errors
+/// The text would not be read as this rule set, because of a number that is not finite, for example.
+pub fn rule_set(begun_with: &str, mut model: Model, step: Step) -> Result<String, Findings> {
+    let step = Step {
         result: Some(fingerprint(&model)),
         ..step
-    });
-    head + &fuzzy::yaml::to_string(&model)
+    };
+    model.provenance.push(step);
+    if let Some(text) = in_place(begun_with, &model) {
+        return Ok(text);
+    }
+    let head = begun_with.split_inclusive('\n');
+    let head: String = head.take_while(|line| line.starts_with('#')).collect();
+    let text = head + &fuzzy::yaml::to_string(&model);
+    match fuzzy::yaml::parse(&text)?.model == model {
+        true => Ok(text),
+        false => {
+            let message = "the text of the new rule set means another one";
+            let finding = Diagnostic::error("read-back", 0..0, message);
+            Err(Findings::locate(vec![finding], &text))
+        }
+    }
+}
+
+/// A text with the numbers and the last step of a rule set, where nothing else differs.
+fn in_place(text: &str, model: &Model) -> Option<String> {
+    let document = fuzzy::yaml::parse(text).ok()?;
+    let mut edits = numbers::of_model(text, &document, model)?;
+    edits.push(last_step(text, &document, model)?);
+    let text = edited(text, &edits);
+    let read = fuzzy::yaml::parse(&text).ok()?;
+    (read.model == *model).then_some(text)
+}
+
+/// The edit that adds the last step of a rule set to a text with the steps before it.
+fn last_step(text: &str, document: &Document, model: &Model) -> Option<Edit> {
+    const KEY: &str = "provenance:\n";
+    let only = Model {
+        provenance: model.provenance.last().cloned().into_iter().collect(),
+        ..document.model.clone()
+    };
+    let written = fuzzy::yaml::to_string(&only);
+    let (_, step) = written.rsplit_once(&format!("\n{KEY}"))?;
+    let key = document.spans.provenance.clone();
+    let (at, added) = match key.is_empty() {
+        true => (text.len(), format!("{KEY}{step}")),
+        false => {
+            let (at, indent) = end_of_list(text, key.end)?;
+            let lines = step.split_inclusive('\n');
+            let line = |line: &str| format!("{indent}{}", line.strip_prefix("  ").unwrap_or(line));
+            (at, lines.map(line).collect())
+        }
+    };
+    let ended = text.get(..at)?.ends_with('\n') || at == 0;
+    let added = if ended { added } else { format!("\n{added}") };
+    Some(Edit {
+        span: at..at,
+        text: match text.contains("\r\n") {
+            true => added.replace('\n', "\r\n"),
+            false => added,
+        },
+    })
+}
+
+/// Where the block list behind a key of the top level ends, and the space before its items.
+fn end_of_list(text: &str, key_end: usize) -> Option<(usize, &str)> {
+    let mut at = key_end;
+    let mut lines = text.get(key_end..)?.split_inclusive('\n');
+    at += lines.next()?.len();
+    let mut found = None;
+    for line in lines {
+        at += line.len();
+        let inner = line.trim_start_matches(' ');
+        if inner.trim_end().is_empty() || inner.starts_with('#') {
+            continue;
+        }
+        let indent = line.get(..line.len() - inner.len())?;
+        match (&mut found, inner.starts_with('-')) {
+            (None, true) => found = Some((at, indent)),
+            (Some((end, _)), is_item) if is_item || !indent.is_empty() => *end = at,
+            _ => break,
+        }
+    }
+    found
 }
 
 /// A step in a line: `flagred tune: 61 rows of rows.csv, RMS error 10.1 -> 9.2`.
@@ -45,12 +125,12 @@ pub fn words(step: &Step) -> String {
 
 /// Findings, and that the rule set was edited after a command made it, if it was.
 pub fn with_edited(mut findings: Findings, document: &Document, text: &str) -> Findings {
-    let edited = edited(document).into_iter().collect();
+    let edited = edited_since(document).into_iter().collect();
     findings.0.extend(Findings::locate(edited, text).0);
     findings
 }
 
-fn edited(document: &Document) -> Option<Diagnostic> {
+fn edited_since(document: &Document) -> Option<Diagnostic> {
     let last = document.model.provenance.last()?;
     let is_same = last.result.as_ref()? == &fingerprint(&document.model);
     let finding = Diagnostic::note(
@@ -62,8 +142,8 @@ fn edited(document: &Document) -> Option<Diagnostic> {
     (!is_same).then(|| finding.help(help))
 }
 
-/// The first digits of a hash of what a rule set means: names, notes and where rules come from do not count.
-fn fingerprint(model: &Model) -> String {
+/// The first digits of a hash of what a rule set means: its name, notes and the origin of rules do not count.
+pub fn fingerprint(model: &Model) -> String {
     const DIGITS: usize = 16;
     let mut bare = model.clone();
     bare.name.clear();
@@ -91,4 +171,84 @@ fn fingerprint(model: &Model) -> String {
 /// Bytes in hexadecimal digits.
 pub fn digits(hash: &[u8]) -> String {
     hash.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FAN: &str = "fuzzy: 1
+name: fan # short
+inputs: {heat: {range: [0, 40], partition: {cool: 5, hot: 35}}}
+outputs: {speed: {range: [0, 10], partition: [slow, fast]}}
+rules:
+- IF heat IS cool THEN speed IS slow
+- IF heat IS hot THEN speed IS fast
+";
+
+    fn step(note: &str) -> Step {
+        Step {
+            command: "flagred tune".into(),
+            note: Some(note.into()),
+            ..Step::default()
+        }
+    }
+
+    /// The rule set with the peak of `hot` at 30, and a step.
+    fn moved(text: &str, note: &str) -> String {
+        let mut model = fuzzy::yaml::parse(text).unwrap().model;
+        let heat = model.inputs.remove(0);
+        let heat = heat.partition_at([("cool", 5.0), ("hot", 30.0)]);
+        model.inputs.insert(0, heat);
+        let written = rule_set(text, model.clone(), step(note)).unwrap();
+        let read = fuzzy::yaml::parse(&written).unwrap().model;
+        assert_eq!(read.inputs, model.inputs);
+        assert_eq!(read.provenance.len(), model.provenance.len() + 1);
+        written
+    }
+
+    #[test]
+    fn a_step_is_added_to_the_text_wherever_the_others_stand() {
+        let expected = FAN.replace("hot: 35", "hot: 30");
+        let once = moved(FAN, "one");
+        assert!(once.starts_with(&expected), "{once}");
+        let twice = moved(&once, "two");
+        assert!(twice.starts_with(&once), "{twice}");
+        assert!(moved(FAN.trim_end(), "one").starts_with(&expected));
+
+        let lines = FAN.replace('\n', "\r\n");
+        let written = moved(&lines, "one");
+        assert!(
+            written.starts_with(&expected.replace('\n', "\r\n")),
+            "{written}"
+        );
+        assert_eq!(
+            written.matches('\n').count(),
+            written.matches("\r\n").count()
+        );
+
+        let steps =
+            "provenance: # of before\n- command: by hand\n  note: first\n\n# the rules\nrules:";
+        let middle = FAN.replace("rules:", steps);
+        let written = moved(&middle, "two");
+        let (before, after) = written.split_once("note: two").unwrap();
+        assert!(before.contains("  note: first\n-"), "{written}");
+        assert!(after.contains("\n\n# the rules\nrules:\n- IF"), "{written}");
+    }
+
+    #[test]
+    fn what_has_no_place_for_a_step_is_written_anew() {
+        let flow = FAN.replace("rules:", "provenance: [{command: by hand}]\nrules:");
+        assert!(moved(&flow, "two").contains("command: by hand"));
+        let json = "{\"fuzzy\": 1, \"name\": \"fan\", \"inputs\": {\"heat\": {\"range\": [0, 40], \"partition\": {\"cool\": 5, \"hot\": 35}}},
+            \"outputs\": {\"speed\": {\"range\": [0, 10], \"partition\": [\"slow\", \"fast\"]}}, \"rules\": [\"IF heat IS hot THEN speed IS fast\"]}";
+        assert!(moved(json, "one").starts_with("fuzzy: 1\n"));
+    }
+
+    #[test]
+    fn what_cannot_be_read_back_is_refused() {
+        let mut model = fuzzy::yaml::parse(FAN).unwrap().model;
+        model.outputs[0].variable.high = f64::NAN;
+        assert!(rule_set(FAN, model, step("one")).is_err());
+    }
 }

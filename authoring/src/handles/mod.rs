@@ -6,11 +6,11 @@ mod moving;
 mod tests;
 
 use fuzzy::{
-    format::{Partial, TermSpans, VariableSpans},
+    format::{Partial, VariableSpans},
     model::{MembershipFunction, Role, Term, Variable},
 };
 
-use crate::{Document, Edit};
+use crate::{Document, Edit, numbers};
 
 /// A point by which a membership function is dragged.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,7 +74,8 @@ pub fn moved(
     let decimals = place.decimals();
     let to = rounded(x, decimals).clamp(handle.low, handle.high);
     let terms = place.moved(*grip, to, rounded(degree, 2).clamp(0.0, 1.0))?;
-    let edits = place.edits(*grip, &terms)?;
+    let edits = numbers::of_terms(place.text, place.variable, place.spans, &terms);
+    let edits = edits.ok_or("the number is not in the text")?;
     place.verified(document, terms, edits)
 }
 
@@ -87,7 +88,6 @@ struct Place<'d> {
     spans: &'d VariableSpans,
     index_of_term: usize,
     term: &'d Term,
-    term_spans: &'d TermSpans,
 }
 
 impl<'d> Place<'d> {
@@ -107,7 +107,6 @@ impl<'d> Place<'d> {
             spans,
             index_of_term,
             term: variable.terms.get(index_of_term)?,
-            term_spans: spans.terms.get(index_of_term)?,
         })
     }
 

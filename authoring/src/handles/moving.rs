@@ -1,9 +1,8 @@
-//! What becomes of a text when a handle moves: the terms then, and the edits that make them.
+//! The terms of a variable after a handle has moved, and the check that edits give exactly these terms.
 
 use fuzzy::{
     format,
     model::{MembershipFunction, Term, Variable},
-    tree::{Node, Value},
 };
 
 use super::{Grip, Place, rounded};
@@ -60,80 +59,6 @@ impl Place<'_> {
         Ok(terms)
     }
 
-    /// The edits of the numbers that a grip moves.
-    pub(super) fn edits(&self, grip: Grip, terms: &[Term]) -> Result<Vec<Edit>, String> {
-        let shape = terms
-            .get(self.index_of_term)
-            .map(|term| &term.membership_function);
-        let change = |number: usize, value: f64| {
-            let span = self.term_spans.numbers.get(number)?.clone();
-            let text = written(value);
-            Some(Edit { span, text })
-        };
-        let edits = match (grip, shape) {
-            (Grip::Peak, _) => {
-                let changed = Variable {
-                    terms: terms.to_vec(),
-                    ..self.variable.clone()
-                };
-                let peaks = changed.partition_peaks();
-                let peaks = peaks.ok_or("the peaks of a partition rise from left to right")?;
-                let peak = peaks.get(self.index_of_term).copied().unwrap_or_default();
-                match self.term_spans.numbers.is_empty() {
-                    true => self.spelt_out(&peaks),
-                    false => change(0, peak).map(|edit| vec![edit]),
-                }
-            }
-            (Grip::Point(i), Some(MembershipFunction::Piecewise { points })) => {
-                let point = points.get(i).copied().unwrap_or_default();
-                let edits = [change(2 * i, point.0), change(2 * i + 1, point.1)];
-                edits.into_iter().collect()
-            }
-            (Grip::Place(parameter) | Grip::Width { parameter, .. }, Some(shape)) => {
-                let value = shape
-                    .parameters()
-                    .get(parameter)
-                    .map(|(_, _, value)| *value);
-                value.and_then(|value| Some(vec![change(parameter, value)?]))
-            }
-            _ => None,
-        };
-        edits.ok_or_else(|| "the number is not in the text".into())
-    }
-
-    /// An even partition `[low, high]` with its peaks: `{low: 0, high: 1}`.
-    fn spelt_out(&self, peaks: &[f64]) -> Option<Vec<Edit>> {
-        let list = self.spans.partition.clone();
-        let is_flow = self.text.get(list.clone())?.starts_with('[');
-        let mut edits = Vec::new();
-        let bracket = |at: usize, text: &str| Edit {
-            span: at..at + 1,
-            text: text.into(),
-        };
-        if is_flow {
-            edits.push(bracket(list.start, "{"));
-        }
-        for (term, peak) in self.spans.terms.iter().zip(peaks) {
-            if !is_flow {
-                let dash = self.text.get(..term.name.start)?.trim_end().len();
-                let dash = dash.checked_sub(1)?..dash;
-                (self.text.get(dash.clone())? == "-").then_some(())?;
-                edits.push(Edit {
-                    span: dash,
-                    text: " ".into(),
-                });
-            }
-            edits.push(Edit {
-                span: term.name.end..term.name.end,
-                text: format!(": {}", written(*peak)),
-            });
-        }
-        if is_flow {
-            edits.push(bracket(list.end.checked_sub(1)?, "}"));
-        }
-        Some(edits)
-    }
-
     /// The edits, where the text then means what is wanted and nothing else.
     pub(super) fn verified(
         &self,
@@ -162,13 +87,5 @@ impl Place<'_> {
             true => Ok(edits),
             false => Err("the number stands for others too, or is written in a way of its own; change it in the text".into()),
         }
-    }
-}
-
-/// A number as rule sets write it.
-fn written(number: f64) -> String {
-    match Node::number(number).value {
-        Value::Scalar(scalar) => scalar.text,
-        _ => String::new(),
     }
 }
