@@ -7,10 +7,23 @@ use std::{
 };
 
 use authoring::provenance::digits;
-use fuzzy::model::DataFile;
+use fuzzy::{
+    Model,
+    model::{DataFile, Step},
+};
 use sha2::{Digest as _, Sha256};
 
 use crate::failure::Failure;
+
+/// The text of a rule set that a command made of another one, with the step that made it.
+pub(crate) fn rule_set(begun_with: &str, model: Model, step: Step) -> Result<String, Failure> {
+    authoring::provenance::rule_set(begun_with, model, step).map_err(|findings| {
+        let problems = findings.0.into_iter().map(|finding| finding.message);
+        Failure::unreadable("the new rule set could not be read back, and nothing was written")
+            .details(problems.collect())
+            .help("look for extreme values in the rows")
+    })
+}
 
 /// The files that data come from.
 pub(crate) fn data(tables: &[PathBuf]) -> Result<Vec<DataFile>, Failure> {

@@ -7,6 +7,7 @@ use flagred::learning::Row;
 use fuzzy::{
     Model,
     check::{Direction, Monotone},
+    diagnostic::Findings,
 };
 
 use crate::{
@@ -184,11 +185,11 @@ pub(crate) fn columns(
     Ok(data)
 }
 
-/// Rows as columns, and those that cannot be used, with the reason. `wrong` says what is wrong with a value of the output.
+/// Rows as columns, and those that cannot be used, with the reason.
 pub(crate) fn in_columns(
     read: Data,
     inputs: usize,
-    wrong: impl Fn(f64) -> Option<String>,
+    loss: tuning::Loss,
 ) -> (tuning::Data, Vec<String>) {
     let Data { rows, mut refused } = read;
     let mut data = tuning::Data {
@@ -196,17 +197,14 @@ pub(crate) fn in_columns(
         ..tuning::Data::default()
     };
     for (row, place) in rows {
-        let truth = row.values.last().copied().unwrap_or(f64::NAN);
-        let negative = (row.weight < 0.0)
-            .then(|| format!("the weight is {}, but must not be negative", row.weight));
-        if let Some(wrong) = wrong(truth).or(negative) {
-            refused.push(format!("{place}: {wrong}"));
+        if let Some(problem) = tuning::Data::problem(&row.values, row.weight, loss) {
+            refused.push(format!("{place}: {problem}"));
             continue;
         }
         for (column, value) in data.inputs.iter_mut().zip(&row.values) {
             column.push(*value);
         }
-        data.truths.push(truth);
+        data.truths.extend(row.values.last());
         data.weights.push(row.weight);
         data.groups.extend(row.group);
     }
@@ -219,6 +217,12 @@ pub(crate) fn share(text: &str) -> Result<f64, String> {
     share
         .filter(|share| (0.0..1.0).contains(share))
         .ok_or_else(|| "write a share, at least 0 and less than 1".into())
+}
+
+/// A rule set that cannot be used, with its errors in a line each.
+pub(crate) fn unusable(what: &str, findings: &Findings) -> Failure {
+    let errors = findings.0.iter().map(|finding| finding.message.clone());
+    Failure::unreadable(format!("{what} cannot be used")).details(errors.collect())
 }
 
 /// Rows that cannot be used, as a failure.

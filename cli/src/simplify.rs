@@ -154,7 +154,7 @@ impl Outcome<'_> {
             )),
             ..Step::default()
         };
-        Ok(authoring::provenance::rule_set(model_text, after, step))
+        provenance::rule_set(model_text, after, step)
     }
 
     fn words(&self, out: &mut dyn Write) -> std::io::Result<()> {

@@ -151,7 +151,11 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
     let names = csv.headers().map_err(|error| broken(&file, &error))?;
     let names: Vec<String> = names.iter().map(str::to_owned).collect();
     if names.iter().all(String::is_empty) {
-        return Err(Failure::unreadable(format!("`{file}` is empty"))
+        let message = match names.len() {
+            0 => format!("`{file}` is empty"),
+            cells => format!("the header of `{file}` names none of its {cells} columns"),
+        };
+        return Err(Failure::unreadable(message)
             .help("the first line names the columns, the others hold the rows"));
     }
     let header = Header {

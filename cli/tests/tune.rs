@@ -143,3 +143,259 @@ fn what_is_not_monotone_to_begin_with_is_refused() {
         "{err}"
     );
 }
+
+/// Nothing counts, or what counts is so large that errors overflow: the file that was there stays.
+#[test]
+fn rows_that_say_nothing_or_overflow_are_refused() {
+    let weightless = rows().replace(",1,", ",0,");
+    let extreme = "heat,speed,w\n10,2,1\n30,1e308,1\n";
+    let heavy = "heat,speed,w\n10,2,1e308\n30,8,1\n";
+    for (rows, more, told) in [
+        (
+            &*weightless,
+            &["--weight", "is_loud"][..],
+            "the weights of all rows are 0",
+        ),
+        (
+            extreme,
+            &[],
+            "`rows.csv`, line 3: the value 1e308 is outside the range from -1e50 to 1e50",
+        ),
+        (
+            heavy,
+            &["--weight", "w"],
+            "`rows.csv`, line 2: the weight is 1e308, but must be 0, or a number from 1e-50 to 1e50",
+        ),
+    ] {
+        let files = [("rows.csv", rows), ("out.yaml", "good")];
+        let (code, _, err, written) = tune(&files, &[more, &["--force"]].concat());
+        assert_eq!((code, written.as_deref()), (Some(3), Some("good")), "{err}");
+        assert!(err.contains(told), "{err}");
+    }
+    // Some rows that do not count are nothing special.
+    let (code, _, err, written) = tune(&[], &["--weight", "is_loud", "--folds", "30"]);
+    assert_eq!(code, Some(0), "{err}");
+    assert!(!written.unwrap().contains("nan"));
+}
+
+const CONSTANTS: &str = "fuzzy: 1
+name: fan
+inputs: {heat: {range: [0, 40], partition: {cool: 5, hot: 35}}}
+outputs:
+  speed:
+    range: [0, 10]
+    terms: {slow: {constant: 2}, fast: {constant: 8}}
+    defuzzifier: weighted_average
+rules:
+  - IF heat IS cool THEN speed IS slow
+  - IF heat IS hot THEN speed IS fast
+";
+
+/// The rows lie on a line that is at 14 where `hot` is highest.
+#[test]
+fn constants_stay_in_the_range_unless_asked() {
+    let mut rows = String::from("heat,speed\n");
+    for heat in 0..=25 {
+        writeln!(rows, "{heat},{}", 2.0 + 0.4 * f64::from(heat - 5)).unwrap();
+    }
+    let files = [("fan.yaml", CONSTANTS), ("rows.csv", &*rows)];
+    let tuned = |more: &[&str]| {
+        let arguments = [&["--only", "speed", "--no-validation"], more].concat();
+        let (code, _, err, written) = tune(&files, &arguments);
+        assert_eq!(code, Some(0), "{err}");
+        written.unwrap()
+    };
+    let written = tuned(&[]);
+    assert!(written.contains("fast: {constant: 10}"), "{written}");
+    let written = tuned(&["--beyond-range"]);
+    assert!(written.contains("fast: {constant: 14}"), "{written}");
+    // The search without a closed form has the same bounds.
+    let written = tuned(&["--rising", "heat"]);
+    assert!(written.contains("fast: {constant: 10}"), "{written}");
+}
+
+#[test]
+fn numbers_are_rounded_to_three_digits_unless_asked() {
+    let mut rows = String::from("heat,speed\n");
+    for heat in 0..=40 {
+        writeln!(rows, "{heat},{}", 3.123_456 + 0.123_456 * f64::from(heat)).unwrap();
+    }
+    let written = |more: &[&str]| {
+        let (.., written) = tune(
+            &[("rows.csv", &rows)],
+            &[more, &["--no-validation"]].concat(),
+        );
+        let written = written.unwrap();
+        let numbers = written.split_once("provenance").unwrap().0.to_owned();
+        let digits = |word: &str| word.bytes().filter(u8::is_ascii_digit).count();
+        numbers
+            .split([' ', ',', '}', ']'])
+            .map(digits)
+            .max()
+            .unwrap()
+    };
+    assert!(written(&[]) <= 3);
+    assert!(written(&["--round", "all"]) > 5);
+    let (code, _, err, _) = tune(&[], &["--round", "0"]);
+    assert_eq!(code, Some(2));
+    assert!(err.contains("from 1 to 17, or `all`"), "{err}");
+}
+
+const LAID_OUT: &str = "# A fan for the attic.
+fuzzy: 1
+name: fan   # short
+
+inputs:
+    heat: { range: [0, 40], unit: °C, partition: [ cool, hot ] }  # even
+    damp:
+        range: [0, 1]   # a share
+        terms:
+            dry: {left_shoulder: [0.30, 0.60]}   # as measured
+            wet: {right_shoulder: [ 0.3, 0.6 ]}
+
+outputs:
+    speed:
+        range: [0, 10]
+        terms:
+            slow: {linear: {heat: 0.0}}   # no constant
+            fast: {constant: 8.00}
+        defuzzifier: weighted_average
+
+rules:
+    - if heat is cool then speed is slow      # small letters
+    - \"IF (heat IS hot) AND damp IS wet THEN speed IS fast\"
+    - rule: IF damp IS dry THEN speed IS slow WITH 0.50
+      note: as the old one did
+";
+
+/// Without its digits.
+fn shape(text: &str) -> String {
+    text.chars()
+        .filter(|c| !c.is_ascii_digit() && *c != '.' && *c != '-')
+        .collect()
+}
+
+/// Comments, order, quotes and layout stay.
+#[test]
+fn numbers_change_in_the_text_where_they_stand() {
+    let mut rows = String::from("heat,damp,speed\n");
+    for i in 0..200 {
+        let (heat, damp) = (f64::from(i * 7 % 41), f64::from(i * 13 % 20) / 20.0);
+        let speed = if heat > 22.0 { 7.3 } else { 1.9 } + damp;
+        writeln!(rows, "{heat},{damp},{speed}").unwrap();
+    }
+    let files = [("fan.yaml", LAID_OUT), ("rows.csv", &*rows)];
+    let (code, _, err, written) = tune(&files, &["--weights", "--no-validation"]);
+    assert_eq!(code, Some(0), "{err}");
+    let written = written.unwrap();
+    let (rules, provenance) = written.split_once("provenance:\n").unwrap();
+    let before: Vec<&str> = LAID_OUT.lines().collect();
+    let after: Vec<&str> = rules.lines().collect();
+    assert_eq!(before.len(), after.len(), "{written}");
+    for (before, after) in before.iter().zip(&after) {
+        let expected = shape(before)
+            .replace("[ cool, hot ]", "{ cool: , hot:  }")
+            .replace("{heat: }", "{constant: , heat: }");
+        let weighted = shape(after).replace(" WITH ", "");
+        assert_eq!(weighted, expected.replace(" WITH ", ""), "{written}");
+    }
+    assert!(provenance.contains("command: flagred tune"), "{written}");
+
+    // A second step stands behind the first.
+    let files = [("fan.yaml", &*written), ("rows.csv", &*rows)];
+    let (code, _, err, again) = tune(&files, &["--only", "speed", "--no-validation"]);
+    assert_eq!(code, Some(0), "{err}");
+    let again = again.unwrap();
+    assert_eq!(again.matches("command: flagred tune").count(), 2, "{again}");
+    assert_eq!(
+        shape(again.split_once("provenance:").unwrap().0),
+        shape(rules)
+    );
+}
+
+/// An anchor stands for two terms: the rule set is written anew, and right.
+#[test]
+fn what_cannot_change_in_place_is_written_anew() {
+    let shared = FAN.replace(
+        "terms: {slow: {singleton: 2}, fast: {singleton: 8}}",
+        "terms: {slow: &n {singleton: 2}, fast: {singleton: 8}, idle: *n}",
+    );
+    let (code, _, err, written) = tune(&[("fan.yaml", &shared)], &["--no-validation"]);
+    assert_eq!(code, Some(0), "{err}");
+    let written = written.unwrap();
+    assert!(written.starts_with("# A fan for the attic.\nfuzzy: 1\n") && !written.contains("&n"));
+}
+
+/// Files cannot grow over 512 bytes, but a pipe can.
+#[test]
+#[cfg(unix)]
+fn a_full_disk_keeps_no_other_output_from_being_written() {
+    let long = FAN.replace(
+        "name: fan\n",
+        &format!("name: fan\ndescription: {}\n", "x".repeat(600)),
+    );
+    let (rows, program) = (rows(), env!("CARGO_BIN_EXE_flagred"));
+    let folder = folder(&[("fan.yaml", &*long), ("rows.csv", &*rows)]);
+    let run = |limit: &str, arguments: &str| {
+        let script = format!(
+            "trap '' XFSZ; {limit} exec {program} tune fan.yaml rows.csv --no-validation {arguments}"
+        );
+        let output = std::process::Command::new("sh")
+            .args(["-c", &script])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let [out, err] =
+            [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+        (output.status.code(), out, err)
+    };
+    let (code, out, err) = run("ulimit -f 1;", "-o - --checkpoint best.yaml");
+    assert_eq!(code, Some(2));
+    assert!(out.contains("partition: {cool: 20, hot: 30}"), "{out}");
+    assert!(err.contains("moved       heat.cool"), "{err}");
+    assert!(
+        err.contains("error: `best.yaml` cannot be written"),
+        "{err}"
+    );
+    let (code, out, err) = run("", "-o /dev/full --svg moved.svg");
+    assert_eq!(code, Some(2));
+    assert!(out.contains("moved       heat.cool"), "{out}");
+    assert!(
+        err.contains("error: `/dev/full` cannot be written"),
+        "{err}"
+    );
+    assert!(folder.path().join("moved.svg").exists());
+}
+
+/// Other rules, another range or another operator are not what was tuned.
+#[test]
+fn a_checkpoint_that_differs_in_more_than_numbers_is_refused() {
+    let rules = "  - IF heat IS cool THEN speed IS slow\n  - IF heat IS hot THEN speed IS fast\n";
+    let crossed = "  - IF heat IS cool THEN speed IS fast\n  - IF heat IS hot THEN speed IS slow\n";
+    for other in [
+        FAN.replace(rules, crossed),
+        FAN.replace("range: [0, 40]", "range: [0, 41]"),
+        FAN.replace("rules:", "operators: {and: product}\nrules:"),
+    ] {
+        let (code, _, err, written) =
+            tune(&[("best.yaml", &other)], &["--checkpoint", "best.yaml"]);
+        assert_eq!((code, written), (Some(2), None));
+        assert!(
+            err.contains("`best.yaml` is a checkpoint of another rule set"),
+            "{err}"
+        );
+    }
+}
+
+#[test]
+fn a_header_without_names_is_told() {
+    let (code, _, err, _) = tune(&[("rows.csv", ",,\n1,2,3\n")], &[]);
+    assert_eq!(code, Some(3));
+    assert!(
+        err.contains("the header of `rows.csv` names none of its 3 columns"),
+        "{err}"
+    );
+    let (code, _, err, _) = tune(&[("rows.csv", "")], &[]);
+    assert_eq!(code, Some(3));
+    assert!(err.contains("`rows.csv` is empty"), "{err}");
+}

@@ -6,7 +6,7 @@ use std::{io::Write as _, ops::ControlFlow, path::PathBuf};
 
 use fuzzy::diagnostic::suggest;
 use tuning::{
-    Data, TuneError,
+    Data, Loss, TuneError,
     identify::{
         Antecedents, Consequents, Identification, Identified, Judged, MOST_TERMS, identify, judge,
     },
@@ -243,7 +243,7 @@ fn data(
         &all,
         [&arguments.weight, &arguments.group_by].map(Option::as_deref),
     )?;
-    let (data, refused) = rows::in_columns(read, names.len(), |_| None);
+    let (data, refused) = rows::in_columns(read, names.len(), Loss::Squared);
     if !refused.is_empty() && (!arguments.format.skip_bad_rows || data.is_empty()) {
         return Err(rows::refuse(&refused, "used"));
     }
@@ -254,6 +254,7 @@ fn failure(arguments: &Arguments, names: &[String], error: &TuneError) -> Failur
     let target = &arguments.target;
     let failure = Failure::unusable(format!("`{target}`"), error);
     match error {
+        TuneError::NoWeight => failure.help("give rows a weight above 0, or leave out `--weight`"),
         TuneError::NoInputHelps => failure
             .help("give columns that have to do with it, more rows, or a smaller `--least-gain`"),
         TuneError::TooManyColumns { .. } => failure.help(

@@ -37,11 +37,7 @@ pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome) -> Result<Strin
         note: Some(format!("from {} columns{judged}", outcome.columns)),
         ..Step::default()
     };
-    Ok(authoring::provenance::rule_set(
-        "",
-        outcome.identified.model.clone(),
-        step,
-    ))
+    provenance::rule_set("", outcome.identified.model.clone(), step)
 }
 
 pub(super) fn words(

@@ -42,7 +42,7 @@ pub(super) fn rule_set(
         )),
         ..Step::default()
     };
-    Ok(authoring::provenance::rule_set(model_text, model, step))
+    provenance::rule_set(model_text, model, step)
 }
 
 pub(super) fn words(

@@ -13,6 +13,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use authoring::provenance::fingerprint;
 use clap::ValueEnum;
 use fuzzy::{Model, drawing::moved_svg};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -52,9 +53,13 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = rows::share)]
     least_distance: f64,
 
-    /// Round what moved to so many significant digits
-    #[arg(long, value_name = "DIGITS", value_parser = clap::value_parser!(u32).range(1..=17))]
-    round: Option<u32>,
+    /// Let constants leave the range of the output, by its width at most
+    #[arg(long)]
+    beyond_range: bool,
+
+    /// Significant digits of the numbers that moved, or `all`
+    #[arg(long, default_value = "3", value_name = "DIGITS", value_parser = digits)]
+    round: Digits,
 
     /// How often the search starts: at the rule set, then at random places around it
     #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -95,6 +100,29 @@ enum LossName {
     Ranking,
 }
 
+/// Significant digits; `None` for all.
+#[derive(Debug, Clone, Copy)]
+struct Digits(Option<u32>);
+
+fn digits(text: &str) -> Result<Digits, String> {
+    let digits = text.parse().ok().filter(|digits| (1..=17).contains(digits));
+    match (text, digits) {
+        ("all", _) => Ok(Digits(None)),
+        (_, Some(digits)) => Ok(Digits(Some(digits))),
+        (_, None) => Err("write a number of digits from 1 to 17, or `all`".into()),
+    }
+}
+
+impl Arguments {
+    fn loss(&self) -> Loss {
+        match self.loss {
+            LossName::Squared => Loss::Squared,
+            LossName::Log => Loss::Log,
+            LossName::Ranking => Loss::Ranking,
+        }
+    }
+}
+
 /// What the report tells.
 struct Outcome {
     rows: usize,
@@ -131,7 +159,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         watch.step(progress, None)
     });
     let tuned = tuned.map_err(failed)?;
-    watch.keep(&tuned.model)?;
+    // Whatever cannot be written is an error in the end. Until then the search goes on.
+    let kept = watch.keep(&tuned.model);
     let validation = match arguments.rows.no_validation || tuned.is_stopped {
         true => None,
         false => {
@@ -157,14 +186,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         curve,
         is_resumed: resumed.is_some(),
     };
-    output.write(&report::rule_set(arguments, &outcome, &text)?)?;
+    let mut texts = vec![(&output, report::rule_set(arguments, &outcome, &text)?)];
     if let Some(svg) = &svg {
-        svg.write(&moved_svg(&original, &outcome.tuned.model))?;
+        texts.push((svg, moved_svg(&original, &outcome.tuned.model)));
     }
-    let written: Vec<&Output> = [Some(&output), svg.as_ref()]
-        .into_iter()
-        .flatten()
-        .collect();
+    let written: Vec<&Output> = texts.iter().map(|(output, _)| *output).collect();
+    let all_written = output::write_all(texts);
     let mut out = Stdout::beside(&written);
     if arguments.rows.rewrite.json {
         let document = report::Document::new(arguments, &outcome);
@@ -174,22 +201,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         report::words(&mut out, arguments, &outcome)?;
     }
     out.finish()?;
-    Ok(Exit::Clean)
+    match (kept, all_written) {
+        (Err(checkpoint), Err(output)) => {
+            checkpoint.report();
+            Err(output)
+        }
+        (kept, all_written) => kept.and(all_written).map(|()| Exit::Clean),
+    }
 }
 
 fn settings(arguments: &Arguments) -> Settings {
     Settings {
-        loss: match arguments.loss {
-            LossName::Squared => Loss::Squared,
-            LossName::Log => Loss::Log,
-            LossName::Ranking => Loss::Ranking,
-        },
+        loss: arguments.loss(),
         only: arguments.only.clone(),
         fix: arguments.fix.clone(),
         weights: arguments.weights,
         least_distance: arguments.least_distance,
         monotone: arguments.rows.claims(),
-        digits: arguments.round,
+        beyond_range: arguments.beyond_range,
+        digits: arguments.round.0,
         starts: arguments.starts,
         seed: arguments.seed,
         iterations: arguments.iterations,
@@ -199,35 +229,26 @@ fn settings(arguments: &Arguments) -> Settings {
 /// The rows as columns, and why others cannot be used.
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
     let read = rows::read(&arguments.rows, model)?;
-    let is_refused =
-        |truth: f64| arguments.loss != LossName::Squared && truth != 0.0 && truth != 1.0;
-    let (data, refused) = rows::in_columns(read, model.inputs.len(), |truth| {
-        is_refused(truth)
-            .then(|| format!("the output's value is {truth}, but must be 0 or 1 for this loss"))
-    });
+    let (data, refused) = rows::in_columns(read, model.inputs.len(), arguments.loss());
     if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
         return Err(rows::refuse(&refused, "used"));
     }
     Ok((data, refused))
 }
 
-/// The rule set of a checkpoint that exists. It has the variables, terms and rules of the one to tune.
+/// The rule set to tune with the numbers of a checkpoint that exists and differs in nothing else.
 fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failure> {
     let Some(path) = arguments.checkpoint.as_ref().filter(|path| path.exists()) else {
         return Ok(None);
     };
     let (document, _) = rule_set::read(path)?;
-    let names = |model: &Model| {
-        let numbers = tuning::numbers(model).into_iter();
-        numbers
-            .map(|number| (number.of, number.name))
-            .collect::<Vec<_>>()
-    };
-    if names(&document.model) != names(model) {
+    let resumed = tuning::with_numbers_of(model, &document.model);
+    let resumed = resumed.filter(|resumed| fingerprint(resumed) == fingerprint(&document.model));
+    if resumed.is_none() {
         let message = format!("`{}` is a checkpoint of another rule set", path.display());
         return Err(Failure::usage(message).help("name a new file, or remove this one"));
     }
-    Ok(Some(document.model))
+    Ok(resumed)
 }
 
 fn failure(name: &str, error: &TuneError) -> Failure {
@@ -240,6 +261,8 @@ fn failure(name: &str, error: &TuneError) -> Failure {
             "`--only` and `--fix` leave nothing; `--weights` moves the weights"
         }
         TuneError::NoRows => "the tables have a header and no rows",
+        TuneError::NoWeight => "give rows a weight above 0, or leave out `--weight`",
+        TuneError::NotFinite => "check the units of the output's column and of its range",
         TuneError::OneClass => "ranking needs rows of 1 and rows of 0",
         TuneError::NotMonotone { .. } => {
             "`flagred check --monotone` shows where; begin with a rule set that holds it: `flagred learn --rising`"
@@ -248,6 +271,7 @@ fn failure(name: &str, error: &TuneError) -> Failure {
     };
     let message = format!("`{name}`: {error}");
     match error {
+        TuneError::Compile(findings) => rows::unusable(&format!("`{name}`"), findings).help(help),
         TuneError::Unknown { .. } | TuneError::NothingMoves | TuneError::Claim { .. } => {
             Failure::usage(message).help(help)
         }
@@ -263,6 +287,8 @@ struct Watch<'a> {
     iterations: u32,
     checkpoint: Option<&'a Output>,
     kept: Instant,
+    /// Whether the user knows that the checkpoint could not be written.
+    is_refused: bool,
 }
 
 impl<'a> Watch<'a> {
@@ -289,6 +315,7 @@ impl<'a> Watch<'a> {
             iterations: arguments.iterations,
             checkpoint,
             kept: Instant::now(),
+            is_refused: false,
         }
     }
 
@@ -304,8 +331,13 @@ impl<'a> Watch<'a> {
             Some(fold) => format!("validation, part {}", fold + 1),
         });
         if fold.is_none() && self.kept.elapsed() > BETWEEN {
-            // A checkpoint that cannot be written now may be written later; in the end it is an error.
-            let _ = self.keep(progress.model);
+            // It may be possible to write it later; in the end it is an error.
+            if let Err(failure) = self.keep(progress.model)
+                && !std::mem::replace(&mut self.is_refused, true)
+            {
+                let note = format!("{}; the search goes on", failure.message());
+                self.bar.suspend(|| output::say(&note));
+            }
         }
         self.flow()
     }

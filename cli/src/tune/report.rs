@@ -54,11 +54,7 @@ pub(super) fn rule_set(
         note: left_out,
         ..Step::default()
     };
-    Ok(authoring::provenance::rule_set(
-        model_text,
-        tuned.model.clone(),
-        step,
-    ))
+    provenance::rule_set(model_text, tuned.model.clone(), step)
 }
 
 /// Six digits: authors read them.
