@@ -384,3 +384,32 @@ fn a_rule_set_of_another_program_has_findings_and_stays_as_it_is() {
     assert_eq!(formatted, Value::Null);
     editor.end();
 }
+
+/// A length that no memory holds, a message that is too long, one that is none: the next one is read all the same.
+#[test]
+fn a_message_that_is_too_long_is_passed_over() {
+    let mut editor = Editor::new(&[]);
+    let long = format!("Content-Length: 20000000\r\n\r\n{}", " ".repeat(20_000_000));
+    editor.to.write_all(long.as_bytes()).unwrap();
+    editor.to.write_all(b"Content-Length: 2\r\n\r\n{{").unwrap();
+    assert!(!editor.open("file:///tmp/fan.yaml", RULES).is_empty());
+    editor.end();
+
+    let mut editor = Editor::new(&[]);
+    editor
+        .to
+        .write_all(b"Content-Length: 18446744073709551615\r\n\r\n{}")
+        .unwrap();
+    let Editor { mut server, to, .. } = editor;
+    drop(to);
+    assert!(server.wait().unwrap().success());
+}
+
+#[test]
+fn the_order_of_messages_is_that_of_the_protocol() {
+    let mut editor = Editor::new(&[]);
+    let again = editor.ask_raw("initialize", json!({"capabilities": {}}));
+    assert_eq!(again["error"]["code"], -32600);
+    editor.tell("exit", Value::Null);
+    assert_eq!(editor.server.wait().unwrap().code(), Some(1));
+}

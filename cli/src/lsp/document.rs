@@ -67,9 +67,10 @@ fn path(uri: &lsp::Uri) -> Option<PathBuf> {
 }
 
 /// How an editor counts the columns of a line.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) enum Encoding {
     Utf8,
+    #[default]
     Utf16,
 }
 

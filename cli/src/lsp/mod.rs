@@ -1,8 +1,9 @@
 //! `flagred lsp`: a language server for rule sets and profiles, over standard input and output.
 
 mod document;
+mod transport;
 
-use std::collections::HashMap;
+use std::{collections::HashMap, io};
 
 use authoring::{
     Document,
@@ -10,7 +11,7 @@ use authoring::{
     layout, names,
 };
 use gen_lsp_types as lsp;
-use lsp_server::{Connection, ErrorCode, ExtractError, Message, Notification, Request, Response};
+use lsp_server::{ErrorCode, ExtractError, Message, Notification, Request, Response};
 use serde::{Serialize, de::DeserializeOwned};
 
 use crate::failure::{Exit, Failure};
@@ -24,46 +25,33 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(_: &Arguments) -> Result<Exit, Failure> {
-    let (connection, threads) = Connection::stdio();
-    let ended = serve(&connection);
-    drop(connection);
-    let joined = threads.join();
-    ended?;
-    joined.map_err(broken)?;
-    Ok(Exit::Clean)
-}
-
-fn broken(error: impl std::fmt::Display) -> Failure {
-    Failure::unreadable(format!("the editor broke the protocol: {error}"))
-}
-
-fn serve(connection: &Connection) -> Result<(), Failure> {
-    let (id, parameters) = connection.initialize_start().map_err(broken)?;
-    let encoding = Encoding::of(&parameters);
-    let answer = serde_json::to_value(abilities(encoding)).map_err(broken)?;
-    connection.initialize_finish(id, answer).map_err(broken)?;
-    let mut server = Server {
-        encoding,
-        open: HashMap::new(),
-    };
-    for message in &connection.receiver {
+    let (mut from, mut to) = (io::stdin().lock(), io::stdout().lock());
+    let mut server = Server::default();
+    while let Some(message) = transport::read(&mut from).map_err(broken)? {
         let answers = match message {
-            Message::Request(request) => {
-                if connection.handle_shutdown(&request).map_err(broken)? {
-                    return Ok(());
-                }
-                vec![Message::Response(server.answer(request))]
+            Message::Request(request) => vec![Message::Response(server.respond(request))],
+            Message::Notification(notification) if notification.method == "exit" => {
+                // The protocol asks for 1 where the editor did not say `shutdown` before.
+                return match server.phase {
+                    Phase::ShutDown => Ok(Exit::Clean),
+                    _ => Err(Failure::shown(1)),
+                };
             }
             Message::Notification(notification) => server.take(notification),
             Message::Response(_) => Vec::new(),
         };
         for answer in answers {
-            if connection.sender.send(answer).is_err() {
-                return Ok(());
+            // An editor that reads no answers any more is gone.
+            if answer.write(&mut to).is_err() {
+                return Ok(Exit::Clean);
             }
         }
     }
-    Ok(())
+    Ok(Exit::Clean)
+}
+
+fn broken(error: impl std::fmt::Display) -> Failure {
+    Failure::unreadable(format!("the editor broke the protocol: {error}"))
 }
 
 fn abilities(encoding: Encoding) -> lsp::InitializeResult {
@@ -89,12 +77,52 @@ fn abilities(encoding: Encoding) -> lsp::InitializeResult {
     }
 }
 
+#[derive(Default)]
 struct Server {
+    phase: Phase,
     encoding: Encoding,
     open: HashMap<lsp::Uri, Document>,
 }
 
+/// How far the conversation is.
+#[derive(Default, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    #[default]
+    Started,
+    Initialized,
+    ShutDown,
+}
+
 impl Server {
+    /// The answer to a request, in the phases of the protocol.
+    fn respond(&mut self, request: Request) -> Response {
+        let error = |code: ErrorCode, why: &str| {
+            Response::new_err(request.id.clone(), code as i32, why.to_owned())
+        };
+        match (self.phase, request.method.as_str()) {
+            (Phase::Started, "initialize") => {
+                self.phase = Phase::Initialized;
+                self.encoding = Encoding::of(&request.params);
+                Response::new_ok(request.id, abilities(self.encoding))
+            }
+            (Phase::Started, _) => {
+                error(ErrorCode::ServerNotInitialized, "send `initialize` first")
+            }
+            (Phase::Initialized, "initialize") => {
+                error(ErrorCode::InvalidRequest, "`initialize` was sent already")
+            }
+            (Phase::Initialized, "shutdown") => {
+                self.phase = Phase::ShutDown;
+                Response::new_ok(request.id, ())
+            }
+            (Phase::Initialized, _) => self.answer(request),
+            (Phase::ShutDown, _) => error(
+                ErrorCode::InvalidRequest,
+                "only `exit` may follow `shutdown`",
+            ),
+        }
+    }
+
     /// A change of a document; its diagnostics are the answer.
     fn take(&mut self, notification: Notification) -> Vec<Message> {
         let notification =

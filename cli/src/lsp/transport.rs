@@ -1,0 +1,119 @@
+//! Messages on standard input: a head with their length, then JSON. Each is bounded: a wrong length could fill the memory.
+
+use std::io::{self, BufRead, Read};
+
+use lsp_server::Message;
+
+use crate::output::say;
+
+/// Bytes of a message: a rule set of the largest size, whose every fourth character is escaped.
+const LONGEST: u64 = 16_000_000;
+/// Bytes of a line of a head.
+const LONGEST_LINE: u64 = 4096;
+
+/// Reads a message; `None` at the end. One that is too long, or is not a message, is passed over: the next ones can be read.
+///
+/// # Errors
+/// The head of a message cannot be read, so that its end is unknown.
+pub(super) fn read<R: BufRead>(from: &mut R) -> io::Result<Option<Message>> {
+    while let Some(length) = head(from)? {
+        if length > LONGEST {
+            say(&format!(
+                "a message of {length} bytes is passed over: the limit is {LONGEST}"
+            ));
+            io::copy(&mut from.by_ref().take(length), &mut io::sink())?;
+            continue;
+        }
+        let mut text = Vec::new();
+        from.by_ref().take(length).read_to_end(&mut text)?;
+        if (text.len() as u64) < length {
+            return Ok(None);
+        }
+        match serde_json::from_slice(&text) {
+            Ok(message) => return Ok(Some(message)),
+            Err(error) => say(&format!("a message is passed over: {error}")),
+        }
+    }
+    Ok(None)
+}
+
+/// The length of the message that a head announces; `None` at the end.
+fn head<R: BufRead>(from: &mut R) -> io::Result<Option<u64>> {
+    let mut length = None;
+    loop {
+        let mut line = Vec::new();
+        from.by_ref()
+            .take(LONGEST_LINE)
+            .read_until(b'\n', &mut line)?;
+        if line.is_empty() {
+            return Ok(None);
+        }
+        let line = String::from_utf8_lossy(&line);
+        let line = line.trim_end();
+        if line.is_empty() {
+            let missing = || invalid("the `Content-Length` of a message is missing".into());
+            return length.map(Some).ok_or_else(missing);
+        }
+        let Some((name, value)) = line.split_once(": ") else {
+            return Err(invalid(format!("`{line}` is not a header line")));
+        };
+        if name.eq_ignore_ascii_case("content-length") {
+            let wrong = |_| invalid(format!("`{value}` is not the length of a message"));
+            length = Some(value.parse().map_err(wrong)?);
+        }
+    }
+}
+
+fn invalid(message: String) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(text: &str) -> String {
+        format!("Content-Length: {}\r\n\r\n{text}", text.len())
+    }
+
+    const EXIT: &str = "{\"jsonrpc\":\"2.0\",\"method\":\"exit\"}";
+
+    #[test]
+    fn what_is_too_long_or_damaged_is_passed_over() {
+        let long = message(&" ".repeat(LONGEST as usize + 1));
+        let all = format!("{long}{}{}", message("{"), message(EXIT));
+        let mut all = all.as_bytes();
+        let read_one = |from: &mut &[u8]| read(from).unwrap();
+        assert!(
+            matches!(read_one(&mut all), Some(Message::Notification(one)) if one.method == "exit")
+        );
+        assert!(read_one(&mut all).is_none());
+    }
+
+    /// A length that no memory holds is not asked for.
+    #[test]
+    fn a_message_that_never_ends_takes_no_memory() {
+        for length in ["18446744073709551615", "99999999999999", "3000000000"] {
+            let text = format!("Content-Length: {length}\r\n\r\n{EXIT}");
+            assert!(read(&mut text.as_bytes()).unwrap().is_none(), "{length}");
+        }
+        let cut_off = format!("Content-Length: 15999999\r\n\r\n{EXIT}");
+        assert!(read(&mut cut_off.as_bytes()).unwrap().is_none());
+    }
+
+    #[test]
+    fn a_head_that_cannot_be_read_is_an_error() {
+        for (head, told) in [
+            ("Content-Length: x\r\n\r\n", "`x` is not the length"),
+            (
+                "Content-Length: 18446744073709551616\r\n\r\n",
+                "is not the length",
+            ),
+            ("Content-Type: y\r\n\r\n", "is missing"),
+            ("GET / HTTP/1.1\r\n\r\n", "is not a header line"),
+        ] {
+            let error = read(&mut head.as_bytes()).unwrap_err().to_string();
+            assert!(error.contains(told), "{error}");
+        }
+    }
+}
