@@ -3,19 +3,24 @@
 //! The only place of this package that is unsafe: a capsule is a pointer to a C struct.
 #![allow(unsafe_code)]
 
-use std::borrow::Cow;
+use std::{
+    borrow::Cow,
+    ffi::{CStr, c_void},
+    panic::{AssertUnwindSafe, catch_unwind},
+    ptr::NonNull,
+};
 
 use arrow_array::{
-    Array, ArrayRef, RecordBatch, RecordBatchIterator, RecordBatchReader, StructArray,
+    Array, ArrayRef, RecordBatch, RecordBatchIterator, StructArray,
     cast::AsArray,
-    ffi::{FFI_ArrowArray, FFI_ArrowSchema, from_ffi},
-    ffi_stream::{ArrowArrayStreamReader, FFI_ArrowArrayStream},
+    ffi::{FFI_ArrowArray, FFI_ArrowSchema, from_ffi_and_data_type},
+    ffi_stream::FFI_ArrowArrayStream,
     types::{
         ArrowPrimitiveType, Decimal128Type, Float16Type, Float32Type, Float64Type, Int8Type,
         Int16Type, Int32Type, Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
     },
 };
-use arrow_schema::{DataType, SchemaRef};
+use arrow_schema::{DataType, Fields, SchemaRef};
 use pyo3::{prelude::*, types::PyCapsule};
 
 use crate::errors::data_error;
@@ -39,41 +44,186 @@ pub(crate) fn export(
     PyCapsule::new_with_value(py, Exported(stream), c"arrow_array_stream")
 }
 
-/// The batches of a table of another library, one after another.
-pub(crate) fn import(table: &Bound<'_, PyAny>) -> PyResult<Box<dyn RecordBatchReader + Send>> {
-    if !table.hasattr("__arrow_c_stream__")? {
-        return import_batch(table);
+/// A table of another library.
+pub(crate) struct Imported {
+    fields: Fields,
+    source: Source,
+}
+
+enum Source {
+    Stream(FFI_ArrowArrayStream),
+    /// One batch, until it is read.
+    Batch(Option<StructArray>),
+}
+
+/// Takes over a table of another library.
+///
+/// # Errors
+/// It is not a table, or its capsules do not hold what Arrow's protocol says.
+pub(crate) fn import(table: &Bound<'_, PyAny>) -> PyResult<Imported> {
+    match table.hasattr("__arrow_c_stream__")? {
+        true => import_stream(&table.call_method0("__arrow_c_stream__")?),
+        false => import_batch(&table.call_method0("__arrow_c_array__")?),
     }
-    let capsule = table.call_method0("__arrow_c_stream__")?;
-    let capsule = capsule.cast::<PyCapsule>()?;
-    let pointer = capsule.pointer_checked(Some(c"arrow_array_stream"))?;
+}
+
+fn import_stream(capsule: &Bound<'_, PyAny>) -> PyResult<Imported> {
+    let pointer = content(capsule, c"arrow_array_stream")?;
     // SAFETY: a capsule of this name points to an ArrowArrayStream, which is moved out and marked as released.
-    let reader = unsafe { ArrowArrayStreamReader::from_raw(pointer.as_ptr().cast()) };
-    Ok(Box::new(reader.map_err(|error| data_error(error, None))?))
+    let mut stream = unsafe { FFI_ArrowArrayStream::from_raw(pointer.cast().as_ptr()) };
+    let Some(get_schema) = stream.get_schema.filter(|_| stream.release.is_some()) else {
+        return Err(taken("stream"));
+    };
+    let mut schema = FFI_ArrowSchema::empty();
+    // SAFETY: the stream is not released; it fills the schema, which is ours.
+    let code = unsafe { get_schema(&mut stream, &mut schema) };
+    if code != 0 {
+        return Err(data_error(last_error(&mut stream, code), None));
+    }
+    Ok(Imported {
+        fields: fields(&schema)?,
+        source: Source::Stream(stream),
+    })
 }
 
 /// One batch: an Arrow array of structs.
-fn import_batch(table: &Bound<'_, PyAny>) -> PyResult<Box<dyn RecordBatchReader + Send>> {
-    let capsules = table.call_method0("__arrow_c_array__")?;
-    let (schema, array): (Bound<'_, PyCapsule>, Bound<'_, PyCapsule>) = capsules.extract()?;
-    let schema = schema.pointer_checked(Some(c"arrow_schema"))?;
-    let array = array.pointer_checked(Some(c"arrow_array"))?;
+fn import_batch(capsules: &Bound<'_, PyAny>) -> PyResult<Imported> {
+    let pair: Result<(Bound<'_, PyAny>, Bound<'_, PyAny>), PyErr> = capsules.extract();
+    let (schema, array) = pair.map_err(|_| mismatched("a pair of capsules"))?;
+    let schema = content(&schema, c"arrow_schema")?;
+    let array = content(&array, c"arrow_array")?;
     // SAFETY: a capsule of this name points to an ArrowSchema, which lives as long as the capsule.
-    let schema = unsafe { &*schema.as_ptr().cast::<FFI_ArrowSchema>() };
+    let is_taken = unsafe { schema.cast::<SchemaLayout>().as_ref() }
+        .release
+        .is_none();
     // SAFETY: a capsule of this name points to an ArrowArray, which is moved out and marked as released.
-    let array = unsafe { FFI_ArrowArray::from_raw(array.as_ptr().cast()) };
-    // SAFETY: by the protocol the array is what the schema says.
-    let data = unsafe { from_ffi(array, schema) }.map_err(|error| data_error(error, None))?;
-    if !matches!(data.data_type(), DataType::Struct(_)) {
-        let message = format!("a column of {} is no table", data.data_type());
-        return Err(data_error(
-            message,
-            Some("give a table with a column for each input, or arrays".into()),
-        ));
+    let array = unsafe { FFI_ArrowArray::from_raw(array.cast().as_ptr()) };
+    if is_taken || array.is_released() {
+        return Err(taken("array"));
     }
-    let batch = RecordBatch::from(StructArray::from(data));
-    let schema = batch.schema();
-    Ok(Box::new(RecordBatchIterator::new([Ok(batch)], schema)))
+    // SAFETY: as above; it is not released, so that its texts live.
+    let fields = fields(unsafe { schema.cast::<FFI_ArrowSchema>().as_ref() })?;
+    let batch = batch(array, &fields).map_err(|error| data_error(error, None))?;
+    Ok(Imported {
+        fields,
+        source: Source::Batch(Some(batch)),
+    })
+}
+
+/// An ArrowSchema by the C data interface, which never changes: `arrow` does not show whether it is released.
+#[repr(C)]
+struct SchemaLayout {
+    texts: [*const c_void; 3],
+    flags: i64,
+    children: i64,
+    parts: [*const c_void; 2],
+    release: Option<unsafe extern "C" fn(*mut c_void)>,
+}
+
+impl Imported {
+    /// The names of the columns.
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.fields
+            .iter()
+            .map(|field| field.name().clone())
+            .collect()
+    }
+
+    /// The next batch of rows, of which some may be null as a whole.
+    pub(crate) fn next(&mut self) -> Option<Result<StructArray, String>> {
+        let stream = match &mut self.source {
+            Source::Batch(batch) => return batch.take().map(Ok),
+            Source::Stream(stream) => stream,
+        };
+        let get_next = stream.get_next?;
+        let mut array = FFI_ArrowArray::empty();
+        // SAFETY: the stream is not released; it fills the array, which is ours.
+        match unsafe { get_next(stream, &mut array) } {
+            0 if array.is_released() => None,
+            0 => Some(batch(array, &self.fields)),
+            code => Some(Err(last_error(stream, code))),
+        }
+    }
+}
+
+/// The pointer in a capsule of a name.
+fn content(capsule: &Bound<'_, PyAny>, name: &CStr) -> PyResult<NonNull<c_void>> {
+    let wanted = || mismatched(&format!("a capsule `{}`", name.to_string_lossy()));
+    let capsule = capsule.cast::<PyCapsule>().map_err(|_| wanted())?;
+    capsule.pointer_checked(Some(name)).map_err(|_| wanted())
+}
+
+fn mismatched(wanted: &str) -> PyErr {
+    data_error(
+        format!("the table does not give {wanted}, as Arrow asks"),
+        None,
+    )
+}
+
+fn taken(what: &str) -> PyErr {
+    let help = "ask the table for new capsules".to_owned();
+    data_error(format!("the Arrow {what} was taken already"), Some(help))
+}
+
+fn last_error(stream: &mut FFI_ArrowArrayStream, code: i32) -> String {
+    // SAFETY: the stream is not released.
+    let text = stream.get_last_error.map(|get| unsafe { get(stream) });
+    match text.filter(|text| !text.is_null()) {
+        // SAFETY: by the protocol a text that lives until the stream is used again.
+        Some(text) => unsafe { CStr::from_ptr(text) }
+            .to_string_lossy()
+            .into_owned(),
+        None => format!("the Arrow stream failed with error {code}"),
+    }
+}
+
+/// The columns of a table.
+fn fields(schema: &FFI_ArrowSchema) -> PyResult<Fields> {
+    let read = catch_unwind(AssertUnwindSafe(|| DataType::try_from(schema)));
+    match read {
+        Ok(Ok(DataType::Struct(fields))) => Ok(fields),
+        Ok(Ok(other)) => {
+            let help = "give a table with a column for each input, or arrays".to_owned();
+            Err(data_error(
+                format!("a column of {other} is not a table"),
+                Some(help),
+            ))
+        }
+        Ok(Err(error)) => Err(data_error(error, None)),
+        Err(_) => Err(mismatched("a schema")),
+    }
+}
+
+/// A batch with these columns. `arrow` panics where a table breaks the protocol.
+fn batch(array: FFI_ArrowArray, fields: &Fields) -> Result<StructArray, String> {
+    let broken = || "the Arrow array does not have the columns of its schema".to_owned();
+    if array.num_children() != fields.len() {
+        return Err(broken());
+    }
+    let kind = DataType::Struct(fields.clone());
+    let read = catch_unwind(AssertUnwindSafe(|| {
+        // SAFETY: by the protocol the array is what the schema says.
+        unsafe { from_ffi_and_data_type(array, kind) }.map(StructArray::from)
+    }));
+    read.map_err(|_| broken())?
+        .map_err(|error| error.to_string())
+}
+
+/// A column of a batch as numbers; NaN is unknown. So are rows that are null as a whole, whatever the column holds there.
+pub(crate) fn column<'a>(
+    name: &str,
+    batch: &'a StructArray,
+    column: usize,
+) -> PyResult<Cow<'a, [f64]>> {
+    let mut found = numbers(name, batch.column(column))?;
+    if let Some(nulls) = batch.nulls().filter(|nulls| nulls.null_count() > 0) {
+        for (number, is_known) in found.to_mut().iter_mut().zip(nulls) {
+            if !is_known {
+                *number = f64::NAN;
+            }
+        }
+    }
+    Ok(found)
 }
 
 /// A column as numbers; NaN is unknown.

@@ -239,18 +239,24 @@ impl Compiled {
         with_reasons: bool,
     ) -> PyResult<Table> {
         let py = frame.py();
-        let mut reader = arrow::import(frame)?;
-        let schema = reader.schema();
+        let mut imported = arrow::import(frame)?;
+        let columns = imported.names();
         let names: Vec<&str> = self.engine.input_names().collect();
-        let columns = schema.fields().iter().map(|field| field.name().as_str());
         let places = names.iter().map(|name| {
-            columns
-                .clone()
-                .position(|column| column == *name)
-                .ok_or_else(|| {
+            let columns = || columns.iter().map(String::as_str);
+            let mut found = columns().enumerate().filter(|(_, column)| column == name);
+            match (found.next(), found.next()) {
+                (Some((place, _)), None) => Ok(place),
+                (None, _) => {
                     let message = format!("the table has no column `{name}`");
-                    data_error(message, suggest(name, columns.clone()))
-                })
+                    Err(data_error(message, suggest(name, columns())))
+                }
+                (Some(_), Some(_)) => {
+                    let message = format!("the table has the column `{name}` more than once");
+                    let help = "rename all but the one that is meant".to_owned();
+                    Err(data_error(message, Some(help)))
+                }
+            }
         });
         let places: Vec<usize> = places.collect::<PyResult<_>>()?;
         let outputs: Vec<String> = self.engine.output_names().map(str::to_owned).collect();
@@ -258,13 +264,13 @@ impl Compiled {
         let mut evaluator = Evaluator::new(&self.engine, threads, with_reasons)?;
         let mut batches = Vec::new();
         // A stream may be made in Python, which asks for the interpreter itself.
-        while let Some(batch) = py.detach(|| reader.next()) {
+        while let Some(batch) = py.detach(|| imported.next()) {
             let batch = batch.map_err(|error| data_error(error, None))?;
             let columns = names.iter().zip(&places);
-            let columns = columns.map(|(name, at)| arrow::numbers(name, batch.column(*at)));
+            let columns = columns.map(|(name, at)| arrow::column(name, &batch, *at));
             let columns: Vec<_> = columns.collect::<PyResult<_>>()?;
             let columns: Vec<&[f64]> = columns.iter().map(|column| &**column).collect();
-            let results = evaluator.run(py, batch.num_rows(), &columns)?;
+            let results = evaluator.run(py, batch.len(), &columns)?;
             batches.push(table::batch(&schema, results)?);
         }
         Ok(Table { batches, schema })

@@ -27,20 +27,21 @@ type Pools = (u32, HashMap<usize, Arc<ThreadPool>>);
 pub(crate) fn checked(threads: Option<usize>) -> PyResult<()> {
     match threads {
         Some(0) => Err(data_error(
-            "0 threads evaluate nothing",
-            Some("write `threads=1`, or leave it out for as many as there are cores".into()),
+            "`threads` must be at least 1",
+            Some("leave it out for as many threads as there are cores".into()),
         )),
         _ => Ok(()),
     }
 }
 
-/// A pool of so many threads; of as many as there are cores for `None`.
+/// A pool of so many threads, at most as many as there are cores; of that many for `None`.
 ///
 /// A fork copies a pool without its threads, which would wait for ever. So a child process makes its own.
 pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
     checked(threads)?;
-    let threads = threads.unwrap_or_else(|| thread::available_parallelism().map_or(1, Into::into));
+    let cores = thread::available_parallelism().map_or(1, Into::into);
+    let threads = threads.map_or(cores, |threads| threads.min(cores));
     let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let here = process::id();
     if let Some((_, pools)) = guard.take_if(|(process, _)| *process != here) {

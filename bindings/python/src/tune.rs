@@ -29,6 +29,7 @@ pub(crate) struct TuneOptions {
     least_distance: f64,
     rising: Vec<String>,
     falling: Vec<String>,
+    beyond_range: bool,
     digits: Option<u32>,
     starts: u32,
     iterations: u32,
@@ -82,6 +83,7 @@ impl TuneOptions {
             weights: self.weights,
             least_distance: self.least_distance,
             monotone: claims(&self.rising, &self.falling),
+            beyond_range: self.beyond_range,
             digits: self.digits,
             starts: self.starts,
             seed: self.seed,
@@ -162,23 +164,16 @@ fn data(model: &Model, rows: Vec<Row>, loss: Loss) -> (Data, Vec<String>) {
     };
     let mut refused = Vec::new();
     for (place, row) in rows.into_iter().enumerate() {
-        let truth = row.values.last().copied().unwrap_or(f64::NAN);
-        let wrong = if row.values.iter().any(|value| !value.is_finite()) {
-            "a value is not a finite number"
-        } else if loss != Loss::Squared && truth != 0.0 && truth != 1.0 {
-            "the output's value must be 0 or 1 for this loss"
-        } else if !(row.weight >= 0.0 && row.weight.is_finite()) {
-            "the weight is not a number from 0"
-        } else {
-            for (column, value) in data.inputs.iter_mut().zip(&row.values) {
-                column.push(*value);
-            }
-            data.truths.push(truth);
-            data.weights.push(row.weight);
-            data.groups.extend(row.group);
+        if let Some(problem) = Data::problem(&row.values, row.weight, loss) {
+            refused.push(format!("row {place}: {problem}"));
             continue;
-        };
-        refused.push(format!("row {place}: {wrong}"));
+        }
+        for (column, value) in data.inputs.iter_mut().zip(&row.values) {
+            column.push(*value);
+        }
+        data.truths.extend(row.values.last());
+        data.weights.push(row.weight);
+        data.groups.extend(row.group);
     }
     (data, refused)
 }

@@ -1,5 +1,7 @@
 """NumPy arrays: any shape, any strides, any type of number."""
 
+import os
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -104,3 +106,20 @@ def test_a_value_that_is_kept_follows_the_order_of_rows(keeps):
     heat = np.concatenate([[22.0], np.full(3000, 30.0), np.full(3000, 22.0), [10.0, 22.0]])
     speed = keeps(heat)
     assert np.isnan(speed[0]) and speed[1] == speed[-3] == keeps(30) and speed[-1] == keeps(10)
+
+
+def test_threads_are_bounded_by_the_cores():
+    service, food = np.random.default_rng(1).random((2, 200_000)) * 10
+    expected = MODEL(service, food, threads=1)
+    before = len(os.listdir("/proc/self/task")) if os.path.exists("/proc/self/task") else 0
+    assert np.array_equal(MODEL(service, food, threads=10**6), expected)
+    if before:
+        assert len(os.listdir("/proc/self/task")) - before <= (os.cpu_count() or 1)
+
+
+def test_numbers_at_odd_addresses_are_read():
+    odd = np.zeros(8 * 100 + 1, np.uint8)[1:].view(np.float64)
+    odd[:] = np.linspace(0, 10, 100)
+    assert not odd.flags.aligned
+    assert np.array_equal(MODEL(odd, 5.0), MODEL(odd.copy(), 5.0))
+    assert flagred.learn(MODEL, {"service": odd, "food": odd, "tip": odd}).rows == 100

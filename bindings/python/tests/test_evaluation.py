@@ -169,7 +169,7 @@ def test_logs_that_cannot_be_used(folder, tmp_path):
     [
         ({"horizon_s": 0}, "a horizon of 0 s is none"),
         ({"horizon_s": float("nan")}, "a horizon of NaN s is none"),
-        ({"threads": 0}, "0 threads"),
+        ({"threads": 0}, "at least 1"),
         ({"rows": {"att_rmse_deg": [1]}}, "logs and rows are given"),
         ({"profiles": "flagged"}, "No such file"),
     ],

@@ -141,3 +141,69 @@ def test_any_frame_keeps_the_order_of_its_rows(rows, data):
         frame = module.table({"service": module.array(service, kind), "food": module.array(food, kind)})
         found = MODEL(frame)["tip"].to_numpy(zero_copy_only=False)
     assert np.array_equal(np.asarray(found, dtype=float), np.array(expected, dtype=float), equal_nan=True)
+
+
+class Capsules:
+    """A table that gives what it was made of, once or ever again."""
+
+    def __init__(self, kind, capsules):
+        self.kind, self.capsules = kind, capsules
+
+    def __getattr__(self, name):
+        if name == f"__arrow_c_{self.kind}__":
+            return lambda: self.capsules
+        raise AttributeError(name)
+
+
+def test_a_row_that_is_null_as_a_whole_is_unknown():
+    pyarrow = library("pyarrow")
+    columns = [pyarrow.array([8.0, 3.0, 4.0]), pyarrow.array([9, 1, 4], pyarrow.int32())]
+    mask = pyarrow.array([False, True, False])
+    rows = pyarrow.StructArray.from_arrays(columns, ["service", "food"], mask=mask)
+    expected = [MODEL(8, 9), None, MODEL(4, 4)]
+    by_array = Capsules("array", rows.__arrow_c_array__())
+    by_stream = Capsules("stream", pyarrow.chunked_array([rows]).__arrow_c_stream__())
+    sliced = Capsules("array", rows[1:].__arrow_c_array__())
+    assert pyarrow.table(MODEL(by_array))["tip"].to_pylist() == expected
+    assert pyarrow.table(MODEL(by_stream))["tip"].to_pylist() == expected
+    assert pyarrow.table(MODEL(sliced))["tip"].to_pylist() == expected[1:]
+
+
+def test_capsules_that_are_used_up_or_do_not_fit_are_refused():
+    pyarrow = library("pyarrow")
+    batch = pyarrow.record_batch({"service": [8.0], "food": [9.0]})
+    array, stream = batch.__arrow_c_array__(), pyarrow.table(batch.to_pydict()).__arrow_c_stream__()
+    other, numbers = pyarrow.record_batch({"service": [8.0]}).__arrow_c_array__(), pyarrow.array([1.0]).__arrow_c_array__()
+    for table in (Capsules("array", array), Capsules("stream", stream)):
+        MODEL(table)
+        with pytest.raises(flagred.DataError, match="was taken already"):
+            MODEL(table)
+    imported = batch.__arrow_c_array__()
+    pyarrow.RecordBatch._import_from_c_capsule(*imported)
+    fresh = [batch.__arrow_c_array__() for _ in range(4)]
+    for kind, capsules, told in [
+        ("array", imported, "was taken already"),
+        ("array", (other[0], fresh[0][1]), "does not have the columns of its schema"),
+        ("array", (fresh[1][0], numbers[1]), "does not have the columns of its schema"),
+        ("array", pyarrow.array([1.0]).__arrow_c_array__(), "is not a table"),
+        ("array", fresh[2][::-1], "does not give a capsule `arrow_schema`"),
+        ("array", 7, "does not give a pair of capsules"),
+        ("array", (7, 8), "does not give a capsule"),
+        ("stream", 7, "does not give a capsule `arrow_array_stream`"),
+        ("stream", fresh[3][0], "does not give a capsule `arrow_array_stream`"),
+    ]:
+        with pytest.raises(flagred.DataError, match=told):
+            MODEL(Capsules(kind, capsules))
+
+
+def test_a_column_that_is_there_twice_is_refused():
+    pandas, pyarrow = library("pandas"), library("pyarrow")
+    twice = pyarrow.Table.from_arrays([pyarrow.array([1.0])] * 3, ["service", "food", "food"])
+    frame = pandas.DataFrame([[1.0, 2.0, 3.0]], columns=["service", "food", "food"])
+    for table in (twice, frame):
+        with pytest.raises(flagred.DataError, match="the column `food` more than once"):
+            MODEL(table)
+        with pytest.raises(flagred.DataError, match="the column `food` more than once"):
+            flagred.learn(MODEL, table, columns={"tip": "service"})
+    # One that no input needs may be.
+    assert MODEL(twice.rename_columns(["service", "x", "x"]).append_column("food", pyarrow.array([1.0]))).num_rows == 1

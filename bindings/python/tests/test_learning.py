@@ -255,3 +255,28 @@ def test_learning_for_numbers(resolve, terms):
         "IF heat IS mild THEN speed IS medium",
         "IF heat IS hot THEN speed IS fast",
     ]
+
+
+def test_tuned_numbers_are_short_and_rows_must_count():
+    heat = np.linspace(0, 40, 81)
+    rows = {"heat": heat, "speed": 3.123456 + 0.123456 * heat, "none": np.zeros(81)}
+    text = "fuzzy: 1\nname: fan\ninputs: {heat: {range: [0, 40], partition: {cool: 5, hot: 35}}}\noutputs:\n  speed: {range: [0, 7], "
+    text += "terms: {slow: {constant: 2}, fast: {constant: 6}}, defuzzifier: weighted_average}\nrules:\n"
+    text += "  - IF heat IS cool THEN speed IS slow\n  - IF heat IS hot THEN speed IS fast\n"
+    fan = flagred.loads(text)
+    short = flagred.tune(fan, rows)
+    assert all(len(f"{one.after:g}".replace(".", "")) <= 3 and one.after <= 40 for one in short.moved)
+    exact = flagred.tune(fan, rows, digits=None)
+    assert any(len(repr(one.after)) > 6 for one in exact.moved)
+    fast = [one.after for one in exact.moved if one.of == "speed.fast"]
+    assert all(value <= 7 for value in fast)
+    beyond = flagred.tune(fan, rows, only=["speed"], beyond_range=True)
+    assert max(one.after for one in beyond.moved) > 7
+    for weight, told in [("none", "the weights of all rows are 0"), ("heat", None)]:
+        if told is None:
+            flagred.tune(fan, rows, weight=weight, folds=10)
+        else:
+            with pytest.raises(flagred.DataError, match=told):
+                flagred.tune(fan, rows, weight=weight)
+    with pytest.raises(flagred.DataError, match="row 80: the value 1e308 is outside the range"):
+        flagred.tune(fan, rows | {"speed": np.append(rows["speed"][:-1], 1e308)})

@@ -50,7 +50,7 @@ def test_unknown_is_no_number(tip, gaps):
         (lambda tip: tip(1, food=2), "values are given by place and by name"),
         (lambda tip: tip("a", "b"), "holds no numbers"),
         (lambda tip: tip([1, 2], [1, 2, 3]), "do not go together"),
-        (lambda tip: tip([1], [2], threads=0), "0 threads"),
+        (lambda tip: tip([1], [2], threads=0), "at least 1"),
         (lambda tip: tip.map(bill=3), "there is no input `bill`"),
         (lambda tip: tip.map(points=1), "at least 2 points"),
         (lambda tip: tip.map(output="top"), "did you mean `tip`?"),

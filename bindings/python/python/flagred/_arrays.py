@@ -22,7 +22,8 @@ def array(value: Any) -> NDArray[np.float64]:
         found = np.asarray(value)
         if found.dtype.kind not in "biufO":
             raise DataError(f"an array of {found.dtype} holds no numbers\n  help: convert it to numbers first")
-        return found.astype(np.float64, copy=False)
+        # The native half reads numbers at their natural addresses alone.
+        return np.require(found.astype(np.float64, copy=False), requirements="A")
     except DataError:
         raise
     except (TypeError, ValueError) as error:

@@ -212,7 +212,8 @@ def tune(
     least_distance: float = 0.01,
     rising: Iterable[str] = (),
     falling: Iterable[str] = (),
-    digits: int | None = None,
+    beyond_range: bool = False,
+    digits: int | None = 3,
     starts: int = 1,
     iterations: int = 100,
     seed: int = 0,
@@ -240,8 +241,10 @@ def tune(
         Whether the weights of the rules may move.
     least_distance
         The least distance between neighbouring peaks, as a share of the range.
+    beyond_range
+        Whether constants may leave the range of the output, by its width at most.
     digits
-        Round what moved to so many significant digits.
+        The significant digits of numbers that moved; None keeps all.
     starts
         How often the search starts: at the model, then at random places around it.
     iterations
@@ -274,7 +277,7 @@ def tune(
     ... )
     >>> heat = list(range(41))
     >>> speed = [2 + 6 * min(max((value - 20) / 10, 0), 1) for value in heat]
-    >>> tuned = flagred.tune(fan, {"heat": heat, "speed": speed}, digits=3)
+    >>> tuned = flagred.tune(fan, {"heat": heat, "speed": speed})
     >>> [(one.of, one.name, one.after) for one in tuned.moved]
     [('heat.cool', 'peak', 20.0), ('heat.hot', 'peak', 30.0)]
     """
@@ -286,6 +289,7 @@ def tune(
         "least_distance": least_distance,
         "rising": list(rising),
         "falling": list(falling),
+        "beyond_range": beyond_range,
         "digits": digits,
         "starts": starts,
         "iterations": iterations,

@@ -37,6 +37,8 @@ def column_of(data: Any, name: str) -> Any:
     if name not in there:
         listed = ", ".join(f"`{column}`" for column in there)
         raise DataError(f"the data have no column `{name}`\n  help: there are {listed}")
+    if there.count(name) > 1:
+        raise DataError(f"the data have the column `{name}` more than once\n  help: rename all but the one that is meant")
     return data[name]
 
 

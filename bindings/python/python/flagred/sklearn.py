@@ -120,6 +120,7 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
                 rising=rising,
                 falling=falling,
                 starts=self.starts,
+                digits=None,
                 iterations=self.iterations,
                 seed=seed,
                 weight="",
