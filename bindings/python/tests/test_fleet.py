@@ -392,3 +392,73 @@ def test_a_worker_that_dask_gave_up_is_replaced(monkeypatch):
         monkeypatch.setattr(engine, "LONGEST_ALONE_S", -1.0)
         with pytest.raises(fleet.FleetError, match="there was no worker"):
             attendance.count()
+
+
+def odd_folder(tmp_path: Path) -> Path:
+    """Two logs, and what else a folder may hold."""
+    folder = tmp_path / "odd"
+    (folder / "below").mkdir(parents=True)
+    (folder / "0.csv").write_text(csv(0))
+    (folder / "below" / "1.csv").write_text(csv(1))
+    with open(os.fsencode(folder) + b"/\xff.csv", "w") as file:
+        file.write(csv(2))
+    os.mkfifo(folder / "pipe.bin")
+    os.symlink(folder, folder / "below" / "loop")
+    os.symlink(folder / "0.csv", folder / "below" / "again.csv")
+    os.link(folder / "0.csv", folder / "below" / "hard.csv")
+    os.symlink(tmp_path / "nowhere", folder / "broken.bin")
+    os.symlink("/dev/zero", folder / "zero.bin")
+    return folder
+
+
+def test_each_file_counts_once_and_what_is_no_file_is_passed_over(tmp_path, here, capsys):
+    folder, out = odd_folder(tmp_path), tmp_path / "out"
+    done = fleet.assess([str(folder)], str(out), recursive=True)
+    assert (done.listed, done.assessed, done.passed_over) == (2, 2, 4)
+    assert sorted(flights(out)) == ["0.csv", "1.csv"]
+    # The folder is given twice, and through a link.
+    os.symlink(folder, tmp_path / "link")
+    sources = [str(folder), str(folder / "below"), str(tmp_path / "link")]
+    assert fleet.assess(sources, str(out), recursive=True, dry_run=True).listed == 2
+    assert main(["assess", str(folder), "--out", str(out), "--dry-run"]) == 0
+    assert "4 passed over: names that are not UTF-8, or not of files" in capsys.readouterr().err
+
+
+def test_a_link_to_a_log_elsewhere_counts(tmp_path, here):
+    folder, other = tmp_path / "logs", tmp_path / "elsewhere"
+    folder.mkdir()
+    other.mkdir()
+    (other / "0.csv").write_text(csv(0))
+    os.symlink(other / "0.csv", folder / "a.csv")
+    os.symlink(other / "0.csv", folder / "b.csv")
+    out = tmp_path / "out"
+    fleet.assess([str(folder)], str(out))
+    assert list(flights(out)) == ["a.csv"]
+
+
+def test_a_source_that_is_neither_folder_nor_file(tmp_path, here):
+    os.mkfifo(tmp_path / "pipe.bin")
+    with pytest.raises(fleet.FleetError, match="neither a folder nor a file"):
+        fleet.assess([str(tmp_path / "pipe.bin")], str(tmp_path / "out"))
+    with pytest.raises(fleet.FleetError, match="is not UTF-8"):
+        fleet.assess([str(tmp_path) + "/\udcff"], str(tmp_path / "out"))
+
+
+@pytest.mark.parametrize("kind", ["flights", "findings", "steps"])
+def test_a_torn_file_of_the_dataset_is_named(kind, logs, tmp_path, here, capsys):
+    pytest.importorskip("duckdb")
+    out = tmp_path / "out"
+    fleet.assess([str(logs)], str(out), recursive=True)
+    files = sorted((out / kind).rglob("*.parquet"))
+    if not files:
+        pytest.skip("these logs have no findings")
+    torn = files[0]
+    torn.write_bytes(torn.read_bytes()[: torn.stat().st_size // 2])
+    assert main(["report", str(out), "-o", str(tmp_path / "fleet.html")]) == 3
+    told = capsys.readouterr().err
+    assert f"`{torn}` is damaged" in told and "help: restore the file, or delete it" in told
+    if kind == "flights":
+        assert main(["assess", str(logs), "--out", str(out)]) == 3
+        assert f"`{torn}` is damaged" in capsys.readouterr().err
+        torn.unlink()
+        assert main(["assess", str(logs), "--out", str(out), "--recursive"]) == 0

@@ -4,7 +4,7 @@
 """
 
 from .compaction import compact
-from .errors import FleetError
+from .errors import DamagedError, FleetError
 from .process import Outcome, process
 from .questions import QUESTIONS, ask, open_dataset
 from .report import rising, write_report
@@ -20,6 +20,7 @@ __all__ = [
     "STEPS",
     "VERSION",
     "Assessed",
+    "DamagedError",
     "FleetError",
     "Job",
     "Log",

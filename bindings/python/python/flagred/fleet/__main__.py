@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from .. import FlagredError
 from .catalog import Counts
 from .compaction import compact
-from .errors import FleetError
+from .errors import DamagedError, FleetError
 from .report import write_report
 from .run import Assessed, assess
 from .storage import LOGS
@@ -33,6 +33,8 @@ class Progress:
             f"{counts.listed} logs, {_size(counts.listed_bytes)}: {counts.new} new, {counts.changed} changed, {same} done",
             file=sys.stderr,
         )
+        if counts.passed_over:
+            print(f"{counts.passed_over} passed over: names that are not UTF-8, or not of files", file=sys.stderr)
 
     def started(self, dashboard: str) -> None:
         print(f"dashboard: {dashboard}", file=sys.stderr)
@@ -104,7 +106,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs a command; gives the exit code: 0, 1 for an alert, 2 where it could not be done."""
+    """Runs a command. Returns its exit code: 0, 1 for an alert, 2 if it failed, 3 if a file of the dataset is damaged."""
     given = parser().parse_args(arguments)
     try:
         return COMMANDS[given.command](given)
@@ -112,7 +114,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"\nerror: {error}", file=sys.stderr)
         if isinstance(error, FleetError) and error.help:
             print(f"  help: {error.help}", file=sys.stderr)
-        return 2
+        return 3 if isinstance(error, DamagedError) else 2
     except KeyboardInterrupt:
         print("\nstopped: the same command goes on from here", file=sys.stderr)
         return 2

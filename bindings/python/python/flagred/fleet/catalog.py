@@ -15,11 +15,10 @@ from itertools import groupby, islice
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from .errors import FleetError
 from .schema import VERSION
-from .storage import Log, Place
+from .storage import Log, Place, parquet
 
 __all__ = ["Catalog", "Counts"]
 
@@ -44,6 +43,8 @@ class Counts:
     new: int
     changed: int
     todo_bytes: int
+    passed_over: int = 0
+    """Names of logs that are not those of files."""
 
 
 class Catalog:
@@ -162,7 +163,7 @@ class _Transaction:
 
 def _rows(out: Place, path: str) -> list[tuple[Any, ...]]:
     """What of a file's flights the catalog knows. Compaction bounds how many there are in a file."""
-    with out.fs.open_input_file(path) as source, pq.ParquetFile(source) as file:
+    with parquet(out, path) as file:
         version = (file.schema_arrow.metadata or {}).get(b"flagred.fleet", b"none").decode()
         if version != VERSION:
             help = f"this version of flagred reads and writes version {VERSION}: choose another dataset"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .._errors import FlagredError
 
-__all__ = ["FleetError"]
+__all__ = ["DamagedError", "FleetError"]
 
 
 class FleetError(FlagredError):
@@ -16,3 +16,14 @@ class FleetError(FlagredError):
 
     def __reduce__(self) -> tuple[type[FleetError], tuple[str, str | None]]:
         return type(self), (str(self), self.help)
+
+
+class DamagedError(FleetError):
+    """A file of a dataset is damaged."""
+
+    @classmethod
+    def of(cls, file: str, error: object) -> DamagedError:
+        """The error of a file, by its path as a person writes it."""
+        reason = str(error).partition("\n")[0]
+        help = "restore the file, or delete it: `assess` then reads its logs again"
+        return cls(f"`{file}` is damaged: {reason}", help)

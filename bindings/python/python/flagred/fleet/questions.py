@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
 import pyarrow as pa
 
-from .errors import FleetError
+from .errors import DamagedError, FleetError
 from .schema import FINDINGS, FLIGHTS, STEPS
-from .storage import absolute, open_place
+from .storage import Place, absolute, open_place
 
 __all__ = ["QUESTIONS", "ask", "open_dataset"]
 
@@ -34,12 +36,18 @@ def open_dataset(dataset: str) -> Any:
     Raises
     ------
     FleetError
-        There is no dataset.
+        There is no dataset, or a file of it is damaged.
     """
     import duckdb  # Who only assesses does without it and its memory.
 
     place = open_place(absolute(dataset))
     connection = duckdb.connect()
+    with _reading():
+        _views(connection, place)
+    return connection
+
+
+def _views(connection: Any, place: Place) -> None:
     connection.execute("SET TimeZone = 'UTC'")
     for kind, schema in (("flights", FLIGHTS), ("findings", FINDINGS), ("steps", STEPS)):
         paths = [info.path for info in place.files(kind, ".parquet")]
@@ -61,7 +69,20 @@ def open_dataset(dataset: str) -> Any:
             )
             connection.register(kind, of)
     connection.execute(_parts()[0])
-    return connection
+
+
+@contextmanager
+def _reading() -> Iterator[None]:
+    """Raises errors of DuckDB as those of a dataset, with the name of a file that is damaged."""
+    import duckdb
+
+    try:
+        yield
+    except (duckdb.Error, pa.ArrowException) as error:
+        named = re.search(r"['\"]([^'\"]*\.parquet)['\"]", str(error))
+        if named:
+            raise DamagedError.of(named[1], error) from error
+        raise FleetError(f"the dataset cannot be read: {error}") from error
 
 
 def ask(dataset: str | Any, question: str) -> pa.Table:
@@ -77,5 +98,6 @@ def ask(dataset: str | Any, question: str) -> pa.Table:
     if question not in _parts()[1]:
         raise FleetError(f"there is no question `{question}`", f"questions are {', '.join(QUESTIONS)}")
     connection = open_dataset(dataset) if isinstance(dataset, str) else dataset
-    answer: pa.Table = connection.sql(_parts()[1][question]).to_arrow_table()
+    with _reading():
+        answer: pa.Table = connection.sql(_parts()[1][question]).to_arrow_table()
     return answer

@@ -9,12 +9,11 @@ from collections.abc import Callable
 
 import pyarrow as pa
 import pyarrow.compute as pc
-import pyarrow.parquet as pq
 
 from .catalog import Catalog
 from .process import write
 from .schema import KINDS
-from .storage import UNFINISHED, Place
+from .storage import UNFINISHED, Place, parquet
 
 __all__ = ["repair"]
 
@@ -78,5 +77,5 @@ def beside(out: Place, path: str, kind: str, of: str = KINDS[-1]) -> str:
 
 def read(out: Place, path: str) -> pa.Table:
     """The table of a file."""
-    with out.fs.open_input_file(path) as source, pq.ParquetFile(source) as file:
+    with parquet(out, path) as file:
         return file.read()

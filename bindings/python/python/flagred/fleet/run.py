@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from .. import Profile
 from . import engine
 from .catalog import Catalog, Counts
 from .errors import FleetError
+from .listing import Listing
 from .process import Outcome
 from .repair import repair
 from .shards import Job, Shard, shards
@@ -36,6 +37,8 @@ class Assessed:
     """Those of them that have no assessment; their rows say why."""
     unchanged: int
     """Those of them whose content is that of before."""
+    passed_over: int
+    """Names at the sources that are those of logs, but of no readable file: not UTF-8, a FIFO, a device, a broken link."""
 
 
 class Watcher(Protocol):
@@ -113,7 +116,7 @@ def assess(
     ) as planned:
         counts = planned.counts
         told.planned(counts)
-        done = Assessed(counts.listed, 0, 0, 0, 0)
+        done = Assessed(counts.listed, 0, 0, 0, 0, counts.passed_over)
         if dry_run or not counts.new + counts.changed:
             return done
         return _work(planned, done, told, scheduler, workers)
@@ -162,16 +165,19 @@ def plan(
     places = [open_place(absolute(source)) for source in sources]
     dataset = open_place(absolute(out))
     job = Job.of(dataset.uri, profile, step_s, compare_content)
+    is_listed = _listed(places, recursive, include)
+    listing = Listing(recursive, matcher(include), is_listed)
     with Catalog(job.settings, compare_content) as catalog:
         for place in places:
-            catalog.take_in(place, place.logs(recursive, include))
+            catalog.take_in(place, listing.logs(place.root) if place.is_local else place.logs(recursive, include))
         if not dry_run:
             # Before the dataset is read, so that nothing is committed unseen.
             job = job.of_run(take_over(dataset))
         catalog.load(dataset)
-        yield Plan(catalog.counts(), shards(catalog.todo(), SHARD_BYTES), job)
+        counts = replace(catalog.counts(), passed_over=listing.passed_over)
+        yield Plan(counts, shards(catalog.todo(), SHARD_BYTES), job)
         if not dry_run:
-            repair(dataset, catalog, _listed(places, recursive, include))
+            repair(dataset, catalog, is_listed)
 
 
 def _sum(done: Assessed, outcome: Outcome) -> Assessed:
@@ -181,6 +187,7 @@ def _sum(done: Assessed, outcome: Outcome) -> Assessed:
         done.bytes + outcome.bytes,
         done.not_assessed + outcome.not_assessed,
         done.unchanged + outcome.unchanged,
+        done.passed_over,
     )
 
 

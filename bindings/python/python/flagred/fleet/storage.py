@@ -8,16 +8,18 @@ import posixpath
 import re
 import uuid
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.fs as pafs
+import pyarrow.parquet as pq
 
-from .errors import FleetError
+from .errors import DamagedError, FleetError
 
-__all__ = ["LOGS", "Log", "Place", "absolute", "matcher", "open_place"]
+__all__ = ["LOGS", "Log", "Place", "absolute", "matcher", "open_place", "parquet"]
 
 LOGS = ("*.bin", "*.log", "*.ulg", "*.tlog", "*.csv", "*.bin.gz", "*.log.gz", "*.ulg.gz", "*.tlog.gz", "*.csv.gz")
 """The names of logs, in whatever case, where nothing else is asked for."""
@@ -65,7 +67,7 @@ class Place:
         return posixpath.join(self.root, *parts)
 
     def logs(self, recursive: bool, include: Iterable[str]) -> Iterator[Log]:
-        """The logs in it. The folders directly in it are listed one after the other, to bound the memory."""
+        """The logs in it, as the storage lists them; for folders here see :class:`Listing`. The folders directly in it are listed one after the other, to bound the memory."""
         found = self.fs.get_file_info(self.root)
         if found.type == pafs.FileType.File:
             yield _log(found)
@@ -125,6 +127,22 @@ class Place:
             self.fs.delete_file(path)
         except FileNotFoundError:
             pass
+
+
+@contextmanager
+def parquet(place: Place, path: str) -> Iterator[pq.ParquetFile]:
+    """A Parquet file of a dataset.
+
+    Raises
+    ------
+    DamagedError
+        The file is cut off, or is not Parquet.
+    """
+    try:
+        with place.fs.open_input_file(path) as source, pq.ParquetFile(source) as file:
+            yield file
+    except pa.ArrowException as error:
+        raise DamagedError.of(place.shown(path), error) from error
 
 
 UNFINISHED = ".unfinished"

@@ -1,0 +1,109 @@
+"""Logs in folders of this machine: each file once, however many names and links lead to it."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Callable, Iterator
+
+from .errors import FleetError
+from .storage import Log
+
+__all__ = ["Listing"]
+
+
+class Listing:
+    """Lists the folders of a run, one after another.
+
+    Links to folders are not followed. A link to a file counts where that file is not listed by its own name.
+
+    Parameters
+    ----------
+    recursive
+        Whether the folders below are listed too.
+    wanted
+        Whether a path has the name of a log.
+    is_listed
+        Whether a path is that of a log in one of the folders of the run, if it exists.
+    """
+
+    def __init__(self, recursive: bool, wanted: Callable[[str], bool], is_listed: Callable[[str], bool]) -> None:
+        self._recursive = recursive
+        self._wanted = wanted
+        self._is_listed = is_listed
+        self._linked: set[tuple[int, int]] = set()
+        self.passed_over = 0
+        """Names of logs that are not logs: not UTF-8, or of a FIFO, a device, a socket or a link that leads nowhere."""
+
+    def logs(self, root: str) -> Iterator[Log]:
+        """The logs in a folder, or the log of this path.
+
+        Raises
+        ------
+        FleetError
+            There is no such folder.
+        OSError
+            A folder cannot be listed.
+        """
+        if not _is_utf8(root):
+            raise FleetError(f"the name of `{ascii(root)[1:-1]}` is not UTF-8", "rename the folder")
+        try:
+            found = os.stat(root)
+        except FileNotFoundError as error:
+            raise FleetError(f"there is no `{root}`", "the folder must exist") from error
+        if stat.S_ISREG(found.st_mode):
+            yield _log(root, found)
+        elif stat.S_ISDIR(found.st_mode):
+            yield from self._folder(root)
+        else:
+            raise FleetError(f"`{root}` is neither a folder nor a file", "give a folder of logs")
+
+    def _folder(self, folder: str) -> Iterator[Log]:
+        with os.scandir(folder) as entries:
+            names = sorted(entries, key=lambda entry: entry.name)
+        for entry in names:
+            is_utf8 = _is_utf8(entry.name)
+            if entry.is_dir(follow_symlinks=False):
+                if self._recursive and is_utf8:
+                    yield from self._folder(entry.path)
+                elif self._recursive:
+                    self.passed_over += 1
+                continue
+            if not self._wanted(entry.path):
+                continue
+            try:
+                found = os.stat(entry.path)
+            except FileNotFoundError:
+                # A link that leads nowhere; a file that is gone by now is none of this run.
+                self.passed_over += entry.is_symlink()
+                continue
+            if stat.S_ISDIR(found.st_mode):
+                continue
+            if not is_utf8 or not stat.S_ISREG(found.st_mode):
+                self.passed_over += 1
+            elif self._is_first(entry, found):
+                yield _log(entry.path, found)
+
+    def _is_first(self, entry: os.DirEntry[str], found: os.stat_result) -> bool:
+        """Whether no other name of the file is listed."""
+        if entry.is_symlink() and self._is_listed(os.path.realpath(entry.path)):
+            return False
+        if not entry.is_symlink() and found.st_nlink == 1:
+            return True
+        file = (found.st_dev, found.st_ino)
+        is_first = file not in self._linked
+        self._linked.add(file)
+        return is_first
+
+
+def _is_utf8(name: str) -> bool:
+    """Whether a name is text: other bytes are surrogates in it."""
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _log(path: str, found: os.stat_result) -> Log:
+    return Log(path, found.st_size, found.st_mtime_ns // 1000)
