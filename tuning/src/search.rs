@@ -117,9 +117,28 @@ fn normal_equations(
         let slopes = columns[i].iter().zip(&columns[j]).zip(&at.slopes.second);
         sum(&mut slopes.map(|((a, b), second)| a * b * second))
     });
-    let mut squares = squares;
+    let (mut squares, mut products) = (squares, products);
     squares.fill_upper_triangle_with_lower_triangle();
+    hold(limits, z, &mut squares, &mut products);
     Ok((squares, products))
+}
+
+/// Takes the numbers out of the equations that are at a limit and would leave it: the others must not count on them.
+fn hold(
+    limits: &[(f64, f64)],
+    z: &[f64],
+    squares: &mut DMatrix<f64>,
+    products: &mut DVector<f64>,
+) {
+    let largest = squares.diagonal().max();
+    for (i, ((low, high), z)) in limits.iter().zip(z).enumerate() {
+        if (z >= high && products[i] > 0.0) || (z <= low && products[i] < 0.0) {
+            squares.row_mut(i).fill(0.0);
+            squares.column_mut(i).fill(0.0);
+            squares[(i, i)] = largest;
+            products[i] = 0.0;
+        }
+    }
 }
 
 /// The next point: more and more damped until the loss falls and no constraint breaks. `None` where no step helps.

@@ -131,7 +131,11 @@ fn a_search_that_is_ended_keeps_the_best_so_far() {
     let data = rows_of(&tipper([1.0, 4.0, 9.0], [3.0, 14.0, 27.0]), 200, 2);
     let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
     let mut seen = Vec::new();
-    let tuned = tune(&begun, &data, &Settings::default(), &mut |progress| {
+    let settings = Settings {
+        digits: None,
+        ..Settings::default()
+    };
+    let tuned = tune(&begun, &data, &settings, &mut |progress| {
         seen.push(progress.loss);
         match progress.iteration {
             4 => ControlFlow::Break(()),
