@@ -20,9 +20,11 @@ pub struct Data {
 }
 
 impl Data {
-    /// The largest value and weight of a row, and the inverse of the smallest weight above 0. Squares of larger numbers, and their
-    /// products, would overflow.
+    /// The largest value and weight of a row. Squares of larger numbers, and their products, would overflow.
     pub const LARGEST: f64 = 1e50;
+
+    /// The smallest weight above 0.
+    pub const SMALLEST_WEIGHT: f64 = 1e-50;
 
     /// Why a row cannot be used: its values, the output's last, and its weight.
     pub fn problem(values: &[f64], weight: f64, loss: Loss) -> Option<String> {
@@ -35,8 +37,11 @@ impl Data {
                 format!("outside the range from -{largest:e} to {largest:e} that tuning supports");
             return Some(format!("the value {x:e} is {range}"));
         }
-        if !(weight == 0.0 || (1.0 / largest..=largest).contains(&weight)) {
-            let range = format!("0, or a number from {:e} to {largest:e}", 1.0 / largest);
+        if !(weight == 0.0 || (Data::SMALLEST_WEIGHT..=largest).contains(&weight)) {
+            let range = format!(
+                "0, or a number from {:e} to {largest:e}",
+                Data::SMALLEST_WEIGHT
+            );
             return Some(format!("the weight is {weight:?}, but must be {range}"));
         }
         let truth = values.last().filter(|truth| ![0.0, 1.0].contains(*truth));

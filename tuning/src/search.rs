@@ -124,12 +124,7 @@ fn normal_equations(
 }
 
 /// Takes the numbers out of the equations that are at a limit and would leave it: the others must not count on them.
-fn hold(
-    limits: &[(f64, f64)],
-    z: &[f64],
-    squares: &mut DMatrix<f64>,
-    products: &mut DVector<f64>,
-) {
+fn hold(limits: &[(f64, f64)], z: &[f64], squares: &mut DMatrix<f64>, products: &mut DVector<f64>) {
     let largest = squares.diagonal().max();
     for (i, ((low, high), z)) in limits.iter().zip(z).enumerate() {
         if (z >= high && products[i] > 0.0) || (z <= low && products[i] < 0.0) {
