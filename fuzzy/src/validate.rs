@@ -32,7 +32,7 @@ const MOST_POINTS_IN_ALL: usize = 20_000;
 /// Rules of a model.
 const MOST_RULES: usize = 100_000;
 /// Conclusions of one rule.
-const MOST_CONCLUSIONS: usize = 1000;
+const MOST_CONCLUSIONS: usize = 100;
 /// Rule blocks of a model.
 const MOST_BLOCKS: usize = 1000;
 /// Errors that are told of a model; what follows is not looked at.

@@ -5,6 +5,7 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
+use arrow_array::Array;
 use fuzzy::{
     Engine,
     diagnostic::suggest,

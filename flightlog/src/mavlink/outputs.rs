@@ -11,6 +11,7 @@ pub(crate) struct KnownOutputs {
     /// The motors in order of their number, and the output of each, from 1.
     pub(crate) motors: Vec<(Motor, u16)>,
     /// How many motors the vehicle has, where it reported that.
+    #[cfg(feature = "mavlink")]
     pub(crate) expected: Option<u16>,
     pub(crate) range: Range,
     pub(crate) effective: Range,
@@ -63,6 +64,7 @@ impl KnownOutputs {
         };
         Self {
             motors,
+            #[cfg(feature = "mavlink")]
             expected,
             range,
             effective,

@@ -199,7 +199,7 @@ pub(crate) fn any_formula() -> impl Strategy<Value = Formula> {
         let name = |index: usize| ["speed", "wind speed", "not"][index].to_string();
         let variables = names.into_iter().map(|index| Variable {
             name: name(index),
-            span: 0..0,
+            spans: Vec::new(),
         });
         Formula::new(tree, variables.collect())
     })

@@ -325,7 +325,7 @@ fn a_warning_is_sent_where_another_one_speaks_and_does_not_warn() {
         bench.px4_fly_and(100.0, 20.0, [1000, 2000, 1000, 2000], |bench, _| {
             bench.hear(&value(voice::RISK, 0.123, 1));
             let levels = bench.events.iter().filter_map(|event| match event {
-                Event::Level { level, .. } => Some(*level),
+                Event::Level { level, .. } => *level,
                 _ => None,
             });
             let levels: Vec<Level> = levels.collect();
