@@ -125,13 +125,15 @@ rules:
 
     #[test]
     fn what_cannot_be_read_is_left_alone() {
-        assert!(matches!(formatted("a: [1"), Err(Unformatted::NotYaml(_))));
+        for broken in ["a: [1", ""] {
+            let found = formatted(broken);
+            assert!(matches!(found, Err(Unformatted::NotYaml(_))), "{broken}");
+        }
         for foreign in [
             "services:\n   web: {image: nginx}\n",
             "- flagred: 1\n",
             "inputs: {token: x}\n",
             "just text",
-            "",
         ] {
             let found = formatted(foreign);
             assert!(matches!(found, Err(Unformatted::Foreign)), "{foreign}");

@@ -222,7 +222,7 @@ mod tests {
     const RULES: &str = "fuzzy: 1
 name: fan
 inputs:
-  heat: {range: [0, 10], terms: {low: {left_shoulder: [2, 8]}, high: {function: heat / 10 * min(heat, 1)}}}
+  heat: {range: [0, 10], terms: {low: {left_shoulder: [2, 8]}, high: {function: 'heat / 10 * min(heat, 1)'}}}
   damp: {range: [0, 1], partition: [dry, wet]}
 outputs:
   speed:

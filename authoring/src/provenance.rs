@@ -197,7 +197,8 @@ rules:
     /// The rule set with the peak of `hot` at 30, and a step.
     fn moved(text: &str, note: &str) -> String {
         let mut model = fuzzy::yaml::parse(text).unwrap().model;
-        let heat = model.inputs.remove(0);
+        let mut heat = model.inputs.remove(0);
+        heat.terms.clear();
         let heat = heat.partition_at([("cool", 5.0), ("hot", 30.0)]);
         model.inputs.insert(0, heat);
         let written = rule_set(text, model.clone(), step(note)).unwrap();

@@ -83,10 +83,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// The shipped profiles, and those that were asked for.
+/// The shipped profiles that read the motors alone, and those that were asked for.
 fn estimators(asked: &[String]) -> Result<Estimators, Failure> {
     let mut estimators = Estimators::default();
-    let shipped = shipped::profile_names().into_iter().map(str::to_owned);
+    let shipped = shipped::motor_profile_names().map(str::to_owned);
     for wanted in shipped.chain(asked.iter().cloned()) {
         if !estimators.has(&wanted) {
             estimators.add(&wanted, profile::load(&wanted)?.estimator);

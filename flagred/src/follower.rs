@@ -169,7 +169,9 @@ impl Follower {
             self.notices
                 .push((t_s, held_s), together.noise, room.motors, is_calm);
         }
-        let unknown = unknown.filter(|_| channel::read_motors(plan));
+        // A monitor appends inputs of its own, on which the risk does not depend.
+        let inputs = plan.1.get(..room.inputs.len()).unwrap_or(plan.1);
+        let unknown = unknown.filter(|_| channel::read_motors((plan.0, inputs)));
         let said = match self.estimate(plan, room, unknown, estimate) {
             Ok(said) => said,
             Err(reason) => {

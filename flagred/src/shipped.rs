@@ -109,6 +109,16 @@ pub fn profile_names() -> Vec<&'static str> {
     PROFILES.iter().map(|shipped| shipped.name).collect()
 }
 
+/// The names of the shipped profiles whose risk comes from the motors alone: those that can be compared on any log.
+pub fn motor_profile_names() -> impl Iterator<Item = &'static str> {
+    let reads_motors_alone =
+        |shipped: &&Shipped| valid(shipped.text.parse::<Profile>()).signals().is_empty();
+    PROFILES
+        .iter()
+        .filter(reads_motors_alone)
+        .map(|shipped| shipped.name)
+}
+
 fn profile(index: usize) -> Profile {
     valid(PROFILES[index].text.parse())
 }

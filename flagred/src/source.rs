@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_motors_count_for_nothing() {
+    fn a_sample_with_an_unknown_motor_counts_for_nothing() {
         let sources = [
             source(Statistic::Mean, Motors::Pooled, "motor_command"),
             source(Statistic::Last, Motors::Min, "motor_command"),
@@ -387,7 +387,7 @@ mod tests {
             source(Statistic::Mean, Motors::One(2), "motor_command"),
         ];
         let found = observe(&sources, &[[0.2, f64::NAN], [f64::NAN; 2]]);
-        assert_eq!(found, [Some(0.2), None, Some(0.2), None, None]);
+        assert_eq!(found, [None; 5]);
     }
 
     #[test]

@@ -614,9 +614,9 @@ fn large_rule_sets_are_checked_in_time() {
         ),
         (
             "points of a term",
-            piecewise(1, 200_000),
+            piecewise(1, 100_000),
             1,
-            "200000 points of the term `t0` are more than 2000",
+            "100000 points of the term `t0` are more than 2000",
         ),
         (
             "points in all",

@@ -80,10 +80,10 @@ impl Failed {
     }
 }
 
-/// The shipped profiles, and those that were asked for.
+/// The shipped profiles that read the motors alone, and those that were asked for.
 fn estimators(py: Python<'_>, asked: &[PyRef<'_, Profile>]) -> PyResult<Estimators> {
     let mut estimators = Estimators::default();
-    for name in shipped::profile_names() {
+    for name in shipped::motor_profile_names() {
         estimators.add(name, Profile::load(py, name)?.loaded.estimator.clone());
     }
     for profile in asked {

@@ -147,6 +147,8 @@ fn inputs(
     moments: &[f64],
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut profile = plan.profile.clone();
+    // The rules below have one output.
+    profile.other_risks.clear();
     for input in &mut profile.inputs {
         input.source.window_s = length_s.unwrap_or(input.source.window_s);
     }
@@ -167,7 +169,7 @@ fn inputs(
             rows.push(now.clone());
         }
         let update = monitor.push(sample);
-        if update.risk != Err(Unknown::OnGround) || update.level.is_none() {
+        if update.risk != Err(Unknown::OnGround) {
             now.copy_from_slice(monitor.inputs());
         }
     });

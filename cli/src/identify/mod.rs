@@ -8,7 +8,8 @@ use fuzzy::diagnostic::suggest;
 use tuning::{
     Data, Loss, TuneError,
     identify::{
-        Antecedents, Consequents, Identification, Identified, Judged, MOST_TERMS, identify, judge,
+        Antecedents, Consequents, Identification, Identified, Judged, MOST_TERMS, check_columns,
+        identify, judge,
     },
 };
 
@@ -131,9 +132,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(Ok(first)) => columns(arguments, first)?,
         _ => (arguments.input.clone(), Vec::new()),
     };
+    let failed = |error: TuneError| failure(arguments, &names, &error);
+    check_columns(names.len()).map_err(failed)?;
     let (data, refused) = data(arguments, tables, &names)?;
     let settings = settings(arguments);
-    let failed = |error: TuneError| failure(arguments, &names, &error);
     let identified = identify(&names, &arguments.target, &data, &settings).map_err(failed)?;
     let judged = match arguments.no_validation {
         true => None,

@@ -134,13 +134,8 @@ fn risk_follows_the_motors_within_the_window_and_is_unknown_on_the_ground() {
         .iter()
         .filter_map(|a| a.change.map(|level| (a.t_s, level)))
         .collect();
-    let [
-        (warn_s, Level::Warn),
-        (fail_s, Level::Fail),
-        // The land detector is believed after a second.
-        (46.0, Level::Good),
-    ] = changes[..]
-    else {
+    // A landing changes no level: on the ground it is unknown.
+    let [(warn_s, Level::Warn), (fail_s, Level::Fail)] = changes[..] else {
         panic!("{changes:?}");
     };
     assert!(25.0 < warn_s && warn_s < fail_s && fail_s < 33.0);
@@ -319,11 +314,7 @@ fn an_unknown_motor_makes_the_risk_unknown_and_rounding_does_not() {
         };
         let updates = follow(garbage);
         assert!(updates.iter().all(|update| update.risk == Err(outside)));
-        // The level is held for two seconds.
-        assert_eq!(
-            (updates[40].level, updates[99].level),
-            (Some(Level::Good), None)
-        );
+        assert!(updates.iter().all(|update| update.level.is_none()));
     }
     let unknown = follow(f64::NAN);
     assert!(
@@ -379,7 +370,8 @@ fn a_profile_that_reads_no_motor_needs_none() {
     for i in 0..99 {
         push(i);
     }
-    assert!(push(99).risk.is_ok());
+    let last = push(99);
+    assert!(last.risk.is_ok(), "{last:?}");
 }
 
 #[test]

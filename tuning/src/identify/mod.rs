@@ -118,6 +118,20 @@ const RADII: [f64; 4] = [0.3, 0.5, 0.7, 1.0];
 /// Columns that may be inputs: each step of the search tries all of them.
 const MOST_COLUMNS: usize = 500;
 
+/// Refuses tables with more columns than [`identify`] takes, so that a program can ask before it reads their rows.
+///
+/// # Errors
+/// [`TuneError::TooManyColumns`].
+pub fn check_columns(columns: usize) -> Result<(), TuneError> {
+    match columns > MOST_COLUMNS {
+        true => Err(TuneError::TooManyColumns {
+            columns,
+            most: MOST_COLUMNS,
+        }),
+        false => Ok(()),
+    }
+}
+
 /// Finds inputs, partitions or clusters, and rules, for columns of data and the truths. The search goes forward: each step takes
 /// the input that is new, or the term that is new, with the smallest error on rows left out, as long as it helps enough. Peaks
 /// are at quantiles, rounded; consequents are solved for by least squares with a ridge. [`crate::tune`] moves both from there.
@@ -153,12 +167,7 @@ pub fn identify(
     settings: &Identification,
 ) -> Result<Identified, TuneError> {
     data.check_columns(names.len(), Loss::Squared)?;
-    if names.len() > MOST_COLUMNS {
-        return Err(TuneError::TooManyColumns {
-            columns: names.len(),
-            most: MOST_COLUMNS,
-        });
-    }
+    check_columns(names.len())?;
     let data = &*data.weighted();
     let named = |name: &String| {
         let found = names.iter().position(|known| known == name);
