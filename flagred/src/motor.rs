@@ -18,6 +18,7 @@ pub(crate) fn bin_of(t_s: f64) -> f64 {
 
 /// A command this far outside [0, 1] comes from rounding or from limits that are slightly exceeded. A larger one has another unit,
 /// such as microseconds or percent.
+#[cfg_attr(not(feature = "std"), expect(unreachable_pub))]
 pub const MOST_OUTSIDE: f64 = 0.5;
 
 /// No motor.
@@ -221,6 +222,7 @@ pub(crate) fn forget_trims(motors: &mut [Motor]) {
 /// assert_eq!((counted(1.0000001), counted(-0.1), counted(0.3)), (1.0, 0.0, 0.3));
 /// assert!(counted(1500.0).is_nan() && counted(f64::NAN).is_nan());
 /// ```
+#[cfg_attr(not(feature = "std"), expect(unreachable_pub))]
 pub fn counted(command: f64) -> f64 {
     match (-MOST_OUTSIDE..=1.0 + MOST_OUTSIDE).contains(&command) {
         true => command.clamp(0.0, 1.0),

@@ -8,6 +8,9 @@ use fuzzy::{
     drawing::{visible, visible_lines},
 };
 
+/// Most bytes between two places of one finding in one line.
+const MOST_BETWEEN: usize = 1000;
+
 /// Findings that are drawn of a file, errors first; the others are counted.
 const MOST_DRAWN: usize = 100;
 
@@ -96,7 +99,11 @@ fn report<'a>(
         let end = span.end.min(text.len());
         span.start.min(end)..end
     };
-    let related = finding.related.iter().map(|related| {
+    let near = finding
+        .related
+        .iter()
+        .filter(|related| is_drawn_with(text, &finding.span, &related.span));
+    let related = near.map(|related| {
         AnnotationKind::Context
             .span(inside(&related.span))
             .label(related.message.as_str())
@@ -124,6 +131,15 @@ fn report<'a>(
         group = group.element(Level::HELP.message(advice));
     }
     vec![group]
+}
+
+/// Whether a second place can be drawn. Far away in the same line, all text between the two would be drawn, too.
+fn is_drawn_with(text: &str, first: &Range<usize>, second: &Range<usize>) -> bool {
+    let (from, to) = (first.end.min(second.end), first.start.max(second.start));
+    to.saturating_sub(from) <= MOST_BETWEEN
+        || text
+            .get(from..to)
+            .is_none_or(|between| between.contains('\n'))
 }
 
 /// Whether a text is a rule set, of another program too, or a profile. No other file is quoted.

@@ -35,7 +35,7 @@ fn hexa(frame: &str, known: &[usize]) -> String {
     );
     for i in 0..1500 {
         let t_s = f64::from(i) * 0.04;
-        let up = (t_s as u32) % 2 == 0;
+        let up = (t_s as u32).is_multiple_of(2);
         let _ = write!(csv, "{t_s}");
         for motor in 0..6 {
             let command = match (t_s > 20.0, up == (motor % 2 == 0)) {

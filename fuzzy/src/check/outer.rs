@@ -128,7 +128,7 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[Unreached]) 
         match variable.partition_peaks() {
             // As a list, the terms would move with the range.
             Some(peaks) => {
-                let peaks = listed(variable, &peaks, |peak| shown(peak));
+                let peaks = listed(variable, &peaks, shown);
                 format!("`{range}` with `partition: {peaks}`, or ")
             }
             None => format!("`{range}`, or "),

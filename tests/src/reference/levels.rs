@@ -115,7 +115,7 @@ impl Levels {
 
     /// Ends the flight: the vehicle landed, or nothing is known any more. Gives the times of trouble.
     pub fn end(&mut self, settings: &VerdictSettings, landed_s: Option<f64>) -> Vec<Trouble> {
-        let Levels { level, mut all, .. } = std::mem::replace(self, Levels::new());
+        let Levels { level, mut all, .. } = std::mem::take(self);
         // A landing takes back what is open and was raised just before it.
         let quiet_s = |trouble: &Trouble| match trouble.level {
             Level::Fail => settings.quiet_before_landing_s / 2.0,
