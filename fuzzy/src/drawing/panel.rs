@@ -192,7 +192,9 @@ impl Panel {
                 number(value, 4)
             );
         }
-        let (bottom, top) = (number(low, 4), number(high, 4));
+        // Browsers read single precision: damaged logs hold larger values.
+        let drawn = |value: f64| number(value.clamp(-1e30, 1e30), 4);
+        let (bottom, top) = (drawn(low), drawn(high));
         for (t_s, text) in &timeline.events {
             let _ = write!(
                 svg,
