@@ -124,7 +124,7 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
     flight.in_air = flight
         .in_air
         .map(|in_air| in_air.joined(SHORTEST_LANDING_S));
-    // Rows without a single known value are none.
+    // Rows without any known value do not count.
     if flight.commands.are_unknown() {
         flight.commands = Commands::default();
     }

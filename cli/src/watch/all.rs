@@ -39,8 +39,8 @@ const FRAME: Duration = Duration::from_millis(500);
 /// Packets that wait to be evaluated; then the links wait, too.
 const PACKETS: usize = 20_000;
 
-/// What a link brings.
-enum Heard {
+/// A packet or a message from a link.
+enum LinkItem {
     Packet(Source, Vec<u8>),
     Note(String),
 }
@@ -101,7 +101,7 @@ fn listen(
     name: &str,
     mut port: Port,
     mut stream: Stream,
-    sender: &SyncSender<(usize, Heard)>,
+    sender: &SyncSender<(usize, LinkItem)>,
     stop: &AtomicBool,
 ) {
     let mut buffer = vec![0; DATAGRAM];
@@ -127,11 +127,12 @@ fn listen(
             Received::Closed(why) => Some(format!("`{name}`: the link is closed: {why}")),
         };
         let source = port.source();
-        let mut is_heard = note.is_none_or(|note| sender.send((link, Heard::Note(note))).is_ok());
+        let mut is_heard =
+            note.is_none_or(|note| sender.send((link, LinkItem::Note(note))).is_ok());
         while let Some(packet) = stream.packet() {
             // Nothing rests on messages that cannot be verified.
             if packet.sound == Some(true) {
-                let heard = Heard::Packet(source, packet.bytes.to_vec());
+                let heard = LinkItem::Packet(source, packet.bytes.to_vec());
                 is_heard &= sender.send((link, heard)).is_ok();
             }
         }
@@ -142,7 +143,7 @@ fn listen(
 }
 
 fn follow<'e>(
-    receiver: &Receiver<(usize, Heard)>,
+    receiver: &Receiver<(usize, LinkItem)>,
     fleet: &mut Fleet<'e>,
     shown: &mut Shown<'e>,
     start: Instant,
@@ -153,14 +154,14 @@ fn follow<'e>(
         let heard = receiver.recv_timeout(TICK);
         let now_s = start.elapsed().as_secs_f64();
         match heard {
-            Ok((link, Heard::Packet(source, bytes))) => {
+            Ok((link, LinkItem::Packet(source, bytes))) => {
                 if let Next::Packet(packet) = next_packet(&bytes) {
                     fleet.receive(now_s, (link, source), &packet, |id, event, session| {
                         shown.event(now_s, id, event, session);
                     });
                 }
             }
-            Ok((_, Heard::Note(text))) => shown.note(now_s, &text),
+            Ok((_, LinkItem::Note(text))) => shown.note(now_s, &text),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return,
         }
