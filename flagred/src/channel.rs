@@ -223,14 +223,12 @@ pub(crate) fn motors_needed(channels: &[Channel]) -> usize {
 }
 
 /// Whether an input reads the commands of the motors.
-pub(crate) fn read_motors((channels, inputs): (&[Channel], &[Input])) -> bool {
-    inputs.iter().any(|input| {
-        let observed = channels.get(input.channel).map(|channel| channel.observed);
-        !matches!(
-            observed,
-            None | Some(Observed::Named(_) | Observed::Difference { .. })
-        )
-    })
+pub(crate) fn reads_motors(channels: &[Channel], input: &Input) -> bool {
+    let observed = channels.get(input.channel).map(|channel| channel.observed);
+    !matches!(
+        observed,
+        None | Some(Observed::Named(_) | Observed::Difference { .. })
+    )
 }
 
 /// An input: a statistic of a channel.

@@ -13,7 +13,7 @@ use crate::{
     cause::{Asked, Cause, Proposition, Propositions},
     channel::{Channel, Input},
     gap::Filling,
-    lookup::Lookup,
+    lookup::{Lookup, UNREAD},
     plan::{NoPlan, rules_for},
     profile::Profile,
     sample::Estimate,
@@ -40,7 +40,7 @@ struct Compiled {
     engine: Engine,
     output: usize,
     filling: Filling,
-    /// The index in the profile of each input of the model.
+    /// The index in the profile of each input of the model; [`UNREAD`] of those that the risk does not depend on.
     order: Vec<u32>,
     /// What is observed, where samples carry the signals of the profile in its order.
     channels: Vec<Channel>,
@@ -150,7 +150,7 @@ impl Estimator {
                 input: stray.name.clone(),
             });
         }
-        let order = model
+        let fed = model
             .inputs
             .iter()
             .map(|input| {
@@ -161,14 +161,22 @@ impl Estimator {
                     })
             })
             .collect::<Result<Vec<u32>, EstimatorError>>()?;
+        let read = model.inputs_of(&profile.output);
+        let order = model.inputs.iter().zip(&fed).map(|(input, place)| {
+            match read.contains(&input.name.as_str()) {
+                true => *place,
+                false => UNREAD,
+            }
+        });
+        let order = order.collect();
         let sources = profile.inputs.iter().map(|input| &input.source);
         let (channels, inputs) = channels(sources, &profile.signals())
             .map_err(|input| EstimatorError::NoSource { input })?;
         let said = engine.propositions();
         let propositions = said.iter().map(|said| Proposition {
             rule: said.place as u32,
-            input: match said.input.checked_sub(order.len()) {
-                None => order.get(said.input).copied().unwrap_or_default(),
+            input: match said.input.checked_sub(fed.len()) {
+                None => fed.get(said.input).copied().unwrap_or_default(),
                 Some(output) => (profile.inputs.len() + output) as u32,
             },
             literal: said.literal as u32,
@@ -205,6 +213,11 @@ impl Estimator {
     /// The rule set, compiled.
     pub fn engine(&self) -> &Engine {
         &self.0.engine
+    }
+
+    /// As [`Lookup::order`].
+    pub(crate) fn order(&self) -> &[u32] {
+        &self.0.order
     }
 
     /// What raises the risk at values of the inputs, in the order of the profile, to `risk_pct`.
@@ -250,7 +263,8 @@ impl Estimator {
     }
 
     /// The risk at the values of the inputs, in the order of the profile: as a monitor computes it.
-    /// `None` where no rule applies and there is nothing to interpolate from, or a value is not finite.
+    /// `None` where no rule applies and there is nothing to interpolate from, or a value that the risk depends on is not
+    /// finite.
     pub fn at(&self, inputs: &[f64]) -> Option<Estimate> {
         self.estimate(inputs, &mut Memory::of(self))
     }
@@ -316,17 +330,17 @@ impl Estimator {
 #[derive(Debug, Clone)]
 pub(crate) struct Memory {
     scratch: Scratch,
-    /// The inputs in the order of the model.
+    /// The inputs in the order of the model. Those that the risk does not depend on are at the lower ends of their ranges.
     point: Vec<f64>,
     outcomes: Vec<Outcome>,
 }
 
 impl Memory {
     pub(crate) fn of(estimator: &Estimator) -> Memory {
-        let inputs = estimator.0.order.len();
+        let inputs = estimator.model().inputs.iter();
         Memory {
             scratch: estimator.0.engine.scratch(),
-            point: vec![0.0; inputs],
+            point: inputs.map(|input| input.low).collect(),
             outcomes: vec![Outcome::default(); estimator.0.engine.output_names().len()],
         }
     }
@@ -335,7 +349,7 @@ impl Memory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shipped;
+    use crate::{board::OwnedMemory, shipped};
 
     #[test]
     fn a_risk_is_a_percentage() {
@@ -352,6 +366,37 @@ mod tests {
             let is_refused = matches!(made, Err(EstimatorError::NoPercentage { .. }));
             assert_eq!(is_refused, !is_percentage, "{range}");
         }
+    }
+
+    #[test]
+    fn a_risk_needs_only_the_inputs_that_its_rules_read() {
+        let both = shipped::flagred_battery();
+        let model = both.model();
+        let battery = both.profile().of_risk(&both.profile().other_risks[0]);
+        let battery = Estimator::new(&battery, model).unwrap();
+        let mut motors = both.profile().clone();
+        motors.other_risks.clear();
+        let motors = Estimator::new(&motors, model).unwrap();
+        let default = shipped::flagred();
+        let known = [0.01, 0.02, 0.01, 0.6, 0.01, 0.1];
+        let with = |battery: f64| [&known[..], &[battery]].concat();
+        let risk = default.at(&known);
+        assert!(risk.is_some());
+        // Outside of the range, too: it says nothing of the risk.
+        for level in [80.0, f64::NAN, 250.0] {
+            assert_eq!(motors.at(&with(level)), risk, "{level}");
+            let plan = motors.plan().unwrap();
+            let mut memory = OwnedMemory::new(&plan, 4);
+            let mut monitor = memory.monitor(&plan).unwrap();
+            assert_eq!(monitor.at(&with(level)), risk, "{level}");
+        }
+        let unknown = [f64::NAN; 7];
+        assert_eq!((motors.at(&unknown), battery.at(&unknown)), (None, None));
+        let mut only_battery = unknown;
+        only_battery[6] = 0.0;
+        assert_eq!(battery.at(&only_battery).unwrap().risk_pct, 100.0);
+        assert!(!battery.plan().unwrap().needs_motors());
+        assert!(motors.plan().unwrap().needs_motors());
     }
 
     #[test]

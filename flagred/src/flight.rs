@@ -6,7 +6,7 @@ use crate::{
     estimator::Estimator,
     evaluation::Span,
     margin::margin,
-    monitor::{Craft, Estimate, Monitor, MonitorError, Sample, Unknown, Update},
+    monitor::{Craft, Monitor, MonitorError, Sample, Unknown, Update},
     motor::counted,
     profile::Profile,
     verdict::{Ended, Level, VerdictSettings},
@@ -52,6 +52,17 @@ pub fn judged_span(air: Span, ends_with_log: bool, settings: &VerdictSettings) -
         to_s: air.to_s - before_landing_s,
     };
     (judged.length_s() > 0.0).then_some(judged)
+}
+
+/// Whether two reasons are the same but for their numbers.
+fn is_same(a: &Unknown, b: &Unknown) -> bool {
+    let input = |reason: &Unknown| match reason {
+        Unknown::WarmingUp { input }
+        | Unknown::TooFewSamples { input, .. }
+        | Unknown::NoValue { input } => Some(*input),
+        _ => None,
+    };
+    core::mem::discriminant(a) == core::mem::discriminant(b) && input(a) == input(b)
 }
 
 /// Assesses flights sample by sample.
@@ -179,7 +190,8 @@ impl Assessor {
         if update.risk != Err(Unknown::OutOfOrder) {
             let profile = self.monitor.estimator().profile();
             let elsewhere = self.monitor.unknown_elsewhere();
-            self.flight.add(&update, sample, profile, elsewhere);
+            let unknown = update.risk.err().into_iter().chain(elsewhere);
+            self.flight.add(&update, sample, profile, unknown);
             if sample.in_air {
                 self.keep_step(&update);
             }
@@ -291,13 +303,13 @@ impl Flight {
         }
     }
 
-    /// Adds a sample; `elsewhere` is why another risk of the profile is unknown.
+    /// Adds a sample; `unknown` has why risks of the profile are unknown.
     fn add(
         &mut self,
         update: &Update,
         sample: &Sample<'_>,
         profile: &Profile,
-        elsewhere: Option<Unknown>,
+        unknown: impl Iterator<Item = Unknown> + Clone,
     ) {
         let t_s = sample.t_s;
         let last = self.last.replace(Last {
@@ -325,53 +337,55 @@ impl Flight {
             self.motor_samples += 1;
             self.saturated += u64::from(margin(e) < SATURATED_MARGIN);
         }
-        self.follow_motors(update.risk, t_s, flown_s);
-        match update.risk {
-            Ok(estimate) => {
-                match elsewhere {
-                    None => self.summary.assessed_s += flown_s,
-                    Some(reason) => self.add_unknown(reason, flown_s),
-                }
-                if estimate.filled_from.is_some() {
-                    self.summary.filled_s += flown_s;
-                }
-                if update.judged {
-                    self.wait(Pending {
-                        t_s,
-                        held_s: flown_s,
-                        risk_times_s: estimate.risk_pct * flown_s,
-                        risk_pct: estimate.risk_pct,
-                        elevated_risk_pct: update.elevated_risk_pct,
-                    });
-                }
+        self.follow_motors(unknown.clone(), t_s, flown_s);
+        if unknown.clone().next().is_none() {
+            self.summary.assessed_s += flown_s;
+        }
+        for (index, reason) in unknown.clone().enumerate() {
+            let mut before = unknown.clone().take(index);
+            if !before.any(|other| is_same(&other, &reason)) {
+                self.add_unknown(reason, flown_s);
             }
-            Err(reason) => self.add_unknown(reason, flown_s),
+        }
+        if let Ok(estimate) = update.risk {
+            if estimate.filled_from.is_some() {
+                self.summary.filled_s += flown_s;
+            }
+            if update.judged {
+                self.wait(Pending {
+                    t_s,
+                    held_s: flown_s,
+                    risk_times_s: estimate.risk_pct * flown_s,
+                    risk_pct: estimate.risk_pct,
+                    elevated_risk_pct: update.elevated_risk_pct,
+                });
+            }
         }
         self.settle(t_s - quiet_s);
     }
 
     fn add_unknown(&mut self, reason: Unknown, flown_s: f64) {
-        let same =
-            |known: &Unknown| core::mem::discriminant(known) == core::mem::discriminant(&reason);
-        match self.unknown.iter_mut().find(|(known, _)| same(known)) {
+        let mut known = self.unknown.iter_mut();
+        match known.find(|(known, _)| is_same(known, &reason)) {
             Some((_, total_s)) => *total_s += flown_s,
             None => self.unknown.push((reason, flown_s)),
         }
     }
 
     /// Adds up the time without a motor; known time in between is taken off, so that single damaged samples never add up.
-    fn follow_motors(&mut self, risk: Result<Estimate, Unknown>, t_s: f64, held_s: f64) {
+    fn follow_motors(&mut self, mut unknown: impl Iterator<Item = Unknown>, t_s: f64, held_s: f64) {
         let [latest, longest] = &mut self.motor_lost;
-        let (motor, command) = match risk {
-            Err(Unknown::NoCommand { motor }) => (motor, None),
-            Err(Unknown::CommandOutside { motor, command }) => (motor, Some(command)),
-            _ => {
-                if let Some(lost) = latest {
-                    lost.lost_s -= held_s;
-                }
-                *latest = latest.filter(|lost| lost.lost_s > 0.0);
-                return;
+        let of_motor = unknown.find_map(|reason| match reason {
+            Unknown::NoCommand { motor } => Some((motor, None)),
+            Unknown::CommandOutside { motor, command } => Some((motor, Some(command))),
+            _ => None,
+        });
+        let Some((motor, command)) = of_motor else {
+            if let Some(lost) = latest {
+                lost.lost_s -= held_s;
             }
+            *latest = latest.filter(|lost| lost.lost_s > 0.0);
+            return;
         };
         let lost = latest.get_or_insert(MotorLost {
             motor,

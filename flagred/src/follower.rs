@@ -3,7 +3,7 @@
 use crate::{
     accumulator::{AccumulatorSettings, RunningSum},
     cause::{Cause, is_of_limits},
-    channel::{self, Channel, Input, Seen, push, value},
+    channel::{Channel, Input, Now, Seen, push, reads_motors, value},
     motor::{self, Bin, Motor},
     sample::{Estimate, Sample, Sampling, Unknown, Update},
     verdict::{self, Alert, Ended, Finding, Level, Notices, ROUNDING_S, VerdictSettings},
@@ -75,6 +75,29 @@ pub(crate) struct Room<'m> {
     pub(crate) motors: &'m mut [Motor],
 }
 
+/// What a risk is computed from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Feed<'a> {
+    pub(crate) channels: &'a [Channel],
+    /// The inputs of the profile, and those that a monitor appends.
+    pub(crate) inputs: &'a [Input],
+    /// The inputs that the risk depends on, as [`Lookup::order`](crate::lookup::Lookup::order) has them.
+    pub(crate) order: &'a [u32],
+}
+
+impl Feed<'_> {
+    /// Whether the risk depends on an input.
+    pub(crate) fn needs(&self, input: usize) -> bool {
+        self.order.iter().any(|from| *from as usize == input)
+    }
+
+    /// Whether the risk depends on an input that reads the commands of the motors.
+    pub(crate) fn needs_motors(&self) -> bool {
+        let mut inputs = self.inputs.iter().enumerate();
+        inputs.any(|(i, input)| self.needs(i) && reads_motors(self.channels, input))
+    }
+}
+
 impl Follower {
     pub(crate) const fn new(settings: Settings) -> Follower {
         Follower {
@@ -102,20 +125,20 @@ impl Follower {
     /// Takes a sample in; `estimate` gives what is said about values of the inputs.
     pub(crate) fn push(
         &mut self,
-        plan: (&[Channel], &[Input]),
+        feed: Feed<'_>,
         room: &mut Room<'_>,
         sample: &Sample<'_>,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
     ) -> Update {
         let before = self.level();
-        let mut update = self.take(plan, room, sample, estimate);
+        let mut update = self.take(feed, room, sample, estimate);
         update.change = update.level.filter(|level| *level != before);
         update
     }
 
     fn take(
         &mut self,
-        plan: (&[Channel], &[Input]),
+        feed: Feed<'_>,
         room: &mut Room<'_>,
         sample: &Sample<'_>,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
@@ -156,12 +179,12 @@ impl Follower {
         }
         self.down_since_s = None;
         let in_air_since_s = *self.in_air_since_s.get_or_insert(t_s);
-        let now = channel::Now {
+        let now = Now {
             motors: room.motors,
             together,
             named: sample.signals,
         };
-        push(plan.0, room.seen, (t_s, held_s), &now);
+        push(feed.channels, room.seen, (t_s, held_s), &now);
         self.settle(t_s, in_air_since_s, room);
         let unknown = unknown_motor(room.motors, sample.motors);
         if self.settled && unknown.is_none() {
@@ -169,10 +192,8 @@ impl Follower {
             self.notices
                 .push((t_s, held_s), together.noise, room.motors, is_calm);
         }
-        // A monitor appends inputs of its own, on which the risk does not depend.
-        let inputs = plan.1.get(..room.inputs.len()).unwrap_or(plan.1);
-        let unknown = unknown.filter(|_| channel::read_motors((plan.0, inputs)));
-        let said = match self.estimate(plan, room, unknown, estimate) {
+        let unknown = unknown.filter(|_| feed.needs_motors());
+        let said = match self.estimate(feed, room, unknown, estimate) {
             Ok(said) => said,
             Err(reason) => {
                 let known_s = self.last_known_s.unwrap_or(t_s);
@@ -230,7 +251,7 @@ impl Follower {
     /// Sets the cause of the open finding where the latest sample raised its level; `cause` is asked only then.
     pub(crate) fn explain(
         &mut self,
-        plan: (&[Channel], &[Input]),
+        feed: Feed<'_>,
         update: &Update,
         cause: impl FnOnce(f64) -> Option<Cause>,
     ) {
@@ -240,7 +261,8 @@ impl Follower {
         let by_rules = update.risk.ok().filter(|said| said.filled_from.is_none());
         let cause = by_rules.and_then(|said| cause(said.risk_pct));
         self.alert.explain(cause, |motor| {
-            cause.is_some_and(|cause| is_of_limits(plan, cause.input, motor))
+            cause
+                .is_some_and(|cause| is_of_limits((feed.channels, feed.inputs), cause.input, motor))
         });
     }
 
@@ -316,15 +338,18 @@ impl Follower {
 
     fn estimate(
         &self,
-        plan: (&[Channel], &[Input]),
+        feed: Feed<'_>,
         room: &mut Room<'_>,
         mut reason: Option<Unknown>,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
     ) -> Result<Estimate, Unknown> {
+        let plan = (feed.channels, feed.inputs);
         for (input, kept) in room.inputs.iter_mut().enumerate() {
             let value = reading(plan, room.seen, &self.settings.sampling, input);
             *kept = value.unwrap_or_else(|unknown| {
-                reason.get_or_insert(unknown);
+                if feed.needs(input) {
+                    reason.get_or_insert(unknown);
+                }
                 f64::NAN
             });
         }

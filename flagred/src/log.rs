@@ -9,7 +9,7 @@ use crate::{
     estimator::Estimator,
     evaluation::Span,
     flight::{Assessment, Assessor, Reason, Verdict, judged_span},
-    monitor::{Craft, Sample, Unknown},
+    monitor::{Craft, MonitorError, Sample, Unknown},
     verdict::{Level, VerdictSettings},
 };
 
@@ -35,7 +35,14 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     if let Some(gap) = gaps.iter().find(is_needed) {
         return Assessment::not_available(Reason::Log(gap.clone()));
     }
-    let signals = carried(flight, &estimator.profile().signals());
+    let profile = estimator.profile();
+    let needed = profile.signals();
+    let carried = carried(flight, &needed);
+    // A signal that one of several risks needs does not keep the others from being assessed.
+    let signals = match profile.other_risks.is_empty() {
+        true => carried.clone(),
+        false => needed,
+    };
     let mut assessor = match Assessor::new(estimator, craft(flight, &signals), step_s) {
         Ok(assessor) => assessor,
         Err(error) => return Assessment::not_available(error),
@@ -47,14 +54,26 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
         assessor.set_in_air_s(in_air.duration_s());
     }
     let mut assessment = assessor.finish();
+    if let Verdict::NotAvailable(Reason::RiskUnknown { unknown, .. }) = &assessment.verdict
+        && let Unknown::NoValue { input } = unknown
+        && let Some(input) = profile.inputs.get(*input)
+        && let Some(signal) = input.source.signal.carried().find(|s| !carried.contains(s))
+    {
+        let signal = signal.into();
+        assessment.verdict = Verdict::NotAvailable(MonitorError::NoSignal { signal }.into());
+    }
+    let reads_motors = |input: usize| {
+        let input = profile.inputs.get(input);
+        input.is_none_or(|input| input.source.signal.carried().next().is_none())
+    };
     let slow = gaps.iter().find(|gap| matches!(gap, Gap::TooSlow { .. }));
     if let (Verdict::NotAvailable(Reason::RiskUnknown { unknown, help, .. }), Some(slow)) =
         (&mut assessment.verdict, slow)
     {
         match unknown {
             Unknown::TooFewSamples { .. } => *help = slow.help(),
-            // Two samples or none in a window: the rate is the reason, not the signal.
-            Unknown::NoValue { .. } | Unknown::WarmingUp { .. } => {
+            // Two samples or none in a window: the rate is the reason, not the motors' signal.
+            Unknown::NoValue { input } | Unknown::WarmingUp { input } if reads_motors(*input) => {
                 assessment.verdict = Verdict::NotAvailable(Reason::Log(slow.clone()));
             }
             _ => {}

@@ -7,10 +7,13 @@ use crate::{
     sample::Estimate,
 };
 
+/// The index, among the profile's inputs, of an input that the risk does not depend on.
+pub(crate) const UNREAD: u32 = u32::MAX;
+
 /// What an estimate needs to know beside the rules.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lookup<'a> {
-    /// Which input of the profile each input of the rule set is.
+    /// Which input of the profile each input of the rule set is, or [`UNREAD`].
     pub(crate) order: &'a [u32],
     /// The coverage below which the rules do not apply.
     pub(crate) coverage_below: f64,
@@ -46,10 +49,12 @@ impl Lookup<'_> {
         })
     }
 
-    /// The inputs of the profile in the order of the rule set.
+    /// The inputs of the profile in the order of the rule set. Those that the risk does not depend on keep their value.
     pub(crate) fn reorder(&self, inputs: &[f64], point: &mut [f64]) -> Option<()> {
         for (value, from) in point.iter_mut().zip(self.order) {
-            *value = *inputs.get(*from as usize)?;
+            if *from != UNREAD {
+                *value = *inputs.get(*from as usize)?;
+            }
         }
         Some(())
     }

@@ -5,7 +5,7 @@ use alloc::{format, string::String, vec, vec::Vec};
 use crate::{
     channel::{Channel, Input, Seen, motors_needed, restart},
     estimator::{Estimator, Memory},
-    follower::{Follower, Room, reading},
+    follower::{Feed, Follower, Room, reading},
     motor::{Motor, set_geometry},
     profile::Profile,
     source::{Motors, Signal, Source, Statistic, channels},
@@ -119,7 +119,8 @@ pub struct Monitor {
     /// Of the other risks of the profile.
     others: Vec<Monitor>,
     ended_elsewhere: Vec<OfRisk>,
-    unknown_elsewhere: Option<Unknown>,
+    /// Why the risk, without the others, is unknown after the latest sample.
+    unknown: Option<Unknown>,
 }
 
 /// A finding of another risk of the profile.
@@ -179,7 +180,7 @@ impl Monitor {
         let others = others.collect::<Result<Vec<Monitor>, MonitorError>>()?;
         Ok(Monitor {
             ended_elsewhere: Vec::with_capacity(others.len()),
-            unknown_elsewhere: None,
+            unknown: None,
             others,
             memory: Memory::of(estimator),
             room: OwnRoom {
@@ -200,8 +201,8 @@ impl Monitor {
         &self.estimator
     }
 
-    /// Takes a sample in. The level of the update is the worst of all risks; risk and elevated risk are those of the
-    /// profile's `output`.
+    /// Takes a sample in. The level of the update is the worst of all risks, and never [`Level::Good`] while one of them is
+    /// unknown. Risk and elevated risk are those of the profile's `output`, which other risks do not change.
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         if self.others.is_empty() {
             return self.push_first(sample);
@@ -209,16 +210,14 @@ impl Monitor {
         let before = self.level();
         let mut update = self.push_first(sample);
         self.ended_elsewhere.clear();
-        self.unknown_elsewhere = None;
         for (risk, other) in self.others.iter_mut().enumerate() {
             let of_other = other.push_first(sample);
-            self.unknown_elsewhere = self.unknown_elsewhere.or(of_other.risk.err());
             update.level = update.level.max(of_other.level);
             let [found, ..] = of_other.ended;
             self.ended_elsewhere
                 .extend(found.map(|found| OfRisk { risk, found }));
         }
-        if self.unknown_elsewhere.is_some() || update.risk.is_err() {
+        if update.risk.is_err() || self.unknown_elsewhere().next().is_some() {
             update.level = update.level.filter(|level| *level > Level::Good);
         }
         update.change = update.level.filter(|level| *level != before);
@@ -241,13 +240,18 @@ impl Monitor {
             follower,
             ..
         } = self;
-        let plan = (&channels[..], &inputs[..]);
-        let update = follower.push(plan, &mut room.lend(), sample, |inputs| {
+        let feed = Feed {
+            channels,
+            inputs,
+            order: estimator.order(),
+        };
+        let update = follower.push(feed, &mut room.lend(), sample, |inputs| {
             estimator.estimate(inputs, memory)
         });
-        follower.explain(plan, &update, |risk_pct| {
+        follower.explain(feed, &update, |risk_pct| {
             estimator.cause(&room.inputs, risk_pct, memory)
         });
+        self.unknown = update.risk.err();
         update
     }
 
@@ -283,9 +287,9 @@ impl Monitor {
         &self.ended_elsewhere
     }
 
-    /// Why another risk is unknown after the latest sample; `None` where all are known.
-    pub fn unknown_elsewhere(&self) -> Option<Unknown> {
-        self.unknown_elsewhere
+    /// Why other risks are unknown after the latest sample: a reason for each that is.
+    pub fn unknown_elsewhere(&self) -> impl Iterator<Item = Unknown> + Clone {
+        self.others.iter().filter_map(|other| other.unknown)
     }
 
     /// The worst open finding beside the risk, as it stands so far: little reserve or an imbalance. The level may rest on a

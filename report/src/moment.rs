@@ -67,17 +67,37 @@ fn latest<'a>(estimator: &Estimator, assessed: &'a Assessment, t_s: f64) -> Opti
     (t_s - step.t_s <= longest_s).then_some(step)
 }
 
-/// Degrees of terms and rules; `None` where an input is unknown.
+/// Degrees of terms and rules; `None` where an input that the risk depends on is unknown. Another unknown input is left out,
+/// with the rules that depend on it.
 fn explain(estimator: &Estimator, step: &Step) -> Option<(Vec<ExplainedInput>, Vec<FiredRule>)> {
-    let fed = &estimator.profile().inputs;
-    let values = estimator.engine().input_names().map(|name| {
-        let place = fed.iter().position(|input| input.name == name)?;
-        let value = step.inputs.get(place).copied()?;
-        value.is_finite().then_some(value)
+    let (model, profile) = (estimator.model(), estimator.profile());
+    let needed = model.inputs_of(&profile.output);
+    let mut unknown: Vec<&str> = Vec::new();
+    let values = model.inputs.iter().map(|variable| {
+        let name = variable.name.as_str();
+        let place = profile.inputs.iter().position(|input| input.name == name)?;
+        match step.inputs.get(place).filter(|value| value.is_finite()) {
+            Some(value) => Some(*value),
+            None if needed.contains(&name) => None,
+            None => {
+                unknown.push(name);
+                Some(variable.low)
+            }
+        }
     });
     let values: Vec<f64> = values.collect::<Option<_>>()?;
     let explanation = estimator.engine().explain(&values).ok()?;
-    Some((explanation.inputs, explanation.rules))
+    let (mut inputs, mut rules) = (explanation.inputs, explanation.rules);
+    if !unknown.is_empty() {
+        let is_known = |output: &str| model.inputs_of(output).iter().all(|i| !unknown.contains(i));
+        inputs.retain(|input| !unknown.contains(&input.name.as_str()));
+        rules.retain(|fired| {
+            let rule = model.rules.get(fired.rule);
+            let mut concluded = rule.into_iter().flat_map(|rule| &rule.rule.consequents);
+            concluded.all(|consequent| is_known(&consequent.output.text))
+        });
+    }
+    Some((inputs, rules))
 }
 
 #[cfg(test)]

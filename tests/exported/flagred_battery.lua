@@ -963,8 +963,10 @@ function fly()
   flown_us = flown_us or 0
   observe()
   settle()
+  local is_known = read_inputs()
   -- While the command of a motor is unknown, so is the risk.
-  local risk = read_inputs() and sum and estimate()
+  is_known = is_known and sum
+  local risk = is_known and estimate()
   if not risk then
     if unknown_us and unknown_us > 2000000 then
       doubt_us = level_now() > 0 and unknown_us or nil

@@ -194,7 +194,10 @@ pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
         Ok(plan) => {
             let mut ranges = vec![(0.0, 1.0); plan_inputs];
             for (input, index) in plan.rules.table.inputs.iter().zip(plan.order) {
-                ranges[*index as usize] = (input.low, input.high);
+                // The risk does not depend on all of them.
+                if let Some(range) = ranges.get_mut(*index as usize) {
+                    *range = (input.low, input.high);
+                }
             }
             ranges
         }

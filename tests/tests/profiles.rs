@@ -206,17 +206,30 @@ fn the_page_lists_every_signal() {
     }
 }
 
-/// A hover of 60 s at 25 Hz, with what is left in the battery at each time.
-fn hover(battery: impl Fn(f64) -> Option<f64>) -> String {
+/// A flight of 60 s at 25 Hz, with the motors and the battery level at each time; `None` is unknown.
+fn flight(
+    motors: impl Fn(f64) -> [Option<f64>; 4],
+    battery: impl Fn(f64) -> Option<f64>,
+) -> String {
+    let cell = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.4}"));
     let mut rows = String::from("t_s,motor1,motor2,motor3,motor4,in_air,battery_remaining_pct\n");
     for i in 0..1500 {
         let t_s = f64::from(i) * 0.04;
-        let swing = 0.001 * (7.0 * t_s).sin();
-        let [a, b] = [0.5 + swing, 0.5 - swing];
-        let battery = battery(t_s).map_or(String::new(), |level| level.to_string());
-        rows += &format!("{t_s:.2},{a:.4},{b:.4},{a:.4},{b:.4},1,{battery}\n");
+        let motors = motors(t_s).map(cell).join(",");
+        rows += &format!("{t_s:.2},{motors},1,{}\n", cell(battery(t_s)));
     }
     rows
+}
+
+/// The motors of a calm hover.
+fn calm(t_s: f64) -> [Option<f64>; 4] {
+    let swing = 0.001 * (7.0 * t_s).sin();
+    let [a, b] = [0.5 + swing, 0.5 - swing];
+    [a, b, a, b].map(Some)
+}
+
+fn hover(battery: impl Fn(f64) -> Option<f64>) -> String {
+    flight(calm, battery)
 }
 
 #[test]
@@ -271,6 +284,65 @@ fn an_empty_battery_decides_with_the_shipped_profile() {
         assert!(told.contains("`risk` and `battery_risk`"), "{told}");
         assert!(told.contains("write a profile for each risk"), "{told}");
     }
+}
+
+#[test]
+fn each_risk_needs_only_the_inputs_that_its_rules_read() {
+    let folder = Folder::new();
+    let assess = |log: String| {
+        let log = folder.file("flight.csv", log);
+        let (code, told, errors) = run(&["assess", "--profile", "flagred-battery", &log]);
+        assert_eq!(errors, "");
+        (code, told)
+    };
+    let failing = |t_s: f64| match t_s {
+        20.0..40.0 => [1.0, 0.0, 1.0, 0.0].map(Some),
+        _ => calm(t_s),
+    };
+    let lost = |t_s: f64| {
+        let [a, b, _, d] = calm(t_s);
+        [a, b, None, d]
+    };
+    let is_known = |from_s: f64| move |t_s: f64| (t_s < from_s).then_some(80.0);
+
+    // The motors say FAIL, whatever is known of the battery.
+    let without = |log: String| log.replace("battery_remaining_pct", "x");
+    for log in [
+        flight(failing, |_| None),
+        flight(failing, is_known(5.0)),
+        without(flight(failing, |_| Some(80.0))),
+    ] {
+        let (code, told) = assess(log);
+        assert_eq!(code, Some(1), "{told}");
+        assert!(told.starts_with("FAIL"), "{told}");
+        assert!(!told.contains("battery_risk"), "{told}");
+    }
+    // Calm motors are not GOOD, and the reason is the battery.
+    for (log, why) in [
+        (flight(calm, |_| None), "input `battery` has no known value"),
+        (
+            flight(calm, is_known(5.0)),
+            "input `battery` has no known value",
+        ),
+        (
+            without(flight(calm, |_| Some(80.0))),
+            "needs the signal `battery_remaining_pct`",
+        ),
+    ] {
+        let (code, told) = assess(log);
+        assert_eq!(code, Some(3), "{told}");
+        assert!(told.starts_with("NA") && told.contains(why), "{told}");
+    }
+    // The battery says FAIL, whatever is known of the motors.
+    let (code, told) = assess(flight(lost, |_| Some(0.0)));
+    assert_eq!(code, Some(1), "{told}");
+    assert!(
+        told.starts_with("FAIL") && told.contains("battery_risk"),
+        "{told}"
+    );
+    let (code, told) = assess(flight(lost, |_| Some(80.0)));
+    assert_eq!(code, Some(3), "{told}");
+    assert!(told.starts_with("NA") && told.contains("motor 3"), "{told}");
 }
 
 /// A battery as one more vote of the default rules.

@@ -447,7 +447,7 @@ struct flagred_plan {
     uint32_t output, signals;
     double coverage_below;
     flagred_settings settings;
-    FLAGRED_ARRAY(uint32_t, order);
+    FLAGRED_ARRAY(uint32_t, order);             /* UINT32_MAX: an input that the risk does not depend on */
     FLAGRED_ARRAY(flagred_channel, channels);
     FLAGRED_ARRAY(flagred_source, sources);
     FLAGRED_ARRAY(double, coordinates);         /* of the knots that fill gaps, input by input; empty without filling */

@@ -31,9 +31,9 @@ use crate::{
     cause::{Asked, Cause, Propositions},
     channel::{Channel, Input, Observed, Seen, motors_needed, restart},
     effort::ROLL_PITCH_YAW_THRUST,
-    follower::{Follower, Room, Settings},
+    follower::{Feed, Follower, Room, Settings},
     gap::FilledKnots,
-    lookup::Lookup,
+    lookup::{Lookup, UNREAD},
     motor,
     sample::{Estimate, Sample, Update},
     verdict::{Ended, Finding, Motor},
@@ -63,7 +63,8 @@ pub struct Plan<'a> {
     pub rules: Rules<'a>,
     /// The index of the output that is the risk.
     pub output: u32,
-    /// The index among the profile's inputs of each input of the rule set.
+    /// The index among the profile's inputs of each input of the rule set; `u32::MAX` of those that the risk does not depend
+    /// on.
     pub order: &'a [u32],
     /// The observed channels.
     pub channels: &'a [Channel],
@@ -127,7 +128,10 @@ impl Plan<'_> {
         )?;
         require(
             self.order.len() == self.rules.inputs()
-                && self.order.iter().all(|input| (*input as usize) < inputs),
+                && self
+                    .order
+                    .iter()
+                    .all(|input| *input == UNREAD || (*input as usize) < inputs),
             "order",
         )?;
         require(
@@ -165,6 +169,24 @@ impl Plan<'_> {
                 .is_none_or(|filled| filled.is_whole(self.order.len())),
             "filled",
         )
+    }
+
+    /// Whether the risk depends on an input of the profile.
+    pub fn needs(&self, input: usize) -> bool {
+        self.feed().needs(input)
+    }
+
+    /// Whether the risk depends on an input that reads the commands of the motors.
+    pub fn needs_motors(&self) -> bool {
+        self.feed().needs_motors()
+    }
+
+    const fn feed(&self) -> Feed<'_> {
+        Feed {
+            channels: self.channels,
+            inputs: self.inputs,
+            order: self.order,
+        }
     }
 
     /// The number of outputs that propositions can be about.
@@ -276,6 +298,9 @@ impl<'a> Monitor<'a> {
         monitor.risks.restart(window_s);
         monitor.motors.fill(Motor::UNKNOWN);
         monitor.inputs.fill(f64::NAN);
+        for (value, input) in monitor.point.iter_mut().zip(plan.rules.table.inputs) {
+            *value = input.low;
+        }
         Ok(monitor)
     }
 
@@ -347,9 +372,9 @@ impl<'a> Monitor<'a> {
         let point = &mut *self.point;
         let rules = &mut self.rules;
         let estimate = |inputs: &[f64]| plan.estimate(inputs, point, rules);
-        let channels = (plan.channels, plan.inputs);
-        let update = self.follower.push(channels, &mut room, sample, estimate);
-        self.follower.explain(channels, &update, |risk_pct| {
+        let feed = plan.feed();
+        let update = self.follower.push(feed, &mut room, sample, estimate);
+        self.follower.explain(feed, &update, |risk_pct| {
             plan.cause(self.inputs, risk_pct, self.point, &mut self.rules)
         });
         update

@@ -58,8 +58,9 @@ impl Filling {
             });
             Ok(covered.collect())
         };
+        let read = model.inputs_of(&variable.name);
         let is_needed = !has_no_gap(model, modelled, coverage_below);
-        let Some(inner) = Knots::of(model).filter(|_| is_needed) else {
+        let Some(inner) = Knots::of(model, &read).filter(|_| is_needed) else {
             return Ok(Filling {
                 places: Vec::new(),
                 starts: Vec::new(),
@@ -98,8 +99,8 @@ impl Filling {
     }
 
     /// What is said at a place in the gap, with a coordinate for each input; beyond the outermost peaks, as there.
-    /// `None` where the rules leave no gap or cover nothing to fill from, there are more inputs than can be filled over (over 15 of two
-    /// terms each), the point has another number of coordinates, or one is not a
+    /// `None` where the rules leave no gap or cover nothing to fill from, the output depends on more inputs than can be filled over (over
+    /// 15 of two terms each), the point has another number of coordinates, or one is not a
     /// number.
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
         self.lend()?.read(point)

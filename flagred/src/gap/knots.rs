@@ -27,11 +27,15 @@ pub(super) struct Knots {
 }
 
 impl Knots {
-    /// The grid over the part of each input in which terms change: beyond, rules cannot tell one place from another.
+    /// The grid over the part of each input in which terms change: beyond, rules cannot tell one place from another. An input
+    /// that is not one of `read`, by name, has one place.
     ///
     /// `None` where even the peaks are too many: so many inputs, 16 of two terms each, have no filling.
-    pub(super) fn of(model: &Model) -> Option<Knots> {
+    pub(super) fn of(model: &Model, read: &[&str]) -> Option<Knots> {
         let axes = model.inputs.iter().map(|input| {
+            if !read.contains(&input.name.as_str()) {
+                return vec![input.low];
+            }
             let (first, last) = changing(input);
             let mut peaks = peaks(input);
             peaks.retain(|x| (first..=last).contains(x));
@@ -56,6 +60,9 @@ impl Knots {
     /// The same grid with the ends of the inputs' ranges, where it does not reach them and there is room.
     pub(super) fn with_ends(&self, model: &Model) -> Knots {
         let axes = self.axes.iter().zip(&model.inputs).map(|(places, input)| {
+            if places.len() == 1 {
+                return places.clone();
+            }
             let before = Some(input.low).filter(|low| places.first().is_some_and(|x| low < x));
             let behind = Some(input.high).filter(|high| places.last().is_some_and(|x| high > x));
             before
@@ -222,6 +229,11 @@ fn top(shape: &MembershipFunction, low: f64, high: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
+    fn all_knots(model: &Model) -> Knots {
+        let names: Vec<&str> = model.inputs.iter().map(|i| i.name.as_str()).collect();
+        Knots::of(model, &names).unwrap()
+    }
+
     fn knots(inputs: &str) -> Knots {
         let text = format!(
             "
@@ -232,7 +244,7 @@ outputs: {{y: {{range: [0, 1], partition: [low, high]}}}}
 rules: []
 "
         );
-        Knots::of(&fuzzy::yaml::parse(&text).unwrap().model).unwrap()
+        all_knots(&fuzzy::yaml::parse(&text).unwrap().model)
     }
 
     fn places_of(terms: &str) -> Vec<f64> {
@@ -276,7 +288,7 @@ outputs: {y: {range: [0, 1], partition: [low, high]}}
 rules: []
 ";
         let model = fuzzy::yaml::parse(text).unwrap().model;
-        let knots = Knots::of(&model).unwrap();
+        let knots = all_knots(&model);
         assert_eq!(knots.axes, [[0.0, 0.25, 0.5]]);
         assert_eq!(knots.with_ends(&model).axes, [[0.0, 0.25, 0.5, 1.0]]);
     }

@@ -50,6 +50,7 @@ pub(super) fn fill(
     let names: Vec<String> = names.map(|input| comment(&input.name)).collect();
     let signals = signals(&estimator.profile().signals())?;
     filling.set("battery", !signals.is_empty());
+    filling.set("needs_motors", plan.needs_motors());
     let mut windows: Vec<Window> = Vec::new();
     let mut script = Script::default();
     for (input, flagred::channel::Input { channel, statistic }) in plan.inputs.iter().enumerate() {
@@ -64,9 +65,11 @@ pub(super) fn fill(
             script
                 .observe
                 .push(format!("  value[{index}] = {x} -- {name}"));
-            script
-                .read_last
-                .push(format!("  all = all and value[{index}]"));
+            if plan.needs(input) {
+                script
+                    .read_last
+                    .push(format!("  all = all and value[{index}]"));
+            }
             continue;
         }
         let window = Window::of(channel);
@@ -122,9 +125,11 @@ pub(super) fn fill(
                 "  value[{}] = total and {read} -- {name}",
                 input + 1
             ));
-            script
-                .read
-                .push(format!("  all = all and value[{}]", input + 1));
+            if plan.needs(*input) {
+                script
+                    .read
+                    .push(format!("  all = all and value[{}]", input + 1));
+            }
         }
     }
     let extremes = made.iter().any(|line| line.contains("est\")"));

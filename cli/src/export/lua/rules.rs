@@ -138,16 +138,18 @@ pub(super) fn fill(
     Ok(())
 }
 
-/// The inputs in the order of the rules, within their ranges.
+/// The inputs in the order of the rules, within their ranges. Those that the risk does not depend on may be unknown.
 fn point(plan: &Plan<'_>) -> Vec<String> {
     let inputs = plan.rules.table.inputs.iter().zip(plan.order).zip(1..);
     let line = |((input, from), i): ((&flagred::board::table::Input, &u32), u32)| {
-        format!(
-            "  point[{i}] = max({}, min({}, value[{}]))",
-            number(input.low),
-            number(input.high),
-            from + 1
-        )
+        let (low, high) = (number(input.low), number(input.high));
+        match plan.needs(*from as usize) {
+            true => format!(
+                "  point[{i}] = max({low}, min({high}, value[{}]))",
+                from + 1
+            ),
+            false => format!("  point[{i}] = {low}"),
+        }
     };
     inputs.map(line).collect()
 }

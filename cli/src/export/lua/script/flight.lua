@@ -115,8 +115,12 @@ function fly()
     notice()
   end
 -- @end
+  local is_known = read_inputs()
+-- @if needs_motors
   -- While the command of a motor is unknown, so is the risk.
-  local risk = read_inputs() and sum and estimate()
+  is_known = is_known and sum
+-- @end
+  local risk = is_known and estimate()
   if not risk then
     if unknown_us and unknown_us > LONGEST_GAP_US then
       doubt_us = level_now() > GOOD and unknown_us or nil
