@@ -157,29 +157,8 @@ mod tests {
         }
     }
 
-    /// What `scripts/learn-flagred` learns anew has to be taken over.
     #[test]
-    fn the_battery_adds_to_the_default_and_changes_nothing_of_it() {
-        let mut rules = flagred_battery_rules();
-        let default = flagred_rules();
-        rules.inputs.retain(|input| input.name != "battery");
-        rules
-            .outputs
-            .retain(|output| output.variable.name != "battery_risk");
-        rules
-            .rules
-            .retain(|rule| rule.rule.consequents[0].output.text != "battery_risk");
-        assert_eq!(rules.inputs, default.inputs);
-        assert_eq!(rules.outputs, default.outputs);
-        assert_eq!(rules.operators, default.operators);
-        let written = |model: &Model| -> Vec<_> {
-            let rules = model.rules.iter();
-            rules
-                .map(|rule| (rule.rule.to_string(), rule.support))
-                .collect()
-        };
-        assert_eq!(written(&rules), written(&default));
-
+    fn the_battery_adds_to_the_default_profile_and_changes_nothing_of_it() {
         let mut profile = profile(2);
         profile.inputs.retain(|input| input.name != "battery");
         profile.other_risks.clear();

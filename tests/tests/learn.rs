@@ -251,6 +251,22 @@ fn the_shipped_rules_are_what_the_documented_command_learns() {
     );
 }
 
+#[cfg(unix)]
+#[test]
+fn the_battery_adds_to_the_shipped_rules_and_changes_nothing_of_them() {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let output = Command::new(workspace.join("scripts/add-battery"))
+        .arg(workspace.join("rules/flagred.yaml"))
+        .output()
+        .unwrap();
+    let shipped = fs::read(workspace.join("rules/flagred-battery.yaml")).unwrap();
+    assert!(
+        output.status.success() && output.stdout == shipped,
+        "run scripts/add-battery rules/flagred.yaml and commit rules/flagred-battery.yaml: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
 /// What `learn` says of the directions is what `check --monotone` finds.
 #[test]
 fn directions_hold_or_are_refuted_with_the_place() {

@@ -30,7 +30,7 @@ fn rules_hold_on_vehicles_they_were_not_tuned_on() {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let made = Folder::new();
     let output = Command::new(workspace.join("scripts/learn-flagred"))
-        .args([&data, &made.path().join("none.yaml")])
+        .args([&data, &made.file("none.yaml", "").into()])
         .envs([("ROWS", made.path()), ("TUNE", Path::new("true"))])
         .env("FLAGRED", flagred().get_program())
         .output()
