@@ -52,7 +52,7 @@ test('the conformance corpus has the bits on file', async () => {
     return cases.map(({ name, text, point }) => {
       const set = new window.flagred.RuleSet(text);
       const outputs = set.evaluate(point).map(({ value, coverage, rule, clamped }) =>
-        [value === null ? 'none' : bits(value), bits(coverage), rule ?? 'none', Number(clamped)].join(','),
+        [value === null ? 'none' : bits(value), bits(coverage), rule === null ? 'none' : rule - 1, Number(clamped)].join(','),
       );
       // Columns, twice the row, have the bits of the single call.
       const columns = set.evaluateColumns(point.map((value) => [value, value])).flatMap((column) => [...column]);

@@ -137,7 +137,7 @@ pub(crate) fn steps(assessed: &Assessment) -> PyResult<Table> {
     let of = |get: fn(Estimate) -> f64| number(&|step: &Step| step.estimate.map(get));
     let rules = steps.iter().map(|step| {
         let rule = step.estimate.and_then(|estimate| estimate.dominant_rule);
-        rule.map(|rule| rule as i32)
+        rule.map(|rule| rule as i32 + 1)
     });
     let filled = steps.iter().map(|step| {
         let estimate = step.estimate;

@@ -14,7 +14,7 @@ use rayon::{ThreadPool, prelude::*};
 
 use crate::{
     errors::data_error,
-    outcome::{Columns, NO_RULE, Reasons},
+    outcome::{Columns, Reasons, rule_number},
     threads,
 };
 
@@ -182,7 +182,7 @@ impl Block<'_> {
                 .zip(clamped.iter_mut());
             for (((coverage, rule), clamped), outcome) in to.zip(outcomes) {
                 *coverage = outcome.coverage;
-                *rule = outcome.dominant.map_or(NO_RULE, |rule| rule as i32);
+                *rule = rule_number(outcome.dominant);
                 *clamped = outcome.clamped;
             }
         }

@@ -43,7 +43,7 @@ pub(crate) struct ExplainedInput {
 /// A rule that fired.
 #[pyclass(frozen, get_all, module = "flagred")]
 pub(crate) struct FiredRule {
-    /// Its index in the rules of the model.
+    /// Its number in the model, from 1.
     rule: usize,
     /// The rule as it is written.
     text: String,
@@ -77,7 +77,7 @@ pub(crate) struct ExplainedOutput {
 /// What a rule contributes to an output.
 #[pyclass(frozen, get_all, module = "flagred")]
 pub(crate) struct Share {
-    /// Its index in the rules of the model.
+    /// Its number in the model, from 1.
     rule: usize,
     /// The term it concludes.
     term: String,
@@ -100,7 +100,7 @@ fn degrees(py: Python<'_>, degrees: &[Degree]) -> PyResult<Py<PyDict>> {
 fn output(py: Python<'_>, output: &engine::ExplainedOutput) -> PyResult<Py<ExplainedOutput>> {
     let share = |share: &engine::Share| {
         let share = Share {
-            rule: share.rule,
+            rule: share.rule + 1,
             term: share.term.clone(),
             strength: share.strength,
             share: share.share,
@@ -145,7 +145,7 @@ impl Explanation {
         };
         let rule = |rule: &engine::FiredRule| {
             let (degree, strength) = (rule.degree, rule.strength);
-            let (rule, text) = (rule.rule, rule.text.clone());
+            let (rule, text) = (rule.rule + 1, rule.text.clone());
             Py::new(
                 py,
                 FiredRule {

@@ -9,7 +9,11 @@ use fuzzy::{
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use pyo3::{prelude::*, sync::PyOnceLock, types::PyDict};
 
-use crate::{compiled::Compiled, errors::data_error, outcome::NO_RULE};
+use crate::{
+    compiled::Compiled,
+    errors::data_error,
+    outcome::{NO_RULE, rule_number},
+};
 
 /// One output of a rule set over a grid of its inputs.
 #[pyclass(frozen, module = "flagred")]
@@ -103,13 +107,12 @@ impl DecisionMap {
             .reshape(self.shape())
     }
 
-    /// The index of the rule with that strength; masked where no rule fires.
+    /// The number of the rule with that strength, from 1; masked where no rule fires.
     #[getter]
     fn dominant_rule<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let rules = self.cells().map(|cell| {
-            let rule = self.map.dominant(cell);
-            rule.map_or(NO_RULE, |rule| rule as i32)
-        });
+        let rules = self
+            .cells()
+            .map(|cell| rule_number(self.map.dominant(cell)));
         let rules = rules
             .collect::<Vec<i32>>()
             .into_pyarray(py)

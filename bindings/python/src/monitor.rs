@@ -37,7 +37,7 @@ pub(crate) struct Update {
     coverage: Option<f64>,
     /// Whether the risk is interpolated because no rule applies.
     filled: Option<bool>,
-    /// The index of the rule with the largest firing strength.
+    /// The number of the rule with the largest firing strength, from 1; None where none fires or the risk is unknown.
     dominant_rule: Option<usize>,
     /// Whether the risk counts for levels and findings.
     judged: bool,
@@ -197,7 +197,7 @@ impl MonitorData {
             change: update.change.map(|level| level.to_string()),
             coverage: estimate.map(|estimate| estimate.coverage),
             filled: estimate.map(|estimate| estimate.filled_from.is_some()),
-            dominant_rule: estimate.and_then(|estimate| estimate.dominant_rule),
+            dominant_rule: estimate.and_then(|estimate| Some(estimate.dominant_rule? + 1)),
             judged: update.judged,
         }
     }

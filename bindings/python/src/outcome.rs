@@ -14,7 +14,7 @@ pub(crate) struct Outcome {
     value: Option<f64>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: f64,
-    /// The index of the rule with that strength; None where no rule fired.
+    /// The number of the rule with that strength, from 1; None where no rule fired.
     dominant_rule: Option<usize>,
     /// Whether an input was outside its range and was moved to the end of it.
     clamped: bool,
@@ -92,7 +92,7 @@ impl From<engine::Outcome> for Outcome {
         Outcome {
             value: outcome.value(),
             coverage: outcome.coverage,
-            dominant_rule: outcome.dominant,
+            dominant_rule: outcome.dominant.map(|rule| rule + 1),
             clamped: outcome.clamped,
             state: match outcome.state {
                 State::Defined(_) => STATES[0],
@@ -112,7 +112,7 @@ pub(crate) struct Outcomes {
     value: Py<PyArrayDyn<f64>>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: Py<PyArrayDyn<f64>>,
-    /// The index of the rule with that strength; masked where no rule fired.
+    /// The numbers of the rules with that strength, from 1; masked where no rule fired.
     dominant_rule: Py<PyAny>,
     /// Whether an input was outside its range and was moved to the end of it.
     clamped: Py<PyArrayDyn<bool>>,
@@ -133,8 +133,13 @@ pub(crate) struct Reasons {
     pub(crate) clamped: Vec<bool>,
 }
 
-/// In place of the index of a rule: masked or null before anybody sees it.
+/// In place of the number of a rule: masked or null before anybody sees it.
 pub(crate) const NO_RULE: i32 = -1;
+
+/// The number of a rule, from 1.
+pub(crate) fn rule_number(rule: Option<usize>) -> i32 {
+    rule.map_or(NO_RULE, |rule| rule as i32 + 1)
+}
 
 impl Outcomes {
     pub(crate) fn new(

@@ -239,7 +239,7 @@ impl RuleSet {
     /// Examples
     /// --------
     /// >>> model.evaluate(service=8, food=9)
-    /// Outcome(value=18.394444444444446, coverage=0.9, dominant_rule=2, clamped=False, state='defined')
+    /// Outcome(value=18.394444444444446, coverage=0.9, dominant_rule=3, clamped=False, state='defined')
     #[pyo3(signature = (*args, threads = None, **named))]
     fn evaluate<'py>(
         slf: &Bound<'py, Self>,

@@ -55,10 +55,11 @@ pub(crate) fn _simplify(
     };
     let found = interruptible(py, move || simplify(&model, &columns, &settings))?;
     let found = found.map_err(|error| Failed::from(error).raise(py))?;
+    let numbers = |rules: Vec<usize>| rules.into_iter().map(|rule| rule + 1).collect();
     Ok(Simplified {
         model: yaml::to_string(&found.model),
-        rules: found.rules,
-        dropped: found.dropped,
+        rules: found.rules.into_iter().map(numbers).collect(),
+        dropped: numbers(found.dropped),
         inputs: found.inputs,
         points: found.points,
         difference: found

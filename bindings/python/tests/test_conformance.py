@@ -19,7 +19,7 @@ def bits(value):
 
 def said(outcome):
     value = math.nan if outcome.value is None else outcome.value
-    rule = "none" if outcome.dominant_rule is None else outcome.dominant_rule
+    rule = "none" if outcome.dominant_rule is None else outcome.dominant_rule - 1
     return f"{bits(value)},{bits(outcome.coverage)},{rule},{int(outcome.clamped)}"
 
 
@@ -78,7 +78,7 @@ def test_arrays(threads):
             value, coverage, rule, clamped = line.split(",")
             assert {bits(x) for x in outcomes.value} == {value}, place
             assert {bits(x) for x in outcomes.coverage} == {coverage}, place
-            assert set(outcomes.dominant_rule.tolist()) == {None if rule == "none" else int(rule)}, place
+            assert set(outcomes.dominant_rule.tolist()) == {None if rule == "none" else int(rule) + 1}, place
             assert set(outcomes.clamped.tolist()) == {clamped == "1"}, place
 
 

@@ -77,7 +77,7 @@ def test_an_assessment_is_that_of_the_command_line(flight):
         assert np.array_equal(steps[name], expected, equal_nan=True), name
     for name, first in document["steps"][500]["inputs"].items():
         assert steps[f"input_{name}"][500] == first
-    rules = [np.nan if step["dominant_rule"] is None else step["dominant_rule"] - 1 for step in document["steps"]]
+    rules = [np.nan if step["dominant_rule"] is None else step["dominant_rule"] for step in document["steps"]]
     assert np.array_equal(steps["dominant_rule"], rules, equal_nan=True)
 
 
@@ -94,7 +94,7 @@ def test_findings_and_the_report():
     worst = assessment.findings[0]
     document = json.loads(assessment.to_json())["findings"][0]
     assert (worst.severity, worst.from_s, worst.value_pct) == ("FAIL", document["from_s"], document["value_pct"])
-    assert worst.cause.rule == document["cause"]["rule"] - 1 and worst.text == str(worst) == document["text"]
+    assert worst.cause.rule == document["cause"]["rule"] and worst.text == str(worst) == document["text"]
     assert worst.motor.number == document["motor"]["number"]
     html = assessment.html()
     assert html.startswith("<!DOCTYPE html>") and "FAIL" in html and "<path" in html

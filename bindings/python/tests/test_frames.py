@@ -51,7 +51,7 @@ def test_polars():
     assert np.array_equal(values["tip"].to_numpy(), EXPECTED, equal_nan=True)
     outcomes = MODEL.evaluate(frame)
     assert outcomes.columns == ["tip", "coverage", "dominant_rule", "clamped"]
-    assert outcomes["dominant_rule"].to_list() == [2, None, 0, 0, None]
+    assert outcomes["dominant_rule"].to_list() == [3, None, 1, 1, None]
     chunks = polars.concat([frame, frame[:0], frame], rechunk=False)
     assert np.array_equal(MODEL(chunks)["tip"].to_numpy(), np.tile(EXPECTED, 2), equal_nan=True)
     assert np.array_equal(MODEL(frame["service"], frame["food"]), EXPECTED, equal_nan=True)

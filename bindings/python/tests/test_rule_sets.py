@@ -21,7 +21,7 @@ def test_numbers_by_place_and_by_name(tip):
     assert type(value) is float
     assert value == tip(service=8, food=9) == tip({"food": 9, "service": 8}) == tip(8.0, np.float64(9))
     outcome = tip.evaluate(food=9, service=8)
-    assert (outcome.value, float(outcome), outcome.dominant_rule, outcome.clamped) == (value, value, 2, False)
+    assert (outcome.value, float(outcome), outcome.dominant_rule, outcome.clamped) == (value, value, 3, False)
     assert outcome.state == "defined"
     assert outcome.coverage == 0.9
     assert outcome == tip.evaluate(8, 9) != tip.evaluate(8, 8)
@@ -173,7 +173,7 @@ def test_explanations(tip):
     explanation = tip.explain(service=8, food=9)
     assert explanation.values == {"tip": tip(8, 9)}
     assert explanation.inputs[0].terms == pytest.approx({"poor": 0, "good": 0.4, "excellent": 0.6})
-    assert [rule.rule for rule in explanation.rules] == [2, 1, 0]
+    assert [rule.rule for rule in explanation.rules] == [3, 2, 1]
     assert explanation.rules[0].text == tip.rules[2].text
     (output,) = explanation.outputs
     assert sum(share.share for share in output.rules) == pytest.approx(1)

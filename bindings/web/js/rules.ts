@@ -171,7 +171,7 @@ export interface Value {
   isDefault: boolean;
   /** The largest firing strength. */
   coverage: number;
-  /** The index of the rule that has it. */
+  /** The number of the rule that has it, from 1; `null` where none fires. */
   rule: number | null;
   /** Whether an input lay outside its range. */
   clamped: boolean;
@@ -203,7 +203,7 @@ export interface Cells {
   values: Float64Array;
   /** The largest firing strength. */
   coverage: Float64Array;
-  /** The index of the rule that has it. */
+  /** The number of the rule that has it, from 1; NaN where none fires. */
   rules: Float64Array;
   /** 1 where a profile filled a gap between rules. */
   filled: Float64Array;

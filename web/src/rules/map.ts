@@ -146,7 +146,7 @@ function pixels(shown: Shown, colours: Colours): ImageData {
       const value = isRules ? cells.rules[cell]! : cells.values[cell]!;
       if (value !== value) continue;
       const from = isRules ? distinct : scale;
-      const colour = 3 * (isRules ? value % (distinct.length / 3) : clamp(Math.round((value - output.low) * steps), 0, 255));
+      const colour = 3 * (isRules ? (value - 1) % (distinct.length / 3) : clamp(Math.round((value - output.low) * steps), 0, 255));
       const to = 4 * ((points - 1 - j) * points + i);
       image.data[to] = from[colour]!;
       image.data[to + 1] = from[colour + 1]!;

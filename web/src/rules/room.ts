@@ -270,9 +270,9 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       legend,
       ...there.map((rule) => {
         const swatch = h('span', { class: 'swatch', 'aria-hidden': 'true' });
-        const at = 3 * (rule % (colours.distinct.length / 3));
+        const at = 3 * ((rule - 1) % (colours.distinct.length / 3));
         swatch.style.backgroundColor = `rgb(${colours.distinct[at]} ${colours.distinct[at + 1]} ${colours.distinct[at + 2]})`;
-        return h('li', {}, swatch, `${rule + 1}: ${about.rules[rule]}`);
+        return h('li', {}, swatch, `${rule}: ${about.rules[rule - 1]}`);
       }),
     );
   }

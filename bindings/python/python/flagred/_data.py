@@ -150,7 +150,7 @@ class Cause(NamedTuple):
     term: str
     value: float | None
     rule: int
-    """The index of the rule in the rule set."""
+    """The number of the rule in the rule set, from 1."""
 
 
 class Finding(NamedTuple):
@@ -214,7 +214,7 @@ def finding(data: dict[str, Any]) -> Finding:
     return Finding(
         motor=MotorFinding(**motor) if motor else None,
         # Documents count rules from 1, Python from 0.
-        cause=Cause(**{**cause, "rule": cause["rule"] - 1}) if cause else None,
+        cause=Cause(**cause) if cause else None,
         risk=data.pop("risk", None),
         **data,
     )

@@ -28,9 +28,9 @@ class Simplified(NamedTuple):
 
     model: Model
     rules: list[list[int]]
-    """For each rule the rules that it stands for, by their indices in the original."""
+    """For each rule the rules that it stands for, by their numbers in the original, from 1."""
     dropped: list[int]
-    """The rules without effect, by their indices in the original."""
+    """The rules without effect, by their numbers in the original, from 1."""
     inputs: list[str]
     """The inputs that no rule needs; the model has them no more."""
     points: int
@@ -86,7 +86,7 @@ def simplify(
     >>> [rule.text for rule in simplified.model.rules]
     ['IF heat IS cool THEN speed IS slow', 'IF heat IS NOT cool THEN speed IS fast']
     >>> simplified.rules
-    [[0], [1, 2]]
+    [[1], [2, 3]]
     """
     names = list(model._input_names())
     renamed = dict(columns or {})

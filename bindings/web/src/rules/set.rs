@@ -108,7 +108,7 @@ struct Value<'a> {
     value: Option<f64>,
     is_default: bool,
     coverage: f64,
-    /// The index of the strongest rule.
+    /// The number of the strongest rule, from 1.
     rule: Option<usize>,
     clamped: bool,
 }
@@ -159,7 +159,7 @@ impl RuleSet {
             value: outcome.value(),
             is_default: matches!(outcome.state, State::Default(_)),
             coverage: outcome.coverage,
-            rule: outcome.dominant,
+            rule: outcome.dominant.map(|rule| rule + 1),
             clamped: outcome.clamped,
         };
         json(&names.zip(&outcomes).map(value).collect::<Vec<_>>())
@@ -200,14 +200,14 @@ impl RuleSet {
         slice::held(&self.mapped(output), &fixed, (x, axes.get(1).copied()))
     }
 
-    /// The cells of a map: all values, then all coverages, then the strongest rules, then whether the value was filled in. For each
+    /// The cells of a map: all values, then all coverages, then the numbers of the strongest rules, then whether the value was filled in. For each
     /// point of the first axis there is one for each of the second. NaN is none.
     pub fn map(&self, view: &View) -> Result<Vec<f64>, JsError> {
         let cells = self.slice(view)?.cells;
-        let index = |rule: Option<usize>| rule.map_or(f64::NAN, |rule| rule as f64);
+        let number = |rule: Option<usize>| rule.map_or(f64::NAN, |rule| rule as f64 + 1.0);
         let values = cells.iter().map(|cell| cell.value.unwrap_or(f64::NAN));
         let coverages = cells.iter().map(|cell| cell.coverage);
-        let rules = cells.iter().map(|cell| index(cell.rule));
+        let rules = cells.iter().map(|cell| number(cell.rule));
         let filled = cells
             .iter()
             .map(|cell| f64::from(u8::from(cell.filled_from.is_some())));

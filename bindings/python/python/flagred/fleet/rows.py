@@ -148,7 +148,7 @@ def _findings(assessment: Assessment, row: dict[str, Any]) -> list[dict[str, Any
                 "side": motor and motor.side,
                 "margin_mean": motor and motor.margin_mean,
                 "margin_min": motor and motor.margin_min,
-                "rule": cause and rules[cause.rule],
+                "rule": cause and rules[cause.rule - 1],
                 "cause": cause and f"{cause.input} IS {cause.term}",
             }
         )

@@ -6,7 +6,7 @@ import pyarrow as pa
 
 __all__ = ["FINDINGS", "FLIGHTS", "KINDS", "MEANINGS", "MONTH_UNKNOWN", "STEPS", "VERSION"]
 
-VERSION = "1"
+VERSION = "2"
 """The version of the tables; it grows when a column changes its meaning or goes."""
 
 KINDS = ("steps", "findings", "flights")
@@ -103,7 +103,7 @@ STEPS = _schema(
     ("elevated_risk_pct", _SMALL, "%", "elevated risk"),
     ("coverage", _SMALL, "1", "how far the rules cover the inputs"),
     ("filled", pa.bool_(), "", "interpolated where no rule applies"),
-    ("dominant_rule", pa.int16(), "", "the rule that fires most, from 0"),
+    ("dominant_rule", pa.int16(), "", "the number of the rule with the largest firing strength, from 1; null where none fires"),
     ("margin", _SMALL, "1", "the margin of the motors"),
     ("spread", _SMALL, "1", "the spread of the motors"),
     ("judged!", pa.bool_(), "", "whether the step counts for the verdict"),
