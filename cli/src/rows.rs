@@ -7,7 +7,6 @@ use flagred::learning::Row;
 use fuzzy::{
     Model,
     check::{Direction, Monotone},
-    diagnostic::Findings,
 };
 
 use crate::{
@@ -217,12 +216,6 @@ pub(crate) fn share(text: &str) -> Result<f64, String> {
     share
         .filter(|share| (0.0..1.0).contains(share))
         .ok_or_else(|| "write a share, at least 0 and less than 1".into())
-}
-
-/// A rule set that cannot be used, with its errors in a line each.
-pub(crate) fn unusable(what: &str, findings: &Findings) -> Failure {
-    let errors = findings.0.iter().map(|finding| finding.message.clone());
-    Failure::unreadable(format!("{what} cannot be used")).details(errors.collect())
 }
 
 /// Rows that cannot be used, as a failure.

@@ -172,7 +172,8 @@ fn shape(variable: &str, width: f64, term: &mut Term, value: &mut Change<'_>) {
 }
 
 /// The two numbers with so many significant digits on either side of a number; one where it has no more itself. A position in a
-/// range of a smaller width is rounded to so many digits of the width.
+/// range of a smaller width is rounded to so many digits of the width. A position near 0 is not rounded more finely than its
+/// range needs: with three digits, to 0.05 % of the width at most.
 pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {
     if value == 0.0 || !value.is_finite() {
         return vec![value];
@@ -181,7 +182,13 @@ pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {
     if width.is_finite() && value.abs() < 1e-9 * width {
         return vec![0.0];
     }
-    let exponent = value.abs().min(width).log10().floor() as i32 - (digits.max(1) as i32 - 1);
+    let digits = digits.max(1) as i32;
+    let of_value = value.abs().min(width).log10().floor() as i32 - (digits - 1);
+    let of_width = (0.5 * width * 10_f64.powi(-digits)).log10().floor() as i32;
+    let exponent = match width.is_finite() {
+        true => of_value.max(of_width),
+        false => of_value,
+    };
     let steps = value / 10_f64.powi(exponent);
     let mut rounded: Vec<f64> = [steps.floor(), steps.ceil()]
         .into_iter()
@@ -193,7 +200,9 @@ pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {
 
 /// So many steps of a power of ten. Through text, so that 0.3 is 0.3 and not 3 times a tenth.
 pub(crate) fn decimal(steps: f64, exponent: i32) -> Option<f64> {
-    format!("{steps:.0}e{exponent}").parse().ok()
+    let parsed: f64 = format!("{steps:.0}e{exponent}").parse().ok()?;
+    // 0 has no sign.
+    Some(parsed + 0.0)
 }
 
 #[cfg(test)]
@@ -210,7 +219,12 @@ mod tests {
         assert_eq!(round(99.7, 2, free), [99.0, 100.0]);
         // A pressure from 950 to 1050.
         assert_eq!(round(1013.27, 3, 100.0), [1013.0, 1014.0]);
-        assert_eq!(round(0.3271, 2, 100.0), [0.32, 0.33]);
+        // Two digits are 0.5 % of the range at most, three are 0.05 %.
+        assert_eq!(round(0.3271, 2, 100.0), [0.3, 0.4]);
+        assert_eq!(round(0.000949, 3, 40.0), [0.0, 0.01]);
+        assert_eq!(round(-0.000949, 3, 40.0), [-0.01, 0.0]);
+        assert_eq!(round(27.46, 3, 40.0), [27.4, 27.5]);
+        assert_eq!(round(0.000949, 3, 0.5), [0.0009, 0.001]);
         assert_eq!(round(-3.1e-15, 2, 100.0), [0.0]);
     }
 }

@@ -42,7 +42,7 @@ pub struct Settings {
     /// Whether constants of an output may leave its range, by the width of the range at most.
     pub beyond_range: bool,
     /// The significant digits of numbers that moved; `None`: all. A position has as many as the width of its range needs:
-    /// three digits of a pressure from 950 to 1050 are 1013.
+    /// three digits of a pressure from 950 to 1050 are 1013. Near 0, three digits are at most 0.05 % of the width.
     pub digits: Option<u32>,
     /// How often the search starts: first at the model, then at random places around it.
     pub starts: u32,

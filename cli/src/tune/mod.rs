@@ -269,13 +269,11 @@ fn failure(name: &str, error: &TuneError) -> Failure {
         }
         _ => "`flagred check` shows what is wrong with the rule set",
     };
-    let message = format!("`{name}`: {error}");
     match error {
-        TuneError::Compile(findings) => rows::unusable(&format!("`{name}`"), findings).help(help),
         TuneError::Unknown { .. } | TuneError::NothingMoves | TuneError::Claim { .. } => {
-            Failure::usage(message).help(help)
+            Failure::usage(format!("`{name}`: {error}")).help(help)
         }
-        _ => Failure::unreadable(message).help(help),
+        _ => Failure::unusable(format!("`{name}`"), error).help(help),
     }
 }
 

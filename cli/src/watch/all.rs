@@ -91,7 +91,7 @@ pub(super) fn run(
     follow(&receiver, &mut fleet, &mut shown, start, stop);
     let now_s = start.elapsed().as_secs_f64();
     let all = fleet.finish(|id, event, session| shown.event(now_s, id, event, session));
-    shown.end(now_s, &all, &fleet)?;
+    shown.end(now_s, &all, &fleet);
     Ok(exit_of(&worst(&all), FailOn::Warn))
 }
 
@@ -297,7 +297,7 @@ impl<'e> Shown<'e> {
     }
 
     /// Leaves the screen, and prints a line for each vehicle.
-    fn end(&mut self, now_s: f64, all: &[Summary], fleet: &Fleet<'_>) -> Result<(), Failure> {
+    fn end(&mut self, now_s: f64, all: &[Summary], fleet: &Fleet<'_>) {
         if self.face == Face::Screen {
             thread::sleep(TICK);
             self.printer.print(screen::LEAVE.to_owned());
@@ -344,7 +344,6 @@ impl<'e> Shown<'e> {
             _ => lines::words(now_s, &format!("{worst} at worst of {vehicles} vehicles")),
         };
         self.printer.print(text);
-        Ok(())
     }
 }
 

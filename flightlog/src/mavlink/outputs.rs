@@ -22,14 +22,21 @@ pub(crate) struct KnownOutputs {
     pub(crate) assumed: Vec<String>,
 }
 
+/// How many motors the vehicle has, where it reported that.
+pub(super) fn motors_expected(
+    parameters: &Parameters,
+    vehicle: &Vehicle,
+    is_px4: bool,
+) -> Option<u16> {
+    let rotors = is_px4.then(|| px4::rotor_count(parameters)).flatten();
+    rotors.or(vehicle.motors)
+}
+
 impl KnownOutputs {
     /// Without parameters that name them the motors are the first outputs, as many as the type of vehicle has. Limits that
     /// are not known are those of a vehicle on which nobody changed them.
     pub(crate) fn of(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Self {
-        let expected = match is_px4 {
-            true => px4::rotor_count(parameters).or(vehicle.motors),
-            false => vehicle.motors,
-        };
+        let expected = motors_expected(parameters, vehicle, is_px4);
         let (motors, first_outputs) = match is_px4 {
             true => motors_of_px4(parameters, expected),
             false => (

@@ -1,11 +1,11 @@
 //! Which outputs drive the motors of a live vehicle and what their limits are, from the parameters it told; and which
 //! parameters those are.
 
-use super::outputs::KnownOutputs;
+use super::outputs::{KnownOutputs, motors_expected};
 use super::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
 use super::telemetry::Pulses;
 use crate::outputs::LONGEST_PULSE_US;
-use crate::{Geometry, Motor, Range, Vehicle, ardupilot, geometry, parameters::Parameters, px4};
+use crate::{Geometry, Motor, Range, Vehicle, ardupilot, geometry, parameters::Parameters};
 
 /// What an output that is not driven, or not known, reads.
 const NO_PULSE: [u16; 2] = [0, u16::MAX];
@@ -159,7 +159,7 @@ fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String
 fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     let motors = px4_motors(parameters);
     let count = "CA_ROTOR_COUNT".to_owned();
-    let expected = px4::rotor_count(parameters).or(vehicle.motors);
+    let expected = motors_expected(parameters, vehicle, true);
     let all = expected.map_or(usize::MAX, usize::from);
     let ends = ["MIN", "MAX"];
     let Some((_, output)) = motors.first().filter(|_| motors.len() >= all) else {
