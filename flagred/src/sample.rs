@@ -25,7 +25,7 @@ pub struct Update {
     pub risk: Result<Estimate, Unknown>,
     /// The elevated risk in %; `None` where the risk is unknown.
     pub elevated_risk_pct: Option<f64>,
-    /// The level. Where the risk is unknown it is an alarm that stands, or `None`: never [`Level::Good`].
+    /// The level. Where a risk of the profile is unknown it is an alarm that stands, or `None`: never [`Level::Good`].
     pub level: Option<Level>,
     /// The new level where this sample changed it and it is known.
     pub change: Option<Level>,

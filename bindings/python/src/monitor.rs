@@ -29,7 +29,7 @@ pub(crate) struct Update {
     unknown: Option<String>,
     /// The elevated risk in %; None where the risk is unknown.
     elevated_risk: Option<f64>,
-    /// ``GOOD``, ``INFO``, ``WARN`` or ``FAIL``; None on the ground and where the risk has been unknown for long.
+    /// ``GOOD``, ``INFO``, ``WARN`` or ``FAIL``; None on the ground and where a risk is unknown, unless an alarm stands.
     level: Option<String>,
     /// The new level where this sample changed it.
     change: Option<String>,

@@ -30,7 +30,7 @@ def test_fewer_rules_say_the_same(fan):
     before = fan.copy()
     found = flagred.simplify(fan)
     assert fan == before
-    assert (found.rules, found.dropped, found.inputs) == ([[0], [1], [2, 3]], [], [])
+    assert (found.rules, found.dropped, found.inputs) == ([[1], [2], [3, 4]], [], [])
     heat, damp = np.linspace(0, 40, 50), np.linspace(9, 0, 50)
     assert np.allclose(found.model(heat, damp), fan(heat, damp), atol=1e-11)
 

@@ -393,6 +393,39 @@ mod tests {
     }
 
     #[test]
+    fn an_output_depends_on_what_its_rules_lines_outputs_and_blocks_read() {
+        let variables = "
+fuzzy: 1
+name: parts
+inputs:
+  a: {range: [0, 1], partition: [low, high]}
+  b: {range: [0, 1], partition: [low, high]}
+  c: {range: [0, 1], partition: [low, high]}
+outputs:
+  x: {range: [0, 1], partition: [low, high]}
+  y: {range: [0, 9], terms: {line: {linear: {b: 2, constant: 1}}}, defuzzifier: weighted_average}
+  z: {range: [0, 1], partition: [low, high]}
+";
+        let rules =
+            "[IF a IS low THEN x IS low, IF x IS low THEN y IS line, IF c IS low THEN z IS low]";
+        let inputs_of = |text: String| {
+            let model: Model = text.parse().unwrap();
+            ["x", "y", "z"].map(|output| model.inputs_of(output).concat())
+        };
+        let plain = inputs_of(format!("{variables}rules: {rules}\n"));
+        assert_eq!(plain, ["a", "ab", "c"]);
+        // Which of the rules fire depends on all of them.
+        let rules = "[IF a IS low THEN x IS low, IF c IS low THEN z IS low]";
+        let selected = inputs_of(format!(
+            "{variables}activation: {{first: 1}}\nrules: {rules}\n"
+        ));
+        assert_eq!(selected, ["ac", "b", "ac"]);
+        let unknown = format!("{variables}rules: {rules}\n");
+        let model: Model = unknown.parse().unwrap();
+        assert!(model.inputs_of("nothing").is_empty());
+    }
+
+    #[test]
     fn every_circle_is_found_once() {
         assert_eq!(order(&reads(&[&[0]])), Err(vec![vec![0]]));
         // 0 reads a circle but is on none; 3 and 4 are a second circle.
