@@ -38,6 +38,16 @@ pub enum ReadError {
         /// What it looks like, such as `a PNG picture`.
         what: String,
     },
+    /// The log contradicts the range of motor outputs that was given for it.
+    #[error("`{path}` {problem}")]
+    Range {
+        /// The path as the user gave it.
+        path: String,
+        /// What contradicts it.
+        problem: String,
+        /// What to do about it.
+        help: &'static str,
+    },
     /// A flight CSV has columns or header values that cannot be used.
     #[error("`{path}`, line {line}: {problem}")]
     Csv {
@@ -75,6 +85,7 @@ impl ReadError {
                 "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",
             ),
             Self::Csv { help, .. } => Some(help),
+            Self::Range { help, .. } => Some(help),
         }
     }
 
@@ -91,6 +102,7 @@ impl ReadError {
             Self::Io { path, .. }
             | Self::Empty { path }
             | Self::NotALog { path, .. }
+            | Self::Range { path, .. }
             | Self::Csv { path, .. } => name.clone_into(path),
         }
         self

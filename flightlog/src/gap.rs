@@ -110,10 +110,10 @@ impl Gap {
             },
             Self::NoRange { format } => match format {
                 DataFlash | DataFlashText => {
-                    "log from boot, so that MOT_PWM_MIN/MAX or RC3_MIN/MAX are in the log"
+                    "log from boot, so that MOT_PWM_MIN/MAX or RC3_MIN/MAX are in the log, or give the range of the outputs: `flagred assess --range LOW HIGH`"
                 }
                 ULog => {
-                    "the limits are not among the parameters of the log (PWM_MAIN_MIN/MAX, or those of single outputs): convert it to flight CSV and add `# pwm_low_us:` and `# pwm_high_us:`"
+                    "the limits are not among the parameters of the log (PWM_MAIN_MIN/MAX, or those of single outputs): give the range of the outputs, `flagred assess --range LOW HIGH`"
                 }
                 Tlog => {
                     "let the ground station load all parameters while it records, or use the log on the vehicle"

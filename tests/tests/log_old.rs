@@ -156,6 +156,7 @@ fn the_report_is_the_same_whatever_is_kept() {
         let all = read(bytes);
         let none = Options {
             signals: Some(Vec::new()),
+            ..Options::default()
         };
         let few = flightlog::read(bytes, &none).unwrap();
         assert!(all.report.bad_messages > 1 && all.signals().count() > 0);

@@ -4,7 +4,7 @@
 use super::servo::{bank, field, px4_motors};
 use crate::geometry::Declared;
 use crate::parameters::Parameters;
-use crate::{Motor, Range, Vehicle, ardupilot, px4};
+use crate::{Motor, PulseRange, Range, Vehicle, ardupilot, px4};
 
 /// What parameters tell of motors and of the range of their commands.
 pub(crate) struct KnownOutputs {
@@ -24,8 +24,13 @@ pub(crate) struct KnownOutputs {
 
 impl KnownOutputs {
     /// Without parameters that name them the motors are the first outputs, as many as the type of vehicle has. Limits that
-    /// are not known are those of a vehicle on which nobody changed them.
-    pub(crate) fn of(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Self {
+    /// are not known are those `given` by the user, else those of a vehicle on which nobody changed them.
+    pub(crate) fn of(
+        parameters: &Parameters,
+        vehicle: &Vehicle,
+        is_px4: bool,
+        given: Option<PulseRange>,
+    ) -> Self {
         let expected = match is_px4 {
             true => px4::rotor_count(parameters).or(vehicle.motors),
             false => vehicle.motors,
@@ -49,9 +54,15 @@ impl KnownOutputs {
             let count = motors.len();
             assumed.push(format!("motors 1 to {count} on outputs 1 to {count}"));
         }
-        let range = known_range.unwrap_or_else(|| {
-            assumed.push("commands from 1000 to 2000 us".to_owned());
-            assumed_range(1000.0, 2000.0, "us")
+        let range = known_range.unwrap_or_else(|| match given {
+            Some(given) => {
+                assumed.push(given.assumed());
+                given.range()
+            }
+            None => {
+                assumed.push("commands from 1000 to 2000 us".to_owned());
+                assumed_range(1000.0, 2000.0, "us")
+            }
         });
         let is_effective_assumed = !is_px4 && !ardupilot::has_limits(parameters);
         let effective = match (is_px4, is_effective_assumed) {

@@ -341,7 +341,8 @@ impl<'o> Collector<'o> {
             let hardware = &self.hardware;
             let indices = found.iter().map(|(_, index)| *index);
             flight.commands = outputs.commands(indices, f64::from);
-            flight.range = px4::output_range(&self.parameters, instance, first, extremes, hardware);
+            let own = px4::output_range(&self.parameters, instance, first, extremes, hardware);
+            flight.range = self.options.range_or_given(own);
             flight.motors = found.into_iter().map(|(motor, _)| motor).collect();
             return;
         }
