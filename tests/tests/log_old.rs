@@ -165,3 +165,29 @@ fn the_report_is_the_same_whatever_is_kept() {
         assert_eq!(few.signals().count(), 0);
     }
 }
+
+/// ArduCopter 3.1 describes MOT messages in every log, and writes them where bit 10 of LOG_BITMASK is set.
+#[test]
+fn motors_that_were_not_logged_are_told_by_the_bitmask() {
+    let gap = |mask: f64| {
+        let mut log = DataFlash::new();
+        log.define(129, "PARM", "Nf", "Name,Value");
+        log.define(131, "MSG", "Z", "Message");
+        log.define(11, "MOT", "hhhh", "Mot1,Mot2,Mot3,Mot4");
+        log.define(130, "ATT", "Ic", "TimeMS,Roll");
+        log.write("MSG", ["ArduCopter V3.1 (5c6503e2)".into()]);
+        log.write("PARM", ["LOG_BITMASK".into(), mask.into()]);
+        log.write("ATT", [1000.0.into(), 0.0.into()]);
+        let gap = read(&log.bytes).gaps().remove(0);
+        (gap.to_string(), gap.help().unwrap())
+    };
+    let (reason, help) = gap(830.0);
+    assert!(
+        reason.ends_with("not in the log: LOG_BITMASK is 830, without bit 10"),
+        "{reason}"
+    );
+    assert!(help.starts_with("add 1024 to LOG_BITMASK"), "{help}");
+    let (reason, help) = gap(1854.0);
+    assert!(reason.ends_with("not in the log"), "{reason}");
+    assert!(help.contains("is set"), "{help}");
+}
