@@ -145,7 +145,7 @@ class Flight(FlightData):
 
     @property
     def assumed(self) -> tuple[str, ...]:
-        """What is assumed of motors and ranges because the log does not report it."""
+        """What is assumed of motors, their commands and ranges because the log does not report it."""
         return tuple(self._data["assumed"])
 
     @cached_property
