@@ -123,6 +123,12 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
                 path: UNNAMED.into(),
             });
         }
+        Content::Sdlog2 => {
+            return Err(ReadError::NotRead {
+                path: UNNAMED.into(),
+                what: error::SDLOG2.into(),
+            });
+        }
         Content::Other(what) => {
             return Err(ReadError::NotALog {
                 path: UNNAMED.into(),
@@ -159,6 +165,7 @@ enum Content {
     Tlog,
     Csv,
     Empty,
+    Sdlog2,
     Other(&'static str),
 }
 
@@ -193,7 +200,7 @@ fn sniff(start: &[u8]) -> Content {
     if dataflash::looks_like(start) {
         // PX4 before ULog logged in the same encoding, with messages of its own.
         return match start.windows(SDLOG2.len()).any(|bytes| bytes == SDLOG2) {
-            true => Content::Other(error::SDLOG2),
+            true => Content::Sdlog2,
             false => Content::DataFlash,
         };
     }

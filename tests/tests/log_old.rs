@@ -135,7 +135,7 @@ fn a_log_of_px4_before_ulog_is_told_as_what_it_is() {
     log.define(2, "ATT", "ffff", "qw,qx,qy,qz");
     log.write("TIME", [1e6.into()]);
     let error = flightlog::read(&log.bytes[..], &Options::default()).unwrap_err();
-    assert!(matches!(error, ReadError::NotALog { .. }));
+    assert!(matches!(error, ReadError::NotRead { .. }));
     assert!(error.to_string().contains("sdlog2"), "{error}");
     assert!(error.help().unwrap().contains("ULog"));
 }
