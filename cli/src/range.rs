@@ -7,7 +7,7 @@ use crate::failure::Failure;
 #[derive(clap::Args)]
 pub(crate) struct RangeArgument {
     /// Range of the motor outputs in us, where a log or the vehicle does not report it: `--range 1100 1900`
-    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"])]
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = clap::value_parser!(u16).range(500..=2500))]
     range: Option<Vec<u16>>,
 }
 
