@@ -8,7 +8,7 @@ use flagred::{
     log::assess,
     verdict::Level,
 };
-use flightlog::{Flight, ReadError};
+use flightlog::{Flight, Options, ReadError};
 
 use report::{
     document,
@@ -20,6 +20,7 @@ use crate::{
     failure::{Exit, Failure},
     output::{self, Files, Output, Stdout},
     parallel, profile,
+    range::RangeArgument,
 };
 
 #[derive(clap::Args)]
@@ -31,6 +32,9 @@ pub(crate) struct Arguments {
     /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-battery`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
+
+    #[command(flatten)]
+    range: RangeArgument,
 
     /// Print a JSON document instead of text
     #[arg(long, conflicts_with = "csv")]
@@ -93,7 +97,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let html = files.optional(arguments.html.as_ref())?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let reports = html.is_some() || svg.is_some();
-    let options = report::options(estimator, reports);
+    let options = Options {
+        range: arguments.range.given()?,
+        ..report::options(estimator, reports)
+    };
     let mut subjects = Vec::new();
     let documents: Vec<&Output> = html.iter().chain(&svg).collect();
     let mut out = Stdout::beside(&documents);

@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use flightlog::Options;
-
 use crate::{
     failure::{Exit, Failure},
     output::{self, Files, Replace},
+    range::RangeArgument,
 };
 
 #[derive(clap::Args)]
@@ -18,13 +17,17 @@ pub(crate) struct Arguments {
     /// The CSV file to write; `-` is standard output
     #[arg(short, long, value_name = "FILE", value_parser = output::csv_path)]
     output: PathBuf,
+
+    #[command(flatten)]
+    range: RangeArgument,
 }
 
 /// Writes the motor commands and signals of a log; warns where the log is damaged.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let options = arguments.range.options()?;
     let mut files = Files::reading([&arguments.log])?;
     let output = files.output(&arguments.output, Replace::Yes)?;
-    let flight = flightlog::open(&arguments.log, &Options::default())?;
+    let flight = flightlog::open(&arguments.log, &options)?;
     output.write_with(|out| report::table::write_flight(out, &flight))?;
     for warning in report::words::conversion(&arguments.log.display().to_string(), &flight) {
         output::say(&format!("warning: {warning}"));

@@ -33,6 +33,7 @@ mod parallel;
 mod plot;
 mod profile;
 mod provenance;
+mod range;
 mod rows;
 mod rule_set;
 mod schema;

@@ -178,6 +178,7 @@ pub fn complete_options(names: &[&str]) -> Options {
     let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
     Options {
         signals: Some(wanted.collect()),
+        ..Options::default()
     }
 }
 

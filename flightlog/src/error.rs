@@ -38,6 +38,24 @@ pub enum ReadError {
         /// What it looks like, such as `a PNG picture`.
         what: String,
     },
+    /// The file is a flight log in a format that is not read.
+    #[error("`{path}` is {what}, a format that is not read")]
+    NotRead {
+        /// The path as the user gave it.
+        path: String,
+        /// What it is.
+        what: String,
+    },
+    /// The log contradicts the range of motor outputs that was given for it.
+    #[error("`{path}` {problem}")]
+    Range {
+        /// The path as the user gave it.
+        path: String,
+        /// What contradicts it.
+        problem: String,
+        /// What to do about it.
+        help: &'static str,
+    },
     /// A flight CSV has columns or header values that cannot be used.
     #[error("`{path}`, line {line}: {problem}")]
     Csv {
@@ -65,8 +83,8 @@ impl ReadError {
             Self::NotALog { what, .. } if what.contains("git-lfs") => {
                 Some("fetch the log itself with `git lfs pull`")
             }
-            Self::NotALog { what, .. } if what == SDLOG2 => Some(
-                "PX4 has logged as ULog (.ulg) since 2016: export the flight as flight CSV, or log it again with newer firmware",
+            Self::NotRead { .. } => Some(
+                "it cannot be converted to ULog: write a flight CSV (docs/flight-csv.md) of its OUT0 messages, or fly with PX4 1.4 or newer, which logs as ULog (.ulg)",
             ),
             Self::NotALog { what, .. } if what == TEXT => Some(
                 "a flight CSV begins with the names of its columns, commas between them: `t_s`, and `pwm1` or `motor1` and so on; a text log of ArduPilot begins with `FMT` lines",
@@ -75,6 +93,7 @@ impl ReadError {
                 "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",
             ),
             Self::Csv { help, .. } => Some(help),
+            Self::Range { help, .. } => Some(help),
         }
     }
 
@@ -91,6 +110,8 @@ impl ReadError {
             Self::Io { path, .. }
             | Self::Empty { path }
             | Self::NotALog { path, .. }
+            | Self::NotRead { path, .. }
+            | Self::Range { path, .. }
             | Self::Csv { path, .. } => name.clone_into(path),
         }
         self
@@ -98,7 +119,7 @@ impl ReadError {
 }
 
 /// Description of a log in PX4's first format.
-pub(crate) const SDLOG2: &str = "an sdlog2 log of PX4 1.6 or older (.px4log)";
+pub(crate) const SDLOG2: &str = "an sdlog2 log (.px4log) of PX4 before ULog";
 
 /// Description of a text file that is not a log.
 pub(crate) const TEXT: &str = "a text file";

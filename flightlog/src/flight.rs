@@ -179,6 +179,11 @@ impl Commands {
         );
     }
 
+    /// Number of motors.
+    pub(crate) fn motors(&self) -> usize {
+        self.motors
+    }
+
     /// Whether not a single value is known.
     pub(crate) fn are_unknown(&self) -> bool {
         self.raw.iter().all(|raw| raw.is_nan())
@@ -259,8 +264,8 @@ pub struct Flight {
     /// Why the used part counts as the whole range although the log tells limits.
     #[cfg_attr(feature = "serde", serde(rename = "effective_range_doubt"))]
     pub effective_doubt: Option<String>,
-    /// What is assumed of motors and ranges because a telemetry log does not report it, in words; `flagred watch` assumes
-    /// the same of the vehicle. Empty where nothing is.
+    /// What is assumed of motors, their commands and ranges because the log does not report it, in words; `flagred watch`
+    /// assumes the same of the vehicle. Empty where nothing is.
     pub assumed: Vec<String>,
     /// Parameters of the autopilot that motors and ranges rest on, and gains, as far as the log has them.
     pub parameters: Vec<Parameter>,

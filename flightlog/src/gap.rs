@@ -1,9 +1,22 @@
 //! Information that a log lacks.
 
+use crate::parameters::LOG_BITMASK;
 use crate::{Flight, Format, VehicleKind};
 
 /// Rate in rows a second below which a spread over a window means little.
 const SLOWEST_HZ: f64 = 5.0;
+
+/// Whether motor outputs are logged: as RCOU, or as MOT before ArduCopter 3.2.
+fn logs_motors(log_bitmask: u32) -> bool {
+    log_bitmask & (1 << 10) != 0
+}
+
+fn without_motors(log_bitmask: Option<u32>) -> String {
+    let without = log_bitmask.filter(|mask| !logs_motors(*mask));
+    without.map_or(String::new(), |mask| {
+        format!(": LOG_BITMASK is {mask}, without bit 10")
+    })
+}
 
 /// Information that the log lacks: the reason why a value is not available (NA).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -32,10 +45,12 @@ pub enum Gap {
         expected: usize,
     },
     /// Motors are known, but their commands were not logged.
-    #[error("the commands of the motors are not in the log")]
+    #[error("the commands of the motors are not in the log{}", without_motors(*log_bitmask))]
     NoCommands {
         /// The kind of log.
         format: Format,
+        /// `LOG_BITMASK` of ArduPilot, where the log has it.
+        log_bitmask: Option<u32>,
     },
     /// Motor commands were logged, but none of them in the air.
     #[error("no motor command was logged while the vehicle was in the air")]
@@ -100,8 +115,16 @@ impl Gap {
                 }
                 Csv => "name the columns of the motors pwm1.. (us) or motor1.. (0 to 1)",
             },
-            Self::NoCommands { format } => match format {
-                DataFlash | DataFlashText => "set bit 10 (RCOUT) of LOG_BITMASK",
+            Self::NoCommands {
+                format,
+                log_bitmask,
+            } => match format {
+                DataFlash | DataFlashText if log_bitmask.is_some_and(logs_motors) => {
+                    "bit 10 (RCOUT) of LOG_BITMASK is set, so the part of the log with RCOU messages is missing: download it again, or log a flight"
+                }
+                DataFlash | DataFlashText => {
+                    "add 1024 to LOG_BITMASK, bit 10: RCOUT, or MOTORS before ArduCopter 3.2"
+                }
                 ULog => "log actuator_motors, or actuator_outputs before 1.13 (SDLOG_PROFILE)",
                 Tlog => {
                     "let the ground station ask for SERVO_OUTPUT_RAW (ArduPilot: SRx_RC_CHAN), or use the log on the vehicle"
@@ -110,10 +133,10 @@ impl Gap {
             },
             Self::NoRange { format } => match format {
                 DataFlash | DataFlashText => {
-                    "log from boot, so that MOT_PWM_MIN/MAX or RC3_MIN/MAX are in the log"
+                    "log from boot, so that MOT_PWM_MIN/MAX or RC3_MIN/MAX are in the log, or give the range of the outputs: `flagred assess --range LOW HIGH`"
                 }
                 ULog => {
-                    "the limits are not among the parameters of the log (PWM_MAIN_MIN/MAX, or those of single outputs): convert it to flight CSV and add `# pwm_low_us:` and `# pwm_high_us:`"
+                    "the limits are not among the parameters of the log (PWM_MAIN_MIN/MAX, or those of single outputs): give the range of the outputs, `flagred assess --range LOW HIGH`"
                 }
                 Tlog => {
                     "let the ground station load all parameters while it records, or use the log on the vehicle"
@@ -178,7 +201,13 @@ impl Flight {
         if self.motors.is_empty() {
             gaps.push(Gap::NoMotors { format });
         } else if self.commands.is_empty() {
-            gaps.push(Gap::NoCommands { format });
+            let mut parameters = self.parameters.iter();
+            let mask = parameters.find(|parameter| parameter.name == LOG_BITMASK);
+            let log_bitmask = mask.map(|mask| mask.value as i64 as u32);
+            gaps.push(Gap::NoCommands {
+                format,
+                log_bitmask,
+            });
         }
         let numbers = self.motors.iter().map(|motor| motor.number).max();
         let expected = self.vehicle.motors.or(numbers).map(usize::from);

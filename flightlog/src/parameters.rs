@@ -10,6 +10,8 @@ pub(crate) struct Parameters {
     left_out: u64,
 }
 
+/// The parameter of ArduPilot that chooses what is logged.
+pub(crate) const LOG_BITMASK: &str = "LOG_BITMASK";
 /// Parameters that are kept; vehicles have up to about 2,000.
 const MOST: usize = 1 << 14;
 /// Bytes of a name; autopilots allow 16.
@@ -36,7 +38,7 @@ impl Parameters {
     }
 
     /// The parameters that an assessment rests on, where a log or a vehicle told them: range and limits of the motors,
-    /// frame, and the gains of the control loops. `source` is what told them.
+    /// frame, the gains of the control loops, and what is logged. `source` is what told them.
     pub(crate) fn of_motors(&self, source: &str) -> Vec<Parameter> {
         let throttle = format!("RC{}", self.get("RCMAP_THROTTLE").unwrap_or(3.0));
         let kept = self
@@ -81,7 +83,7 @@ pub struct Parameter {
 
 /// Whether a parameter is of the motors or of the loops that command them. What drives which motor is told by the motors.
 fn is_of_motors(name: &str, throttle: &str) -> bool {
-    const BEGINNINGS: [&str; 14] = [
+    const BEGINNINGS: [&str; 15] = [
         "MOT_PWM_",
         "MOT_SPIN_",
         "MOT_THST_",
@@ -96,6 +98,7 @@ fn is_of_motors(name: &str, throttle: &str) -> bool {
         "MC_PITCH",
         "MC_YAW",
         "CA_ROTOR_COUNT",
+        LOG_BITMASK,
     ];
     let begins = |beginning: &&str| name.starts_with(beginning);
     let is_throttle = matches!(name.strip_prefix(throttle), Some("_MIN" | "_MAX"));

@@ -1,6 +1,10 @@
 //! The vehicle by PX4's parameters: its kind, its motors, the range of their
 //! commands.
 
+mod allocation;
+
+pub(crate) use allocation::Allocation;
+
 use crate::mav_type::{MavType, mav_type};
 use crate::parameters::Parameters;
 use crate::{Motor, Range, Vehicle, VehicleKind, identity};
@@ -99,6 +103,22 @@ pub(crate) fn actuator_motors(parameters: &Parameters, used: u16) -> (Vec<Motor>
         source: "actuator_motors is a fraction".into(),
     };
     (motors, range)
+}
+
+/// Motors whose commands are computed from torque and thrust set points, and the range of these.
+pub(crate) fn computed_motors(motors: usize) -> (Vec<Motor>, Range) {
+    let motors = (1..=motors).map(|number| Motor {
+        number: number as u16,
+        output: format!("computed control[{}]", number - 1),
+        source: "vehicle_torque_setpoint, vehicle_thrust_setpoint and CA_ROTORn parameters".into(),
+    });
+    let range = Range {
+        low: 0.0,
+        high: 1.0,
+        unit: "1",
+        source: "computed commands are fractions".into(),
+    };
+    (motors.collect(), range)
 }
 
 /// The motors of an instance of `actuator_outputs`: those that PWM_MAIN_FUNCn or

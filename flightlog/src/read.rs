@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::{self, TEXT, UNNAMED, io_error};
 use crate::input::Input;
-use crate::{Commands, Flight, ReadError, csv, dataflash, geometry, tlog, ulog};
+use crate::{Commands, Flight, PulseRange, Range, ReadError, csv, dataflash, geometry, tlog, ulog};
 
 /// What to read.
 ///
@@ -15,7 +15,7 @@ use crate::{Commands, Flight, ReadError, csv, dataflash, geometry, tlog, ulog};
 /// use flightlog::Options;
 ///
 /// let log = "t_s,motor1,roll_deg,wind_m_s\n0,0.4,0.3,5\n";
-/// let only_wind = Options { signals: Some(vec!["wind_m_s".into()]) };
+/// let only_wind = Options { signals: Some(vec!["wind_m_s".into()]), ..Options::default() };
 /// let flight = flightlog::read(log.as_bytes(), &only_wind)?;
 /// assert!(flight.signal("wind_m_s").is_some() && flight.signal("roll_deg").is_none());
 /// # Ok::<(), flightlog::ReadError>(())
@@ -26,6 +26,10 @@ pub struct Options {
     /// times, modes and messages are always read, and the [`Report`](crate::Report) is the
     /// same whatever is kept.
     pub signals: Option<Vec<String>>,
+    /// Range of the motor outputs of a log that does not report it, such as a telemetry log
+    /// without parameters. [`Flight::assumed`] says that it was given. Reading a log that
+    /// contradicts it is an error: one with a range of its own, or with commands above this one.
+    pub range: Option<PulseRange>,
 }
 
 impl Options {
@@ -34,6 +38,11 @@ impl Options {
         self.signals
             .as_ref()
             .is_none_or(|names| names.iter().any(|wanted| wanted == name))
+    }
+
+    /// The range of motor outputs: that of the log, else the given one.
+    pub(crate) fn range_or_given(&self, own: Option<Range>) -> Option<Range> {
+        own.or_else(|| self.range.map(PulseRange::range))
     }
 
     /// Whether the signal `name` is to be read: to be kept, or for the geometry.
@@ -114,6 +123,12 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
                 path: UNNAMED.into(),
             });
         }
+        Content::Sdlog2 => {
+            return Err(ReadError::NotRead {
+                path: UNNAMED.into(),
+                what: error::SDLOG2.into(),
+            });
+        }
         Content::Other(what) => {
             return Err(ReadError::NotALog {
                 path: UNNAMED.into(),
@@ -121,6 +136,9 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
             });
         }
     };
+    if let Some(given) = options.range {
+        given.apply(&mut flight)?;
+    }
     flight.in_air = flight
         .in_air
         .map(|in_air| in_air.joined(SHORTEST_LANDING_S));
@@ -147,6 +165,7 @@ enum Content {
     Tlog,
     Csv,
     Empty,
+    Sdlog2,
     Other(&'static str),
 }
 
@@ -181,7 +200,7 @@ fn sniff(start: &[u8]) -> Content {
     if dataflash::looks_like(start) {
         // PX4 before ULog logged in the same encoding, with messages of its own.
         return match start.windows(SDLOG2.len()).any(|bytes| bytes == SDLOG2) {
-            true => Content::Other(error::SDLOG2),
+            true => Content::Sdlog2,
             false => Content::DataFlash,
         };
     }

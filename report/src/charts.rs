@@ -35,6 +35,7 @@ pub fn options(estimator: &Estimator, drawn: bool) -> Options {
     signals.sort_unstable();
     Options {
         signals: Some(signals),
+        ..Options::default()
     }
 }
 

@@ -125,6 +125,7 @@ pub fn flights(data: &Path) -> Vec<Simulated> {
 fn read(path: &Path) -> Simulated {
     let options = flightlog::Options {
         signals: Some(ATTITUDE.map(str::to_owned).to_vec()),
+        ..flightlog::Options::default()
     };
     let flight = flightlog::open(path, &options).unwrap();
     let said = |key: &str| {

@@ -377,7 +377,14 @@ impl StandIn {
 /// Where it cannot be read.
 pub fn flight(log: &Path) -> Flight {
     let signals = Some(Vec::new());
-    flightlog::open(log, &flightlog::Options { signals }).unwrap()
+    flightlog::open(
+        log,
+        &flightlog::Options {
+            signals,
+            ..flightlog::Options::default()
+        },
+    )
+    .unwrap()
 }
 
 fn output(name: &str) -> usize {

@@ -2,7 +2,11 @@
 
 use std::{fs, path::Path, process::Output};
 
-use flagred_tests::{Folder, STEADY, flagred, reference_data};
+use flagred_tests::{
+    Folder, STEADY, flagred,
+    log_writer::{HEARTBEAT, SERVO_OUTPUT_RAW, Tlog},
+    reference_data,
+};
 use serde_json::Value;
 
 fn assess(arguments: &[&str]) -> Output {
@@ -297,4 +301,108 @@ fn the_simulated_flights_are_all_assessed() {
             "{name}: {assessed_s} of {in_air_s} s"
         );
     }
+}
+
+/// 20 s of a hovering quadrotor without any parameter, with pulses from 1490 to `to_us`.
+fn tlog_without_parameters(to_us: u16) -> Vec<u8> {
+    let mut log = Tlog::default();
+    for row in 0..500_u32 {
+        let stamp_us = 1_700_000_000_000_000 + 40_000 * u64::from(row);
+        if row % 25 == 0 {
+            log.packet(
+                stamp_us,
+                2,
+                (1, 1),
+                HEARTBEAT,
+                &[0, 0, 0, 0, 2, 3, 128, 4, 3],
+            );
+        }
+        let mut servos = (1_000_000 + 40_000 * row).to_le_bytes().to_vec();
+        for motor in 0..8_u16 {
+            let sway = ((row as u16 + 3 * motor) * 7) % 20;
+            let pulse_us = match motor {
+                0 if row == 250 => to_us,
+                0..4 => 1490 + sway,
+                _ => 0,
+            };
+            servos.extend(pulse_us.to_le_bytes());
+        }
+        servos.push(0);
+        log.packet(stamp_us, 2, (1, 1), SERVO_OUTPUT_RAW, &servos);
+    }
+    log.bytes
+}
+
+#[test]
+fn a_given_range_replaces_the_assumed_one_and_no_other() {
+    let folder = Folder::new();
+    let log = folder.file("flight.tlog", tlog_without_parameters(1510));
+    let range = |arguments: &[&str]| {
+        let output = assess(&[arguments, &["--json", log.as_str()]].concat());
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let vehicle = &document["vehicle"];
+        (vehicle["range"].clone(), vehicle["assumed"].to_string())
+    };
+    let (assumed, words) = range(&[]);
+    assert_eq!(
+        (&assumed["low"], &assumed["high"]),
+        (&1000.0.into(), &2000.0.into())
+    );
+    assert!(words.contains("commands from 1000 to 2000 us"), "{words}");
+    let (given, words) = range(&["--range", "1100", "1900"]);
+    assert_eq!(
+        (&given["low"], &given["high"]),
+        (&1100.0.into(), &1900.0.into())
+    );
+    assert!(
+        words.contains("commands from 1100 to 1900 us, given by the user"),
+        "{words}"
+    );
+    assert!(words.contains("effective range 0.15 to 0.95"), "{words}");
+
+    let refused = |log: &str, range: [&str; 2], code: i32, why: &str| {
+        let output = assess(&["--range", range[0], range[1], log]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{error}");
+        assert!(error.contains(why), "{error}");
+    };
+    let log = log.as_str();
+    refused(
+        log,
+        ["1900", "1100"],
+        2,
+        "expected two pulse widths from 500 to 2500 us",
+    );
+    refused(log, ["100", "1900"], 2, "100 is not in 500..=2500");
+    refused(
+        STEADY,
+        ["1100", "1900"],
+        3,
+        "has a range of its own, 1000 to 2000 us (MOT_PWM_MIN/MAX)",
+    );
+    refused(
+        log,
+        ["1000", "1400"],
+        3,
+        "has motor commands up to 1510 us, above the given range",
+    );
+}
+
+#[test]
+fn what_was_given_as_the_range_is_still_said_of_the_converted_log() {
+    let folder = Folder::new();
+    let log = folder.file("flight.tlog", tlog_without_parameters(1510));
+    let csv = folder.at("flight.csv");
+    let paths = [log.as_str(), &csv];
+    let arguments = [
+        "convert", "--range", "1100", "1900", paths[0], "-o", paths[1],
+    ];
+    let output = flagred().args(arguments).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let output = assess(&[paths[1]]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("1100 to 1900 us, given by the user"),
+        "{text}"
+    );
 }

@@ -135,7 +135,7 @@ fn a_log_of_px4_before_ulog_is_told_as_what_it_is() {
     log.define(2, "ATT", "ffff", "qw,qx,qy,qz");
     log.write("TIME", [1e6.into()]);
     let error = flightlog::read(&log.bytes[..], &Options::default()).unwrap_err();
-    assert!(matches!(error, ReadError::NotALog { .. }));
+    assert!(matches!(error, ReadError::NotRead { .. }));
     assert!(error.to_string().contains("sdlog2"), "{error}");
     assert!(error.help().unwrap().contains("ULog"));
 }
@@ -156,6 +156,7 @@ fn the_report_is_the_same_whatever_is_kept() {
         let all = read(bytes);
         let none = Options {
             signals: Some(Vec::new()),
+            ..Options::default()
         };
         let few = flightlog::read(bytes, &none).unwrap();
         assert!(all.report.bad_messages > 1 && all.signals().count() > 0);
@@ -163,4 +164,74 @@ fn the_report_is_the_same_whatever_is_kept() {
         assert_eq!(few.commands, all.commands);
         assert_eq!(few.signals().count(), 0);
     }
+}
+
+/// ArduCopter 3.1 describes MOT messages in every log, and writes them where bit 10 of LOG_BITMASK is set.
+#[test]
+fn motors_that_were_not_logged_are_told_by_the_bitmask() {
+    let gap = |mask: f64| {
+        let mut log = DataFlash::new();
+        log.define(129, "PARM", "Nf", "Name,Value");
+        log.define(131, "MSG", "Z", "Message");
+        log.define(11, "MOT", "hhhh", "Mot1,Mot2,Mot3,Mot4");
+        log.define(130, "ATT", "Ic", "TimeMS,Roll");
+        log.write("MSG", ["ArduCopter V3.1 (5c6503e2)".into()]);
+        log.write("PARM", ["LOG_BITMASK".into(), mask.into()]);
+        log.write("ATT", [1000.0.into(), 0.0.into()]);
+        let gap = read(&log.bytes).gaps().remove(0);
+        (gap.to_string(), gap.help().unwrap())
+    };
+    let (reason, help) = gap(830.0);
+    assert!(
+        reason.ends_with("not in the log: LOG_BITMASK is 830, without bit 10"),
+        "{reason}"
+    );
+    assert!(help.starts_with("add 1024 to LOG_BITMASK"), "{help}");
+    let (reason, help) = gap(1854.0);
+    assert!(reason.ends_with("not in the log"), "{reason}");
+    assert!(help.contains("is set"), "{help}");
+}
+
+/// A quadrotor of PX4 1.14 or later, of which set points are logged, but neither motors nor outputs.
+#[test]
+fn motor_commands_of_px4_are_computed_from_set_points() {
+    let mut log = ULog::new(1_000_000);
+    for topic in ["vehicle_torque_setpoint", "vehicle_thrust_setpoint"] {
+        log.define(&format!("{topic}:uint64_t timestamp;float[3] xyz;"));
+    }
+    let rotors = [
+        (0.15, 0.15, 0.05),
+        (-0.15, -0.15, 0.05),
+        (0.15, -0.15, -0.05),
+        (-0.15, 0.15, -0.05),
+    ];
+    for (name, value) in [("MAV_TYPE", 2.0), ("CA_ROTOR_COUNT", 4.0)] {
+        log.parameter(name, value);
+    }
+    for (rotor, (x, y, km)) in rotors.into_iter().enumerate() {
+        for (name, value) in [("PX", x), ("PY", y), ("KM", km)] {
+            log.parameter(&format!("CA_ROTOR{rotor}_{name}"), value);
+        }
+    }
+    log.announce(0, 1, "vehicle_torque_setpoint");
+    log.announce(0, 2, "vehicle_thrust_setpoint");
+    for row in 0..50_u64 {
+        let time_us = 1_000_000 + 20_000 * row;
+        // The last thrust is too old for the last torques.
+        if row < 40 {
+            log.floats(2, time_us, &[0.0, 0.0, -0.5]);
+        }
+        log.floats(1, time_us + 1, &[0.1, 0.0, 0.0]);
+    }
+    let flight = read(&log.bytes);
+    assert_eq!(flight.range.as_ref().unwrap().unit, "1");
+    assert_eq!(flight.assumed.len(), 1);
+    assert_eq!(flight.geometry.unwrap().factors.len(), 4);
+    let rows: Vec<(f64, &[f64])> = flight.commands.rows().collect();
+    assert_eq!(rows.len(), 50);
+    let expected = [0.4293, 0.5707, 0.5707, 0.4293];
+    for (command, expected) in rows[10].1.iter().zip(expected) {
+        assert!((command - expected).abs() < 1e-4, "{command} {expected}");
+    }
+    assert!(rows[49].1.iter().all(|command| command.is_nan()));
 }

@@ -398,3 +398,61 @@ fn flight_csv_series_are_read_whole() {
     assert!((flight.command_rate_hz().unwrap() - 25.0).abs() < 1e-6);
     flight.statistics().unwrap();
 }
+
+/// Commands computed from torque and thrust set points, against those that PX4 recorded: the topics of motors get other
+/// names in a copy of the log.
+#[test]
+#[ignore = "needs FLAGRED_SHARED, the folder with reference data"]
+fn computed_motor_commands_are_those_of_px4() {
+    let data = reference_data();
+    for log in [
+        "logs/px_events.ulg",
+        "logs/px_quadlocal.ulg",
+        "px4sim/m1.ulg.gz",
+        "px4sim/p1.ulg.gz",
+    ] {
+        let mut bytes = std::fs::read(data.join(log)).unwrap();
+        if log.ends_with(".gz") {
+            let mut unpacked = Vec::new();
+            GzDecoder::new(&bytes[..])
+                .read_to_end(&mut unpacked)
+                .unwrap();
+            bytes = unpacked;
+        }
+        let recorded = flightlog::read(&bytes[..], &Options::default()).unwrap();
+        for topic in [&b"actuator_motors"[..], b"actuator_outputs"] {
+            let found = bytes.windows(topic.len()).enumerate();
+            let places = found.filter(|(_, bytes)| *bytes == topic);
+            for at in places.map(|(at, _)| at).collect::<Vec<_>>() {
+                bytes[at] = b'x';
+            }
+        }
+        let computed = flightlog::read(&bytes[..], &Options::default()).unwrap();
+        assert_eq!(computed.motors.len(), recorded.motors.len());
+        assert!(computed.assumed[0].contains("set points"), "{log}");
+        let mut rows = computed.commands.rows().peekable();
+        let mut latest = None;
+        let mut errors = Vec::new();
+        for (t_s, row) in recorded.commands.rows() {
+            while let Some(next) = rows.next_if(|(next_s, _)| *next_s <= t_s) {
+                latest = Some(next.1);
+            }
+            // PX4 stops a motor that failed, which no set point shows.
+            let is_driven = row.iter().all(|&command| command > 0.0);
+            if is_driven
+                && recorded.is_in_air(t_s) == Some(true)
+                && let Some(latest) = latest
+            {
+                errors.extend(row.iter().zip(latest).map(|(a, b)| (a - b).abs()));
+            }
+        }
+        errors.sort_by(f64::total_cmp);
+        let share = |share: f64| errors[(share * (errors.len() - 1) as f64) as usize];
+        let (median, most) = (share(0.5), share(0.99));
+        eprintln!(
+            "{log}: {} commands, median {median:.4}, 99 % {most:.4}",
+            errors.len()
+        );
+        assert!(median < 0.005 && most < 0.05, "{log}: {median} {most}");
+    }
+}

@@ -10,6 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let signals: Vec<String> = arguments.collect();
     let options = flightlog::Options {
         signals: (!signals.is_empty()).then_some(signals),
+        ..flightlog::Options::default()
     };
     let mut flight = None;
     let start_s = cpu_s()?;

@@ -4,9 +4,9 @@ use std::{io, path::PathBuf, sync::Arc};
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
 use arrow_schema::{DataType, Field, Schema};
-use flightlog::{Flight, Options, Series, Signal};
+use flightlog::{Flight, Options, PulseRange, Series, Signal};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
-use pyo3::{prelude::*, types::PyBytes};
+use pyo3::{exceptions::PyValueError, prelude::*, types::PyBytes};
 use serde_json::json;
 
 use crate::{
@@ -82,18 +82,23 @@ impl FlightData {
 #[pymethods]
 impl FlightData {
     #[new]
-    #[pyo3(signature = (source, name, signals = None))]
+    #[pyo3(signature = (source, name, signals = None, range = None))]
     fn new(
         py: Python<'_>,
         source: &Bound<'_, PyAny>,
         name: String,
         signals: Option<Vec<String>>,
+        range: Option<(u16, u16)>,
     ) -> PyResult<Self> {
+        let range = range.map(|(low_us, high_us)| PulseRange::new(low_us, high_us));
+        let range = range.transpose().map_err(|error| {
+            PyValueError::new_err(format!("`range`: {error}; {}", error.help()))
+        })?;
         let source = match source.cast::<PyBytes>() {
             Ok(bytes) => Source::Bytes(bytes.as_bytes().to_vec()),
             Err(_) => Source::Path(source.extract()?),
         };
-        let flight = Arc::new(read(py, source, Options { signals })?);
+        let flight = Arc::new(read(py, source, Options { signals, range })?);
         Ok(FlightData { flight, name })
     }
 

@@ -63,6 +63,22 @@ def test_signals(flight):
     assert len(some.signals) == 0 and some.commands.shape == (1500, 4)
 
 
+def test_a_given_range_is_used_where_the_log_has_none(steady):
+    rows = "".join(f"{i / 50},1500,1510,1490,1500,1\n" for i in range(1000))
+    pulses = ("t_s,pwm1,pwm2,pwm3,pwm4,in_air\n" + rows).encode()
+    flight = flagred.read_log(pulses, range=(1100, 1900))
+    assert (flight.range.low, flight.range.high, flight.range.source) == (1100, 1900, "given by the user")
+    assert flight.assumed == ("commands from 1100 to 1900 us, given by the user",)
+    assert flagred.assess(pulses).verdict == "NA"
+    assert flagred.assess(pulses, range=(1100, 1900)).verdict == "GOOD"
+    with pytest.raises(ValueError, match="expected two pulse widths from 500 to 2500 us"):
+        flagred.read_log(pulses, range=(1900, 1100))
+    with pytest.raises(ValueError, match="`read_log"):
+        flagred.assess(flight, range=(1100, 1900))
+    with pytest.raises(flagred.LogError, match="has a range of its own"):
+        flagred.read_log(steady, range=(1100, 1900))
+
+
 def test_an_assessment_is_that_of_the_command_line(flight):
     assessment = flagred.assess(flight)
     document = json.loads(assessment.to_json())

@@ -5,11 +5,12 @@ pub(crate) mod text;
 
 use std::{io::Write, path::PathBuf};
 
-use flightlog::{Gap, Options};
+use flightlog::Gap;
 
 use crate::{
     failure::{Exit, Failure},
     output::{Files, Stdout},
+    range::RangeArgument,
 };
 
 #[derive(clap::Args)]
@@ -18,6 +19,9 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
 
+    #[command(flatten)]
+    range: RangeArgument,
+
     /// Print a JSON document for each log
     #[arg(long)]
     json: bool,
@@ -25,11 +29,12 @@ pub(crate) struct Arguments {
 
 /// Shows every log in turn; one that cannot be read does not keep the others from being shown.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let options = arguments.range.options()?;
     Files::reading(&arguments.logs)?;
     let mut exit = Exit::Clean;
     for log in &arguments.logs {
         let name = log.display().to_string();
-        let flight = match flightlog::open(log, &Options::default()) {
+        let flight = match flightlog::open(log, &options) {
             Ok(flight) => flight,
             Err(error) => {
                 Failure::from(error).report();

@@ -30,6 +30,7 @@ use crate::{
     assess::{FailOn, exit_of},
     failure::{Exit, Failure},
     profile,
+    range::RangeArgument,
 };
 use endpoint::Endpoint;
 use jsonl::EventLine;
@@ -59,12 +60,15 @@ pub(crate) struct Arguments {
     endpoints: Vec<Endpoint>,
 
     /// Follow every vehicle that is heard on these endpoints, a line each, and only listen
-    #[arg(long, conflicts_with_all = ["record", "send_anyway", "component"])]
+    #[arg(long, conflicts_with_all = ["record", "send_anyway", "component", "range"])]
     all: bool,
 
     /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-battery`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
+
+    #[command(flatten)]
+    range: RangeArgument,
 
     /// Print one JSON object per line instead of text
     #[arg(long)]
@@ -113,6 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::usage(format!("`{other}` is a second endpoint"))
             .help("`--all` follows the vehicles of several endpoints"));
     }
+    let range = arguments.range.given()?;
     let silent = match (arguments.no_send, arguments.all) {
         (_, true) => Some("--all"),
         (true, _) => Some("--no-send"),
@@ -148,7 +153,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             None => sender,
         }
     });
-    let mut session = Session::new(&estimator, sender, arguments.send_anyway);
+    let mut session = Session::new(&estimator, sender, arguments.send_anyway).with_range(range);
     let title = match port.listens_at() {
         Some(address) if matches!(endpoint, Endpoint::UdpIn(_) | Endpoint::TcpIn(_)) => {
             format!("listening at {address}")

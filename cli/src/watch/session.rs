@@ -9,7 +9,10 @@ use flagred::{
     monitor::{Unknown, Update},
     verdict::Level,
 };
-use flightlog::mavlink::{MOTOR_RATE_HZ, News, Packet, Sender, Telemetry, Version, vehicle_of};
+use flightlog::{
+    PulseRange,
+    mavlink::{MOTOR_RATE_HZ, News, Packet, Sender, Telemetry, Version, vehicle_of},
+};
 
 mod event;
 mod history;
@@ -59,6 +62,8 @@ pub(crate) struct Session<'e> {
     unknown_part: Option<Verdict>,
     /// Samples of a flight that are kept at most.
     history: usize,
+    /// The range of motor outputs where the vehicle does not report it.
+    range: Option<PulseRange>,
 }
 
 impl<'e> Session<'e> {
@@ -79,7 +84,13 @@ impl<'e> Session<'e> {
             worst: Verdict::NotAvailable(Reason::NoFlight),
             unknown_part: None,
             history: history::MOST,
+            range: None,
         }
+    }
+
+    /// The same, with the given range of motor outputs where a vehicle does not report its own.
+    pub(crate) fn with_range(self, range: Option<PulseRange>) -> Session<'e> {
+        Session { range, ..self }
     }
 
     /// The same, keeping at most so many samples of a flight while motors and limits are not known for sure.
@@ -289,7 +300,7 @@ impl<'e> Session<'e> {
             let system = tracked.telemetry.system();
             out.events.push(Event::GivenUp { system });
         }
-        let telemetry = Telemetry::new(packet, vehicle.clone());
+        let telemetry = Telemetry::new(packet, vehicle.clone()).with_range(self.range);
         self.tracked = Some(Tracked::new(telemetry, source, now_s, self.history));
         self.candidates.clear();
         self.speech.forget();

@@ -106,6 +106,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     flight.rebooted_in_air_s = rows.rebooted_in_air_s;
     flight.series = preferred(vec![rows.series]);
     let declared = apply_header(&mut flight, header, &layout)?;
+    flight.range = options.range_or_given(flight.range);
     flight.geometry = geometry::find(&flight, &declared);
     Ok(flight)
 }

@@ -292,7 +292,8 @@ impl<'o> Collector<'o> {
         let outputs: Vec<u16>;
         (flight.motors, outputs) = motors.into_iter().unzip();
         flight.parameters = self.parameters.of_motors("PARM");
-        flight.range = ardupilot::pwm_range(&self.parameters);
+        let own = ardupilot::pwm_range(&self.parameters);
+        flight.range = self.options.range_or_given(own);
         flight.commands = self.outputs.commands(&outputs);
         let span_s = self.clock.first_s().zip(self.clock.now_s());
         let left_out = &mut self.report.left_out;

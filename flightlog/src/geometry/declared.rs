@@ -121,12 +121,20 @@ impl Declared {
     }
 }
 
-/// The moments that a unit of command of each rotor makes: `position x axis - KM axis`, times
-/// the thrust coefficient (<https://docs.px4.io/main/en/config/actuators.html>).
+/// Factors by the moments of the rotors.
 fn rotors(parameters: &Parameters) -> Option<Vec<(u16, [f64; 3])>> {
+    let (moments, _): (Vec<[f64; 3]>, Vec<_>) = rotor_effects(parameters)?.into_iter().unzip();
+    let turns = |axis: usize| moments.iter().any(|moment| moment[axis].abs() > 1e-9);
+    // Positions that were never set are all 0.
+    (turns(0) && turns(1)).then(|| (1..).zip(tables::normalised(moments)).collect())
+}
+
+/// The moment that a unit of command of each rotor makes, `position x axis - KM axis`, and its force along the axis,
+/// both times the thrust coefficient (<https://docs.px4.io/main/en/config/actuators.html>).
+pub(crate) fn rotor_effects(parameters: &Parameters) -> Option<Vec<([f64; 3], [f64; 3])>> {
     let count = parameters.get("CA_ROTOR_COUNT")? as u16;
     let coefficients = thrust_coefficients(parameters, count.min(PX4_ROTORS));
-    let moments: Vec<[f64; 3]> = (0..count.min(PX4_ROTORS))
+    (0..count.min(PX4_ROTORS))
         .map(|rotor| {
             let of = |name: &str| parameters.get(&format!("CA_ROTOR{rotor}_{name}"));
             let or = |name: &str, default: f64| of(name).unwrap_or(default);
@@ -138,12 +146,12 @@ fn rotors(parameters: &Parameters) -> Option<Vec<(u16, [f64; 3])>> {
                 pz * ax - px * az - km * ay,
                 px * ay - py * ax - km * az,
             ];
-            Some(moment.map(|part| part * ct))
+            Some((
+                moment.map(|part| part * ct),
+                [ax, ay, az].map(|part| part * ct),
+            ))
         })
-        .collect::<Option<_>>()?;
-    let turns = |axis: usize| moments.iter().any(|moment| moment[axis].abs() > 1e-9);
-    // Positions that were never set are all 0.
-    (turns(0) && turns(1)).then(|| (1..).zip(tables::normalised(moments)).collect())
+        .collect()
 }
 
 /// CA_ROTORn_CT of every rotor. Unless all are known they count as equal, which they are by default: one beside a default

@@ -4,7 +4,7 @@ mod declared;
 pub(crate) mod infer;
 pub(crate) mod tables;
 
-pub(crate) use declared::Declared;
+pub(crate) use declared::{Declared, rotor_effects};
 
 use crate::{Flight, Motor, Series, VehicleKind};
 

@@ -118,6 +118,7 @@ fn the_outputs_of_the_controllers_name_the_layout() {
     };
     let none = Options {
         signals: Some(Vec::new()),
+        ..Options::default()
     };
     let few = crate::read(&log[..], &none).unwrap();
     assert_eq!(few.signals().count(), 0);

@@ -7,7 +7,7 @@ use crate::field::{Kind, NumericField};
 use crate::mav_type::{MavType, mav_type};
 use crate::outputs::LONGEST_PULSE_US;
 use crate::parameters::Parameters;
-use crate::{Vehicle, identity, px4};
+use crate::{PulseRange, Vehicle, identity, px4};
 
 use super::Packet;
 use super::outputs::KnownOutputs;
@@ -288,8 +288,8 @@ impl Decoder {
     }
 
     /// Motors and ranges by the parameters, and what is assumed without them.
-    pub(crate) fn outputs(&self, vehicle: &Vehicle) -> KnownOutputs {
-        KnownOutputs::of(&self.parameters, vehicle, self.is_px4())
+    pub(crate) fn outputs(&self, vehicle: &Vehicle, given: Option<PulseRange>) -> KnownOutputs {
+        KnownOutputs::of(&self.parameters, vehicle, self.is_px4(), given)
     }
 }
 

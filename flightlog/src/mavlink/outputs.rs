@@ -4,7 +4,7 @@
 use super::servo::{bank, field, px4_motors};
 use crate::geometry::Declared;
 use crate::parameters::Parameters;
-use crate::{Motor, Range, Vehicle, ardupilot, px4};
+use crate::{Motor, PulseRange, Range, Vehicle, ardupilot, px4};
 
 /// What parameters tell of motors and of the range of their commands.
 pub(crate) struct KnownOutputs {
@@ -34,8 +34,13 @@ pub(super) fn motors_expected(
 
 impl KnownOutputs {
     /// Without parameters that name them the motors are the first outputs, as many as the type of vehicle has. Limits that
-    /// are not known are those of a vehicle on which nobody changed them.
-    pub(crate) fn of(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Self {
+    /// are not known are those `given` by the user, else those of a vehicle on which nobody changed them.
+    pub(crate) fn of(
+        parameters: &Parameters,
+        vehicle: &Vehicle,
+        is_px4: bool,
+        given: Option<PulseRange>,
+    ) -> Self {
         let expected = motors_expected(parameters, vehicle, is_px4);
         let (motors, first_outputs) = match is_px4 {
             true => motors_of_px4(parameters, expected),
@@ -56,9 +61,15 @@ impl KnownOutputs {
             let count = motors.len();
             assumed.push(format!("motors 1 to {count} on outputs 1 to {count}"));
         }
-        let range = known_range.unwrap_or_else(|| {
-            assumed.push("commands from 1000 to 2000 us".to_owned());
-            assumed_range(1000.0, 2000.0, "us")
+        let range = known_range.unwrap_or_else(|| match given {
+            Some(given) => {
+                assumed.push(given.assumed());
+                given.range()
+            }
+            None => {
+                assumed.push("commands from 1000 to 2000 us".to_owned());
+                assumed_range(1000.0, 2000.0, "us")
+            }
         });
         let is_effective_assumed = !is_px4 && !ardupilot::has_limits(parameters);
         let effective = match (is_px4, is_effective_assumed) {

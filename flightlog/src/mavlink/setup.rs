@@ -5,7 +5,9 @@ use super::outputs::{KnownOutputs, motors_expected};
 use super::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
 use super::telemetry::Pulses;
 use crate::outputs::LONGEST_PULSE_US;
-use crate::{Geometry, Motor, Range, Vehicle, ardupilot, geometry, parameters::Parameters};
+use crate::{
+    Geometry, Motor, PulseRange, Range, Vehicle, ardupilot, geometry, parameters::Parameters,
+};
 
 /// What an output that is not driven, or not known, reads.
 const NO_PULSE: [u16; 2] = [0, u16::MAX];
@@ -38,8 +40,13 @@ pub struct Setup {
 
 impl Setup {
     /// Motors and ranges by what is known, and what is assumed without it.
-    pub(super) fn of(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Setup {
-        let known = KnownOutputs::of(parameters, vehicle, is_px4);
+    pub(super) fn of(
+        parameters: &Parameters,
+        vehicle: &Vehicle,
+        is_px4: bool,
+        given: Option<PulseRange>,
+    ) -> Setup {
+        let known = KnownOutputs::of(parameters, vehicle, is_px4, given);
         let (motors, outputs): (Vec<Motor>, Vec<u16>) = known.motors.into_iter().unzip();
         Setup {
             expected: known.expected.map(usize::from),
@@ -209,7 +216,7 @@ mod tests {
         ]);
         let missing = missing(&known, &vehicle(3), true);
         assert!(missing.iter().all(|name| name.starts_with("CA_ROTOR")));
-        let setup = Setup::of(&known, &vehicle(3), true);
+        let setup = Setup::of(&known, &vehicle(3), true, None);
         assert_eq!(setup.outputs, [4, 1, 19]);
         assert_eq!(setup.last_port(), 1);
         assert_eq!(setup.motors[2].output, "servo3_raw of port 1");
@@ -245,11 +252,11 @@ mod tests {
     #[test]
     fn px4_before_its_functions_has_motors_on_the_first_outputs() {
         let old = parameters(&[("PWM_MIN", 1075.0), ("PWM_MAX", 1950.0)]);
-        let setup = Setup::of(&old, &vehicle(4), true);
+        let setup = Setup::of(&old, &vehicle(4), true, None);
         assert_eq!(setup.outputs, [1, 2, 3, 4]);
         assert_eq!((setup.range.low, setup.range.high), (1075.0, 1950.0));
         assert_eq!(setup.assumed, ["motors 1 to 4 on outputs 1 to 4"]);
-        let unknown = Setup::of(&parameters(&[]), &vehicle(4), true);
+        let unknown = Setup::of(&parameters(&[]), &vehicle(4), true, None);
         assert_eq!(unknown.assumed.len(), 2);
     }
 
@@ -273,7 +280,7 @@ mod tests {
             ("SERVO17_FUNCTION".to_owned(), 37.0),
             ("SERVO18_FUNCTION".to_owned(), 38.0),
         ]);
-        let setup = Setup::of(&known(&names), &vehicle(6), false);
+        let setup = Setup::of(&known(&names), &vehicle(6), false, None);
         assert_eq!(setup.outputs, [13, 14, 15, 16, 17, 18]);
         assert_eq!(setup.last_port(), 1);
         assert_eq!(setup.motors[5].output, "servo2_raw of port 1");

@@ -7,7 +7,7 @@ use super::{
     setup::missing,
 };
 use crate::{
-    Parameter, Vehicle,
+    Parameter, PulseRange, Vehicle,
     clock::{Checked, Clock, seconds_of},
     field::Kind,
 };
@@ -117,6 +117,8 @@ pub struct Telemetry {
     seen: [u64; RATED.len()],
     interval_refused: bool,
     rate_asker: Option<(u8, u8)>,
+    /// The range of motor outputs where the vehicle does not report it.
+    given: Option<PulseRange>,
 }
 
 impl Telemetry {
@@ -138,7 +140,19 @@ impl Telemetry {
             seen: [0; RATED.len()],
             interval_refused: false,
             rate_asker: None,
+            given: None,
         }
+    }
+
+    /// Uses the given range of motor outputs instead of an assumed one until the vehicle reports its own.
+    #[must_use]
+    pub fn with_range(self, given: Option<PulseRange>) -> Telemetry {
+        Telemetry { given, ..self }
+    }
+
+    /// Whether the vehicle reports a range of its own where one was given.
+    pub fn ignores_range(&self, setup: &Setup) -> bool {
+        self.given.is_some_and(|given| given.range() != setup.range)
     }
 
     /// The system it follows.
@@ -321,6 +335,7 @@ impl Telemetry {
             &self.decoder.parameters,
             &self.vehicle,
             self.decoder.is_px4(),
+            self.given,
         )
     }
 

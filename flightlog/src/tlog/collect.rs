@@ -91,7 +91,7 @@ impl<'o> Collector<'o> {
             let (system, heard) = systems.swap_remove(chosen);
             let ahead_s = heard.ahead_s;
             flight.utc_at_zero_s = flight.utc_at_zero_s.map(|utc_s| utc_s - ahead_s);
-            heard.finish(&mut flight);
+            heard.finish(&mut flight, self.options);
             flight.vehicle.system_id = Some(system);
         }
         flight
@@ -206,12 +206,12 @@ impl Heard {
         }
     }
 
-    fn finish(mut self, flight: &mut Flight) {
+    fn finish(mut self, flight: &mut Flight, options: &Options) {
         self.decoder.finish();
         flight.report.left_out.parameters = self.decoder.parameters.left_out();
         flight.boots_s = self.time.boots_s().to_vec();
         self.name_vehicle(flight);
-        let known = self.decoder.outputs(&flight.vehicle);
+        let known = self.decoder.outputs(&flight.vehicle, options.range);
         let outputs: Vec<u16>;
         (flight.motors, outputs) = known.motors.into_iter().unzip();
         if !flight.motors.is_empty() {

@@ -11,12 +11,21 @@ use crate::geometry::{self, Declared};
 use crate::interval::both_hold;
 use crate::parameters::Parameters;
 use crate::signal::preferred;
-use crate::{Event, Flight, Format, Intervals, Options, Report, Series, identity, px4};
+use crate::{Commands, Event, Flight, Format, Intervals, Options, Report, Series, identity, px4};
 
 /// A time this far after all times before it is damage, unless the next one agrees.
 const LONGEST_PAUSE_S: f64 = 60.0;
 /// Logged values of an outputs message.
 const OUTPUTS: usize = 16;
+/// Set points of the rate controllers.
+const TORQUE: &str = "vehicle_torque_setpoint";
+const THRUST: &str = "vehicle_thrust_setpoint";
+/// Index of the thrust along z.
+const DOWN: usize = 2;
+/// What is assumed where the motor commands are not logged.
+const COMPUTED: &str = "motor commands computed from torque and thrust set points, estimates where motors are at their limits";
+/// Both are published together; a thrust this much older than the torque is not its own, in s.
+const LATE_THRUST_S: f64 = 0.1;
 /// Announcements of topics that are heeded; a log of PX4 has some hundreds.
 const MOST_ANNOUNCED: usize = 4096;
 
@@ -162,6 +171,7 @@ impl<'o> Collector<'o> {
         let (topic, fields) = match name {
             "actuator_motors" => commands("actuator_motors", "control"),
             "actuator_outputs" => commands("actuator_outputs", "output"),
+            THRUST if instance == 0 => commands(THRUST, "xyz"),
             "vehicle_status" if instance == 0 => {
                 return Role::Status {
                     arming: find("arming_state"),
@@ -341,11 +351,47 @@ impl<'o> Collector<'o> {
             let hardware = &self.hardware;
             let indices = found.iter().map(|(_, index)| *index);
             flight.commands = outputs.commands(indices, f64::from);
-            flight.range = px4::output_range(&self.parameters, instance, first, extremes, hardware);
+            let own = px4::output_range(&self.parameters, instance, first, extremes, hardware);
+            flight.range = self.options.range_or_given(own);
             flight.motors = found.into_iter().map(|(motor, _)| motor).collect();
+            return;
+        }
+        if let Some(commands) = self.computed_commands() {
+            let (motors, range) = px4::computed_motors(commands.motors());
+            (flight.motors, flight.range, flight.commands) = (motors, Some(range), commands);
+            flight.assumed.push(COMPUTED.into());
             return;
         }
         let (motors, _) = px4::actuator_motors(&self.parameters, count.unwrap_or(0));
         flight.motors = motors;
+    }
+
+    /// The motor commands that follow from torque and thrust set points.
+    fn computed_commands(&self) -> Option<Commands> {
+        let allocation = px4::Allocation::of(&self.parameters)?;
+        let (_, torque) = self.series.iter().find(|(topic, _)| *topic == TORQUE)?;
+        let thrust = self
+            .outputs
+            .iter()
+            .find(|outputs| outputs.topic == THRUST)?;
+        let thrust = thrust.commands([DOWN].into_iter(), f64::from);
+        let mut thrust = thrust.rows().peekable();
+        let mut latest = (f64::NEG_INFINITY, f64::NAN);
+        let mut axes: Vec<_> = torque.signals().map(|signal| signal.hold()).collect();
+        let mut commands = Commands::new(allocation.motors());
+        for &t_s in torque.t_s() {
+            while let Some((thrust_s, row)) = thrust.next_if(|(thrust_s, _)| *thrust_s <= t_s) {
+                latest = (thrust_s, row.first().copied().unwrap_or(f64::NAN));
+            }
+            let down = if t_s - latest.0 <= LATE_THRUST_S {
+                latest.1
+            } else {
+                f64::NAN
+            };
+            let mut axis = |index: usize| axes.get_mut(index)?.at(t_s);
+            let [roll, pitch, yaw] = [axis(0), axis(1), axis(2)].map(|set| set.unwrap_or(f64::NAN));
+            commands.push(t_s, allocation.commands([roll, pitch, yaw, down]));
+        }
+        (!commands.is_empty()).then_some(commands)
     }
 }

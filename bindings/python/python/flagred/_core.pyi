@@ -227,7 +227,11 @@ class Profile:
 @disjoint_base
 class FlightData:
     def __new__(
-        cls, source: str | PathLike[str] | bytes, name: str, signals: Sequence[str] | None = None
+        cls,
+        source: str | PathLike[str] | bytes,
+        name: str,
+        signals: Sequence[str] | None = None,
+        range: tuple[int, int] | None = None,
     ) -> Self: ...
     @property
     def name(self) -> str: ...

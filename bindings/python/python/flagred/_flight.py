@@ -145,7 +145,7 @@ class Flight(FlightData):
 
     @property
     def assumed(self) -> tuple[str, ...]:
-        """What is assumed of motors and ranges because a telemetry log does not report it."""
+        """What is assumed of motors, their commands and ranges because the log does not report it."""
         return tuple(self._data["assumed"])
 
     @cached_property
@@ -302,7 +302,12 @@ class Assessment(AssessmentData):
         return f"Assessment({self.verdict}: {len(self.findings)} findings, {self.flight.name})"
 
 
-def read_log(log: str | os.PathLike[str] | bytes | IO[bytes], *, signals: list[str] | None = None) -> Flight:
+def read_log(
+    log: str | os.PathLike[str] | bytes | IO[bytes],
+    *,
+    signals: list[str] | None = None,
+    range: tuple[int, int] | None = None,
+) -> Flight:
     """Reads a flight log.
 
     Parameters
@@ -312,11 +317,17 @@ def read_log(log: str | os.PathLike[str] | bytes | IO[bytes], *, signals: list[s
         (.tlog) or flight CSV, plain or gzipped; the content decides, not the name.
     signals
         The names of the signals to keep; all where it is None. Motor commands are always read.
+    range
+        The lowest and the highest pulse width of the motor outputs, in us, of a log that does not report it;
+        :attr:`Flight.assumed` says that it was given.
 
     Raises
     ------
     LogError
-        It is no flight log. A damaged log is no error: see :attr:`Flight.report`.
+        It is no flight log, or has a range of its own or commands above the given one. A damaged log is no error: see
+        :attr:`Flight.report`.
+    ValueError
+        The range is not one of motor outputs.
     OSError
         The file cannot be read.
 
@@ -328,15 +339,15 @@ def read_log(log: str | os.PathLike[str] | bytes | IO[bytes], *, signals: list[s
     (2, 4)
     """
     if isinstance(log, (bytes, bytearray, memoryview)):
-        return _flight(bytes(log), "<bytes>", signals)
+        return _flight(bytes(log), "<bytes>", signals, range)
     if isinstance(log, (str, os.PathLike)):
-        return _flight(log, os.fspath(log), signals)
+        return _flight(log, os.fspath(log), signals, range)
     name = getattr(log, "name", "<file>")
-    return _flight(bytes(log.read()), name if isinstance(name, str) else "<file>", signals)
+    return _flight(bytes(log.read()), name if isinstance(name, str) else "<file>", signals, range)
 
 
-def _flight(source: Any, name: str, signals: list[str] | None) -> Flight:
-    return FlightData.__new__(Flight, source, name, signals)
+def _flight(source: Any, name: str, signals: list[str] | None, range: tuple[int, int] | None) -> Flight:
+    return FlightData.__new__(Flight, source, name, signals, range)
 
 
 def assess(
@@ -344,6 +355,7 @@ def assess(
     profile: Profile | str = "flagred",
     *,
     step_s: float | None = 0.1,
+    range: tuple[int, int] | None = None,
 ) -> Assessment:
     """Assesses a flight: how close it was to losing control.
 
@@ -355,6 +367,8 @@ def assess(
         The profile, or its name, or its file.
     step_s
         How far apart the steps of the risk over time are, in seconds; None keeps none.
+    range
+        The range of the motor outputs of a log that does not report it, as :func:`read_log` takes it.
 
     Raises
     ------
@@ -373,7 +387,9 @@ def assess(
     """
     if not isinstance(profile, Profile):
         profile = Profile(profile)
-    flight = log if isinstance(log, Flight) else read_log(log)
+    if isinstance(log, Flight) and range is not None:
+        raise ValueError("`range` is given when a log is read: `read_log(log, range=...)`")
+    flight = log if isinstance(log, Flight) else read_log(log, range=range)
     assessment: Assessment = AssessmentData.__new__(Assessment, flight, profile, step_s)
     assessment.flight, assessment.profile = flight, profile
     return assessment

@@ -49,7 +49,10 @@ impl Flight {
         read: &Function,
         signals: Option<Vec<String>>,
     ) -> Result<Flight, JsError> {
-        let options = flightlog::Options { signals };
+        let options = flightlog::Options {
+            signals,
+            ..flightlog::Options::default()
+        };
         match flightlog::read(Source::new(read), &options) {
             Ok(flight) => Ok(Flight {
                 name,

@@ -226,6 +226,29 @@ fn parameters_that_never_come_are_assumed_and_those_that_come_late_are_taken() {
 }
 
 #[test]
+fn a_given_range_is_used_until_the_vehicle_reports_its_own() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    let given = flightlog::PulseRange::new(1100, 1900).unwrap();
+    bench.session = Session::new(&estimator, Some(Sender::new(191)), false).with_range(Some(given));
+    bench.wait_beating(12, false);
+    let setup = bench.setups()[0];
+    assert_eq!((setup.range.low, setup.range.high), (1100.0, 1900.0));
+    let said = "commands from 1100 to 1900 us, given by the user";
+    assert!(
+        setup.assumed.contains(&said.to_owned()),
+        "{:?}",
+        setup.assumed
+    );
+    let is_ignored = |event: &Event| matches!(event, Event::Note { text } if text.contains("`--range` is ignored"));
+    assert!(!bench.events.iter().any(is_ignored));
+    bench.all_parameters();
+    bench.wait(0.1);
+    assert_eq!(bench.setups()[1].range.low, 1000.0);
+    assert!(bench.events.iter().any(is_ignored));
+}
+
+#[test]
 fn damaged_parameters_are_not_believed() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));

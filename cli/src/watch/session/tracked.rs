@@ -227,7 +227,7 @@ impl Tracked {
         {
             if watch.setup != setup {
                 watch.setup = setup;
-                out.events.push(ready(&watch.setup, &self.telemetry));
+                ready(&watch.setup, &self.telemetry, out);
             }
             return None;
         }
@@ -249,7 +249,7 @@ impl Tracked {
                 return None;
             }
         };
-        out.events.push(ready(&setup, &self.telemetry));
+        ready(&setup, &self.telemetry, out);
         let mut watch = Watch::new(setup, assessor, now_s);
         let Some(flown) = self.history.whole() else {
             let verdict = self.end_flight(End::Left(Left::SetUpAnew), out);
@@ -317,10 +317,15 @@ impl Tracked {
     }
 }
 
-fn ready(setup: &Setup, telemetry: &Telemetry) -> Event {
-    Event::Ready {
+/// Reports motors and limits, and a given range that these make useless.
+fn ready(setup: &Setup, telemetry: &Telemetry, out: &mut Out) {
+    out.events.push(Event::Ready {
         setup: setup.clone(),
         parameters: telemetry.parameters(),
+    });
+    if telemetry.ignores_range(setup) {
+        let text = "`--range` is ignored: the vehicle reports a range of its own".to_owned();
+        out.events.push(Event::Note { text });
     }
 }
 

@@ -1,0 +1,32 @@
+//! `--range`: the range of the motor outputs where a log or a vehicle does not report it.
+
+use flightlog::{Options, PulseRange};
+
+use crate::failure::Failure;
+
+#[derive(clap::Args)]
+pub(crate) struct RangeArgument {
+    /// Range of the motor outputs in us, where a log or the vehicle does not report it: `--range 1100 1900`
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = clap::value_parser!(u16).range(500..=2500))]
+    range: Option<Vec<u16>>,
+}
+
+impl RangeArgument {
+    /// The given range, if any.
+    pub(crate) fn given(&self) -> Result<Option<PulseRange>, Failure> {
+        let Some(&[low_us, high_us]) = self.range.as_deref() else {
+            return Ok(None);
+        };
+        let range = PulseRange::new(low_us, high_us)
+            .map_err(|error| Failure::usage(format!("--range: {error}")).help(error.help()))?;
+        Ok(Some(range))
+    }
+
+    /// Options that read a log whole, with the given range.
+    pub(crate) fn options(&self) -> Result<Options, Failure> {
+        Ok(Options {
+            range: self.given()?,
+            ..Options::default()
+        })
+    }
+}
