@@ -39,6 +39,8 @@ enum Format {
     Tune,
     /// A line of `flagred watch --jsonl`
     Watch,
+    /// A line of `flagred watch --all --jsonl`
+    WatchAll,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -60,6 +62,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Format::Simplify => include_str!("../schemas/simplify.json"),
         Format::Tune => include_str!("../schemas/tune.json"),
         Format::Watch => include_str!("../schemas/watch.json"),
+        Format::WatchAll => include_str!("../schemas/watch-all.json"),
     };
     write!(out, "{text}")?;
     out.finish()?;

@@ -11,6 +11,7 @@ use std::{
 
 use flagred_tests::{
     flagred,
+    schema::{errors, schema},
     vehicle::{heartbeat, servo},
 };
 use flightlog::mavlink::{
@@ -70,7 +71,7 @@ fn fly(seconds: u32) -> Watched {
     let mut first = String::new();
     lines.read_line(&mut first).unwrap();
     let first: Value = serde_json::from_str(&first).unwrap();
-    assert_eq!(first["schema"], "flagred.watch-all/1");
+    assert_eq!(errors(&schema("watch-all"), &first), [""; 0]);
     let address = |link: usize| {
         let text = first["endpoints"][link].as_str().unwrap();
         text.strip_prefix("listening at ").unwrap().to_owned()
@@ -266,6 +267,13 @@ fn check(watched: &Watched, seconds: u32) -> f64 {
 fn five_hundred_vehicles_are_followed_and_the_one_in_trouble_stands_first() {
     let watched = fly(16);
     check(&watched, 16);
+    let (of_all, of_one) = (schema("watch-all"), schema("watch"));
+    for line in &watched.lines {
+        assert_eq!(errors(&of_all, line), [""; 0], "{line}");
+        if line["watch"].is_object() {
+            assert_eq!(errors(&of_one, &line["watch"]), [""; 0], "{line}");
+        }
+    }
     assert!(watched.resident_kb < 300_000, "{} kB", watched.resident_kb);
 }
 

@@ -173,7 +173,8 @@ fn follow<'e>(
         }
         if shown.face == Face::Screen && drawn.elapsed() >= FRAME {
             drawn = Instant::now();
-            shown.frame(fleet);
+            let frame = shown.frame(fleet, screen::size());
+            shown.printer.print(frame);
         }
     }
 }
@@ -233,7 +234,7 @@ impl<'e> Shown<'e> {
     fn note(&mut self, now_s: f64, text: &str) {
         match self.face {
             Face::Json => {
-                let line = serde_json::json!({"note": text, "at_s": now_s});
+                let line = serde_json::json!({"at_s": jsonl::rounded(now_s), "note": text});
                 self.printer.print(format!("{line}\n"));
             }
             Face::Words => self.printer.print(lines::words(now_s, text)),
@@ -241,59 +242,52 @@ impl<'e> Shown<'e> {
         }
     }
 
-    fn frame(&mut self, fleet: &Fleet<'e>) {
+    /// The text of a screen of so many columns and rows. A line end in the last row would scroll the first row away.
+    fn frame(&self, fleet: &Fleet<'e>, (columns, rows): (usize, usize)) -> String {
         let views = fleet.views();
-        let (columns, rows) = screen::size();
         let in_air = views.iter().filter(|(_, view)| view.is_in_air).count();
         let head = format!(
             "FLAGRED  {} vehicles, {in_air} in the air; Ctrl-C quits",
             views.len()
         );
-        let room = rows.saturating_sub(3);
-        let named = views
-            .iter()
-            .take(room)
-            .map(|(id, view)| self.row(*id, view));
-        let mut lines = vec![head, String::new()];
-        lines.extend(named);
-        let frame =
-            lines
-                .iter()
-                .take(rows.saturating_sub(1))
-                .fold("\x1b[H".to_owned(), |frame, line| {
-                    let styled = line.contains('\x1b');
-                    let cut: String = line
-                        .chars()
-                        .take(if styled {
-                            usize::MAX
-                        } else {
-                            columns.saturating_sub(1)
-                        })
-                        .collect();
-                    frame + &cut + "\x1b[K\r\n"
-                });
-        self.printer.print(frame + "\x1b[J");
+        let below = rows.saturating_sub(3);
+        let shown = if views.len() > below {
+            below.saturating_sub(1)
+        } else {
+            views.len()
+        };
+        let width = columns.saturating_sub(1);
+        let cut = |line: String| line.chars().take(width).collect::<String>();
+        let mut lines = vec![cut(head), String::new()];
+        let named = views.iter().take(shown);
+        lines.extend(named.map(|(id, view)| {
+            let line = cut(self.row(*id, view));
+            let level = view.latest.and_then(|latest| latest.level);
+            level.map_or(line.clone(), |level| styled(&line, level))
+        }));
+        if shown < views.len() {
+            lines.push(cut(format!("and {} more", views.len() - shown)));
+        }
+        lines.truncate(rows.saturating_sub(1));
+        screen::text(&lines)
     }
 
     fn row(&self, id: Id, view: &View<'_>) -> String {
-        let name = self.name(id);
         let latest = view.latest;
-        let known = latest.and_then(|latest| latest.risk.ok());
         let state = match (view.link_lost, view.motors_lost, view.is_in_air) {
             (true, ..) => "LINK LOST",
             (_, true, _) => "no motor commands",
             (.., true) => "in the air",
             _ => "on the ground",
         };
+        let known = latest.and_then(|latest| latest.risk.ok());
         let risk = known.map_or("risk unknown".to_owned(), |known| {
             format!("risk {:3.0} %", known.risk_pct)
         });
-        let level = known.and(latest).and_then(|latest| latest.level);
-        let level = level.map_or("    ".to_owned(), |level: Level| {
-            let style = level_style(level);
-            format!("{style}{:<4}{style:#}", level.to_string())
-        });
-        format!("{level}  {risk:<12}  {:<30}  {state}", visible(&name))
+        let level = latest.and_then(|latest| latest.level);
+        let level = level.map_or(String::new(), |level| level.to_string());
+        let name = self.name(id);
+        format!("{level:<4}  {risk:<12}  {:<30}  {state}", visible(&name))
     }
 
     /// Leaves the screen, and prints a line for each vehicle.
@@ -352,6 +346,71 @@ impl Drop for Shown<'_> {
     fn drop(&mut self) {
         if self.face == Face::Screen {
             self.printer.print(screen::LEAVE.to_owned());
+        }
+    }
+}
+
+/// A line that begins with a level, which gets its color.
+fn styled(line: &str, level: Level) -> String {
+    let style = level_style(level);
+    let name = level.to_string();
+    match line.strip_prefix(&name) {
+        Some(rest) => format!("{style}{name}{style:#}{rest}"),
+        None => line.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::watch::{
+        fleet::tests::{AT_LIMITS, Air, HOVER},
+        session::tests::estimator,
+    };
+
+    #[test]
+    fn the_gravest_vehicle_is_on_the_smallest_screen() {
+        let estimator = estimator();
+        let mut air = Air::new(&estimator);
+        let calm: Vec<(u8, bool, [u16; 4])> =
+            (10..30).map(|system| (system, true, HOVER)).collect();
+        let on_the_ground = (1, false, [1000; 4]);
+        air.fly(
+            40,
+            &[
+                &calm[..],
+                &[(2, true, HOVER), (3, true, HOVER), on_the_ground],
+            ]
+            .concat(),
+        );
+        air.fly(
+            8,
+            &[&calm[..], &[(2, true, AT_LIMITS), on_the_ground]].concat(),
+        );
+        let endpoints = ["udpin:0.0.0.0:14550".parse().unwrap()];
+        let shown = Shown {
+            face: Face::Screen,
+            printer: Printer::new(1),
+            endpoints: &endpoints,
+            estimator: &estimator,
+        };
+        for (columns, rows) in [(80, 24), (60, 8), (20, 5), (1, 1), (0, 0)] {
+            let frame =
+                anstream::adapter::strip_str(&shown.frame(&air.fleet, (columns, rows))).to_string();
+            let lines: Vec<&str> = frame.lines().collect();
+            assert!(lines.len() < rows.max(1), "{rows}: {lines:#?}");
+            assert!(
+                lines
+                    .iter()
+                    .all(|line| line.chars().count() < columns.max(1)),
+                "{columns}: {lines:#?}"
+            );
+            if rows == 24 {
+                insta::assert_snapshot!(frame);
+            }
+            if rows > 4 {
+                assert!(lines[2].starts_with("FAIL"), "{lines:#?}");
+            }
         }
     }
 }

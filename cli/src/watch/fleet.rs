@@ -142,19 +142,25 @@ impl<'e> Fleet<'e> {
         all
     }
 
-    /// The vehicles that were found, those with the highest risk first and those whose risk is unknown last.
+    /// The vehicles that were found: the gravest level first, then the highest risk. A vehicle in the air whose risk is unknown
+    /// stands between WARN and GOOD, one on the ground last.
     pub(crate) fn views(&self) -> Vec<(Id, View<'_>)> {
         let members = self.members.iter();
         let mut views: Vec<(Id, View<'_>)> = members
             .filter_map(|(id, member)| Some((*id, member.session.view()?)))
             .collect();
+        let rank = |view: &View<'_>| {
+            let level = view.latest.and_then(|latest| latest.level);
+            level.map_or(if view.is_in_air { 1.5 } else { -1.0 }, |level| {
+                f64::from(level as u8)
+            })
+        };
         let risk = |view: &View<'_>| {
             let risk = view.latest.and_then(|latest| latest.risk.ok());
             risk.map_or(-1.0, |estimate| estimate.risk_pct)
         };
-        let level = |view: &View<'_>| view.latest.and_then(|latest| latest.level);
         views.sort_by(|(a_id, a), (b_id, b)| {
-            (level(b).cmp(&level(a)))
+            (rank(b).total_cmp(&rank(a)))
                 .then(risk(b).total_cmp(&risk(a)))
                 .then(a_id.cmp(b_id))
         });
@@ -208,4 +214,123 @@ fn gravity(summary: &Summary) -> f64 {
         Verdict::NotAvailable(_) => 300.0,
     };
     verdict + summary.risk_max.unwrap_or(0.0)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use flightlog::mavlink::{
+        Next, Sender, Version,
+        dialect::{MavMessage, SERVO_OUTPUT_RAW_DATA},
+        next_packet,
+    };
+
+    use super::*;
+    use crate::watch::session::tests::{estimator, quadrotor};
+
+    /// A fleet on one link, and its clock.
+    pub(crate) struct Air<'e> {
+        pub(crate) fleet: Fleet<'e>,
+        now_s: f64,
+    }
+
+    impl<'e> Air<'e> {
+        pub(crate) fn new(estimator: &'e Estimator) -> Air<'e> {
+            Air {
+                fleet: Fleet::new(estimator),
+                now_s: 0.0,
+            }
+        }
+
+        fn hear(&mut self, system: u8, message: &MavMessage) {
+            let bytes = Sender::new(1).packet(Version::V2, system, message);
+            let Next::Packet(packet) = next_packet(&bytes) else {
+                panic!("{bytes:?}");
+            };
+            (self.fleet).receive(self.now_s, (0, None), &packet, |_, _, _| {});
+        }
+
+        /// Lets time pass; vehicles send pulses at 10 Hz, and heartbeats.
+        pub(crate) fn fly(&mut self, seconds: u32, vehicles: &[(u8, bool, [u16; 4])]) {
+            for tick in 0..10 * seconds {
+                for (system, in_air, [a, b, c, d]) in vehicles {
+                    if tick % 10 == 0 {
+                        self.hear(*system, &quadrotor(*in_air));
+                    }
+                    let outputs = MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
+                        time_usec: (self.now_s * 1e6) as u32,
+                        servo1_raw: *a,
+                        servo2_raw: *b,
+                        servo3_raw: *c,
+                        servo4_raw: *d,
+                        ..SERVO_OUTPUT_RAW_DATA::default()
+                    });
+                    self.hear(*system, &outputs);
+                }
+                self.now_s += 0.1;
+                self.fleet.tick(self.now_s, |_, _, _| {});
+            }
+        }
+
+        fn systems(&self) -> Vec<u8> {
+            self.fleet.views().iter().map(|(id, _)| id.system).collect()
+        }
+    }
+
+    pub(crate) const HOVER: [u16; 4] = [1500; 4];
+    pub(crate) const AT_LIMITS: [u16; 4] = [1000, 2000, 1000, 2000];
+
+    #[test]
+    fn a_vehicle_lost_in_the_air_stands_above_those_that_are_good() {
+        let estimator = estimator();
+        let mut air = Air::new(&estimator);
+        let calm = [(1, false, [1000; 4]), (2, true, HOVER), (3, true, HOVER)];
+        air.fly(40, &[calm[0], calm[1], calm[2], (4, true, HOVER)]);
+        air.fly(8, &[calm[0], calm[1], (4, true, AT_LIMITS)]);
+        assert_eq!(air.systems(), [4, 3, 2, 1]);
+        let views = air.fleet.views();
+        assert!(views[1].1.link_lost && views[1].1.latest.is_none());
+    }
+
+    #[test]
+    fn a_vehicle_that_is_silent_for_a_minute_is_gone_and_its_summary_stays() {
+        let estimator = estimator();
+        let mut air = Air::new(&estimator);
+        let (one, other) = ((1, true, HOVER), (2, true, HOVER));
+        air.fly(30, &[one, other]);
+        air.fly(59, &[other]);
+        assert_eq!(air.fleet.members.len(), 2);
+        air.fly(2, &[other]);
+        assert_eq!(air.systems(), [2]);
+        // Heard again, it is a new vehicle.
+        air.fly(30, &[one, other]);
+        air.fly(5, &[(1, false, [1000; 4]), (2, false, [1000; 4])]);
+        let all = air.fleet.finish(|_, _, _| {});
+        let verdicts: Vec<(u8, String)> = all
+            .iter()
+            .map(|one| (one.id.system, one.verdict.to_string()))
+            .collect();
+        let expected = [(1, "NA"), (1, "GOOD"), (2, "GOOD")];
+        assert_eq!(
+            verdicts,
+            expected.map(|(id, verdict)| (id, verdict.to_owned()))
+        );
+    }
+
+    #[test]
+    fn strays_are_forgotten_and_vehicles_beyond_the_bound_are_counted() {
+        let estimator = estimator();
+        let mut fleet = Fleet::new(&estimator);
+        let bytes = Sender::new(1).packet(Version::V2, 1, &quadrotor(false));
+        let Next::Packet(packet) = next_packet(&bytes) else {
+            panic!("{bytes:?}");
+        };
+        for link in 0..MOST + 7 {
+            fleet.receive(0.0, (link, None), &packet, |_, _, _| {});
+        }
+        assert_eq!((fleet.members.len(), fleet.refused), (MOST, 7));
+        fleet.tick(STRAY_S - 0.1, |_, _, _| {});
+        assert_eq!(fleet.members.len(), MOST);
+        fleet.tick(STRAY_S, |_, _, _| {});
+        assert!(fleet.members.is_empty() && fleet.finish(|_, _, _| {}).is_empty());
+    }
 }

@@ -128,8 +128,13 @@ pub(crate) fn json(
 /// A line as one object.
 pub(crate) fn json_line(at_s: f64, line: EventLine<'_>) -> io::Result<String> {
     let text = serde_json::to_string(&At {
-        at_s: (at_s * 1e3).round() / 1e3,
+        at_s: rounded(at_s),
         line,
     })?;
     Ok(text + "\n")
+}
+
+/// A time to the millisecond.
+pub(crate) fn rounded(at_s: f64) -> f64 {
+    (at_s * 1e3).round() / 1e3
 }

@@ -83,14 +83,19 @@ impl Screen {
         );
         lines.extend([String::new(), "Ctrl-C quits".to_owned()]);
         lines.truncate(room);
-        let mut frame = HOME.to_owned();
-        for line in lines {
-            frame += &line;
-            frame += CLEAR_LINE;
-            frame += "\r\n";
-        }
-        frame + CLEAR_REST
+        text(&lines)
     }
+}
+
+/// The text that puts lines in the place of the screen before.
+pub(crate) fn text(lines: &[String]) -> String {
+    let mut text = HOME.to_owned();
+    for line in lines {
+        text += line;
+        text += CLEAR_LINE;
+        text += "\r\n";
+    }
+    text + CLEAR_REST
 }
 
 /// Columns and rows of the terminal; 80 and 24 where they are unknown.

@@ -27,7 +27,7 @@ pub(crate) struct Bench<'e> {
 }
 
 /// The heartbeat of a quadrotor.
-fn quadrotor(in_air: bool) -> MavMessage {
+pub(crate) fn quadrotor(in_air: bool) -> MavMessage {
     let mut base_mode = MavModeFlag::empty();
     base_mode.set(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, in_air);
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
