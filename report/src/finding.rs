@@ -188,13 +188,7 @@ impl<'a> Teller<'a> {
 /// Texts to ground stations, lines and reports all have these words. Where there is no room for the last part, the first one
 /// is true alone.
 pub fn cause(finding: &Finding, motors: &[Motor]) -> [String; 2] {
-    let motor = finding.motor.and_then(|named| {
-        let motor = motors.get(named.motor)?;
-        let or = named.or.and_then(|or| motors.get(or));
-        let or = or.map_or(String::new(), |or| format!(" or {}", or.number));
-        Some(format!(", motor {}{or}", motor.number))
-    });
-    let motor = motor.unwrap_or_default();
+    let motor = named(finding, motors).map_or(String::new(), |motor| format!(", {motor}"));
     match (&finding.cause, finding.motor) {
         _ if finding.measure == Measure::WeakMotor => [String::new(), String::new()],
         _ if !is_of_risk(finding) => [motor, String::new()],
@@ -204,11 +198,19 @@ pub fn cause(finding: &Finding, motors: &[Motor]) -> [String; 2] {
     }
 }
 
-/// A motor that is weak, and by how much it is commanded more: `motor 3 weak: +24 %`.
+/// A motor that is weak, and by how much it is commanded more: `motor 3 weak: +24 %`, `motor 3 or 8 weak: +14 %`.
 pub fn weak(finding: &Finding, motors: &[Motor]) -> String {
-    let motor = finding.motor.and_then(|named| motors.get(named.motor));
-    let number = motor.map_or(String::new(), |motor| format!(" {}", motor.number));
-    format!("motor{number} weak: +{:.0} %", finding.peak_pct)
+    let motor = named(finding, motors).unwrap_or_else(|| "motor".to_owned());
+    format!("{motor} weak: +{:.0} %", finding.peak_pct)
+}
+
+/// The motor that a finding names, and the one that it may be as well.
+fn named(finding: &Finding, motors: &[Motor]) -> Option<String> {
+    let found = finding.motor?;
+    let number = motors.get(found.motor)?.number;
+    let or = found.or.and_then(|or| motors.get(or));
+    let or = or.map_or(String::new(), |or| format!(" or {}", or.number));
+    Some(format!("motor {number}{or}"))
 }
 
 /// What a finding is about, before its value.

@@ -1094,7 +1094,7 @@ local lately_s, trim_s, load, load_s = 0.0, 0.0, 0.0, 0.0
 local imbalance_us, weak_us -- for how long the limits have been passed
 imbalance, imbalance_words = nil, nil -- in %, and what it is
 unbalanced, or_unbalanced = nil, nil -- the motor that is named, and the one that it may be as well
-weak, weak_motor = nil, nil -- in %
+weak, weak_motor, or_weak = nil, nil, nil -- in %, and as above
 sinks = false
 local is_back = false
 
@@ -1212,7 +1212,7 @@ function watch_balance()
     shifts[i] = lately[i] - trims[i]
     squares = squares + shifts[i] * shifts[i]
   end
-  local first = two_highest(shifts)
+  local first, second = two_highest(shifts)
   local shift = shifts[first]
   local is_known = learned and settled
   if is_known and shift > 0.15 / 2 and shift * shift >= 0.75 * (min(motors - 1.0, 3.0) / motors) * squares then
@@ -1222,6 +1222,7 @@ function watch_balance()
       weak = max(weak, 100 * shift)
     elseif weak_us >= 3000000 then
       weak, weak_motor, raised = 100 * shift, first, true
+      or_weak = second and shift - shifts[second] < shift / 3 and second or nil
     end
     return
   end
@@ -1541,7 +1542,9 @@ function say(level, risk, of_notice)
   local severity = level == 3 and 2 or level == 2 and 4 or 6
   local text = "FLAGRED: " .. LEVELS[level]
   if (of_notice or not is_open) and weak then
-    gcs:send_text(severity, format("%s motor %d weak: +%.0f %%", text, numbers[weak_motor], weak))
+    text = format("%s motor %d", text, numbers[weak_motor])
+    text = or_weak and format("%s or %d", text, numbers[or_weak]) or text
+    gcs:send_text(severity, format("%s weak: +%.0f %%", text, weak))
     return
   end
   if (of_notice or not is_open) and imbalance then

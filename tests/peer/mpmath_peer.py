@@ -444,10 +444,19 @@ def evaluate(model, point, rounding=mpf(1)):
     return AggregatedSet(low, high, fired, operators["implication"], aggregation).value(defuzzifier)
 
 
+def by_name(part):
+    """Lists of named entries, which keep the order of names where a format sorts them, as dictionaries."""
+    if isinstance(part, dict):
+        return {key: by_name(value) for key, value in part.items()}
+    if isinstance(part, list) and part and all(isinstance(entry, dict) and "name" in entry for entry in part):
+        return {entry["name"]: by_name({k: v for k, v in entry.items() if k != "name"}) for entry in part}
+    return part
+
+
 def compare(line):
     """Compares the values of one line. Returns how many there are, what is wrong, and how many hang on rounding."""
     case = json.loads(line)
-    model = case["model"]
+    model = by_name(case["model"])
     ((_, output),) = model["outputs"].items()
     defuzzifier = output.get("defuzzifier", "centroid")
     low, high = output["range"]

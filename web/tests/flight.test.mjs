@@ -105,7 +105,9 @@ test('a stretch that is selected is drawn anew, with what thinning left out', as
       return [line.getAttribute('d').split('L').length, line.closest('.panel').dataset.start];
     });
   const [, whole] = await points();
-  const box = await page.locator('.report .panel .area').first().boundingBox();
+  const area = page.locator('.report .panel .area').first();
+  await area.scrollIntoViewIfNeeded();
+  const box = await area.boundingBox();
   await page.mouse.move(box.x + box.width * 0.5, box.y + 30);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width * 0.55, box.y + 35, { steps: 5 });

@@ -304,8 +304,8 @@ test('other formats are opened by drop and button, and written', async (t) => {
 test('a profile is checked too, and its map is filled as it says', async (t) => {
   const { page } = await room(t, '?start=my-profile');
   assert.doesNotMatch(await problems(page).textContent(), /error/);
-  await retype(page, 'mean: motor_margin', 'mean: motor_margn');
-  await page.locator('.problems li', { hasText: 'motor_margn' }).first().waitFor();
+  await retype(page, 'mean: motor_command', 'mean: motor_comand');
+  await page.locator('.problems li', { hasText: 'motor_comand' }).first().waitFor();
 });
 
 test('nothing in a rule set is markup', async (t) => {

@@ -141,12 +141,15 @@ fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     let count = motors.len() as f64;
     let own = (count - 1.0).min(3.0) / count;
     let all: f64 = motors.iter().map(|m| m.shift() * m.shift()).sum();
-    let is_alone = shift * shift >= ONE_MOTOR * own * all;
-    (shift > limit && is_alone).then(|| Unbalanced {
+    let explains = shift * shift >= ONE_MOTOR * own * all;
+    // On a coaxial arm the other motor may rise nearly as far.
+    let other =
+        highest(motors, Motor::shift, Some(motor)).filter(|(_, next)| !is_ahead(shift, *next));
+    (shift > limit && explains).then(|| Unbalanced {
         measure: Measure::WeakMotor,
         value: shift,
         limit,
-        motor: named(motors, motor, Side::High, None),
+        motor: named(motors, motor, Side::High, other.map(|(other, _)| other)),
     })
 }
 
@@ -187,7 +190,7 @@ fn at_odds(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
 fn culprit(motors: &[Motor], value: impl Fn(&Motor) -> f64 + Copy) -> Option<MotorFinding> {
     let (highest_one, most) = highest(motors, value, None)?;
     let next = highest(motors, value, Some(highest_one));
-    let is_alone = next.is_none_or(|(_, next)| most - next >= most / 3.0);
+    let is_alone = next.is_none_or(|(_, next)| is_ahead(most, next));
     let at_zero = |motor: &Motor| motor.at_zero_s;
     let stopped = highest(motors, at_zero, None).filter(|(_, at_zero_s)| *at_zero_s > 0.0);
     if let (false, Some((first, at_zero_s))) = (is_alone, stopped) {
@@ -203,6 +206,11 @@ fn culprit(motors: &[Motor], value: impl Fn(&Motor) -> f64 + Copy) -> Option<Mot
     let other = next.filter(|(_, next)| most - next < EQUAL);
     let other = other.map(|(other, _)| other);
     Some(named(motors, highest_one, Side::High, other))
+}
+
+/// Whether the highest motor is alone up there.
+fn is_ahead(most: f64, next: f64) -> bool {
+    most - next >= most / 3.0
 }
 
 /// The motor with the largest value, the first of equal ones, of all but one.

@@ -110,7 +110,7 @@ impl Balance {
         } else {
             None
         };
-        let weak = weak.map(|motor| (Measure::WeakMotor, (motor, None)));
+        let weak = weak.map(|(motor, other)| (Measure::WeakMotor, (motor, other)));
         for (i, passed) in [imbalance, weak].into_iter().enumerate() {
             let Some((measure, motor)) = passed else {
                 self.passed_s[i] = None;
@@ -180,12 +180,17 @@ impl Balance {
     }
 }
 
-fn weak(shift: &[f64], limit: f64) -> Option<usize> {
+/// The motor that explains what changed, and another that does nearly as well.
+fn weak(shift: &[f64], limit: f64) -> Option<(usize, Option<usize>)> {
     let count = shift.len() as f64;
-    let motor = (0..shift.len()).max_by(|a, b| shift[*a].total_cmp(&shift[*b]))?;
+    let mut order: Vec<usize> = (0..shift.len()).collect();
+    order.sort_by(|a, b| shift[*b].total_cmp(&shift[*a]));
+    let motor = *order.first()?;
     let all: f64 = shift.iter().map(|s| s * s).sum();
     let explains = shift[motor] * shift[motor] >= 0.75 * all * (count - 1.0).min(3.0) / count;
-    (shift[motor] > limit && explains).then_some(motor)
+    let next = order.get(1).copied();
+    let other = next.filter(|next| shift[*next] > shift[motor] * 2.0 / 3.0);
+    (shift[motor] > limit && explains).then_some((motor, other))
 }
 
 /// The motor on the other side of the middle; of two there the one that turns the same way.

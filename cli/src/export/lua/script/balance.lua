@@ -5,7 +5,7 @@ local lately_s, trim_s, load, load_s = 0.0, 0.0, 0.0, 0.0
 local imbalance_us, weak_us -- for how long the limits have been passed
 imbalance, imbalance_words = nil, nil -- in %, and what it is
 unbalanced, or_unbalanced = nil, nil -- the motor that is named, and the one that it may be as well
-weak, weak_motor = nil, nil -- in %
+weak, weak_motor, or_weak = nil, nil, nil -- in %, and as above
 sinks = false
 local is_back = false
 
@@ -123,7 +123,7 @@ function watch_balance()
     shifts[i] = lately[i] - trims[i]
     squares = squares + shifts[i] * shifts[i]
   end
-  local first = two_highest(shifts)
+  local first, second = two_highest(shifts)
   local shift = shifts[first]
   local is_known = learned and settled
   if is_known and shift > IMBALANCE_ABOVE / 2 and shift * shift >= 0.75 * (min(motors - 1.0, 3.0) / motors) * squares then
@@ -133,6 +133,7 @@ function watch_balance()
       weak = max(weak, 100 * shift)
     elseif weak_us >= IMBALANCE_AFTER_US then
       weak, weak_motor, raised = 100 * shift, first, true
+      or_weak = second and shift - shifts[second] < shift / 3 and second or nil
     end
     return
   end

@@ -5,7 +5,9 @@ function say(level, risk, of_notice)
   local text = "FLAGRED: " .. LEVELS[level]
 -- @if imbalance
   if (of_notice or not is_open) and weak then
-    gcs:send_text(severity, format("%s motor %d weak: +%.0f %%", text, numbers[weak_motor], weak))
+    text = format("%s motor %d", text, numbers[weak_motor])
+    text = or_weak and format("%s or %d", text, numbers[or_weak]) or text
+    gcs:send_text(severity, format("%s weak: +%.0f %%", text, weak))
     return
   end
   if (of_notice or not is_open) and imbalance then
