@@ -935,11 +935,14 @@ local function is_reached(risk, risk_limit, elevated_limit)
   return false, false
 end
 
--- The motor with the least mean margin, where it is near a limit.
+-- The motor with the least mean margin, where it is near a limit; of equal ones the one that is at zero for longest.
 local function weakest()
   local found
   for i = 1, motors do
-    if mean_margin[i] and (not found or mean_margin[i] < mean_margin[found]) then
+    local margin, least = mean_margin[i], found and mean_margin[found]
+    if margin and (not found or margin < least) then
+      found = i
+    elseif margin == least and margin and (at_zero[i] or 0.0) > (at_zero[found] or 0.0) then
       found = i
     end
   end
@@ -1089,7 +1092,8 @@ function forget_notices()
 end
 -- The balance of the motors: a motor that works harder than before, and whether all work as before.
 
-local lately, trims, shifts, at_zero = {}, {}, {}, {} -- of each motor
+local lately, trims, shifts = {}, {}, {} -- of each motor
+at_zero = {} -- for how long each motor is at zero, in s
 local lately_s, trim_s, load, load_s = 0.0, 0.0, 0.0, 0.0
 local imbalance_us, weak_us -- for how long the limits have been passed
 imbalance, imbalance_words = nil, nil -- in %, and what it is

@@ -733,11 +733,12 @@ local function is_reached(risk, risk_limit, elevated_limit)
   return false, false
 end
 
--- The motor with the least mean margin, where it is near a limit.
+-- The motor with the least mean margin, where it is near a limit; of equal ones the one that is at zero for longest.
 local function weakest()
   local found
   for i = 1, motors do
-    if mean_margin[i] and (not found or mean_margin[i] < mean_margin[found]) then
+    local margin, least = mean_margin[i], found and mean_margin[found]
+    if margin and (not found or margin < least) then
       found = i
     end
   end

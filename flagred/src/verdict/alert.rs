@@ -222,13 +222,18 @@ impl Alert {
     }
 }
 
-/// The motor with the least mean margin while the level was being reached, where it is near a limit.
+/// The motor with the least mean margin while the level was being reached, where it is near a limit. When a motor stops, the
+/// one opposite soon stands still, too: of equal ones it is the one that is at zero for longest.
 fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
-    let records = motors.iter().map(|motor| motor.record).enumerate();
-    let known = records.filter(|(_, record)| record.samples > 0);
-    let weakest = known.min_by(|(_, a), (_, b)| a.mean_margin.total_cmp(&b.mean_margin));
-    let near = weakest.filter(|(_, record)| record.least_margin < NEAR_LIMIT);
-    near.map(|(motor, record)| MotorFinding {
+    let known = motors
+        .iter()
+        .enumerate()
+        .filter(|(_, m)| m.record.samples > 0);
+    let (motor, Motor { record, .. }) = known.min_by(|(_, a), (_, b)| {
+        let margins = a.record.mean_margin.total_cmp(&b.record.mean_margin);
+        margins.then(b.at_zero_s.total_cmp(&a.at_zero_s))
+    })?;
+    (record.least_margin < NEAR_LIMIT).then_some(MotorFinding {
         motor,
         or: None,
         side: record.side,
@@ -314,6 +319,18 @@ mod tests {
             }
         }
         (changes, findings, flown)
+    }
+
+    #[test]
+    fn of_two_motors_at_zero_the_one_that_stopped_first_is_named() {
+        let mut flown = Flown::new([0.0, 0.0]);
+        for (at_zero_s, named) in [([0.1, 0.3], 1), ([0.3, 0.1], 0), ([0.2, 0.2], 0)] {
+            for (motor, at_zero_s) in flown.motors.iter_mut().zip(at_zero_s) {
+                motor.at_zero_s = at_zero_s;
+                motor.record.add(0.0);
+            }
+            assert_eq!(weakest(&flown.motors).unwrap().motor, named);
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 -- The balance of the motors: a motor that works harder than before, and whether all work as before.
 
-local lately, trims, shifts, at_zero = {}, {}, {}, {} -- of each motor
+local lately, trims, shifts = {}, {}, {} -- of each motor
+at_zero = {} -- for how long each motor is at zero, in s
 local lately_s, trim_s, load, load_s = 0.0, 0.0, 0.0, 0.0
 local imbalance_us, weak_us -- for how long the limits have been passed
 imbalance, imbalance_words = nil, nil -- in %, and what it is

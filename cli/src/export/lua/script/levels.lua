@@ -40,12 +40,17 @@ local function is_reached(risk, risk_limit, elevated_limit)
 end
 
 -- @if motor_cause
--- The motor with the least mean margin, where it is near a limit.
+-- The motor with the least mean margin, where it is near a limit; of equal ones the one that is at zero for longest.
 local function weakest()
   local found
   for i = 1, motors do
-    if mean_margin[i] and (not found or mean_margin[i] < mean_margin[found]) then
+    local margin, least = mean_margin[i], found and mean_margin[found]
+    if margin and (not found or margin < least) then
       found = i
+-- @if imbalance
+    elseif margin == least and margin and (at_zero[i] or 0.0) > (at_zero[found] or 0.0) then
+      found = i
+-- @end
     end
   end
   return found and least_margin[found] < 0.1 and found or nil
