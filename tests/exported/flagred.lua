@@ -935,14 +935,14 @@ local function is_reached(risk, risk_limit, elevated_limit)
   return false, false
 end
 
--- The motor with the least mean margin, where it is near a limit; of equal ones the one that is at zero for longest.
+-- The motor with the least mean margin, where it is near a limit; of motors at zero the one that is there for longest.
 local function weakest()
   local found
   for i = 1, motors do
     local margin, least = mean_margin[i], found and mean_margin[found]
     if margin and (not found or margin < least) then
       found = i
-    elseif margin == least and margin and (at_zero[i] or 0.0) > (at_zero[found] or 0.0) then
+    elseif margin == least and margin and (at_zero[found] or 0.0) > 0 and at_zero[i] > at_zero[found] then
       found = i
     end
   end

@@ -733,7 +733,7 @@ local function is_reached(risk, risk_limit, elevated_limit)
   return false, false
 end
 
--- The motor with the least mean margin, where it is near a limit; of equal ones the one that is at zero for longest.
+-- The motor with the least mean margin, where it is near a limit; of motors at zero the one that is there for longest.
 local function weakest()
   local found
   for i = 1, motors do

@@ -223,7 +223,7 @@ impl Alert {
 }
 
 /// The motor with the least mean margin while the level was being reached, where it is near a limit. When a motor stops, the
-/// one opposite soon stands still, too: of equal ones it is the one that is at zero for longest.
+/// one opposite soon stands still, too: of motors at zero it is the one that is there for longest.
 fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
     let known = motors
         .iter()
@@ -231,7 +231,11 @@ fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
         .filter(|(_, m)| m.record.samples > 0);
     let (motor, Motor { record, .. }) = known.min_by(|(_, a), (_, b)| {
         let margins = a.record.mean_margin.total_cmp(&b.record.mean_margin);
-        margins.then(b.at_zero_s.total_cmp(&a.at_zero_s))
+        let both_stopped = a.at_zero_s > 0.0 && b.at_zero_s > 0.0;
+        match both_stopped {
+            true => margins.then(b.at_zero_s.total_cmp(&a.at_zero_s)),
+            false => margins,
+        }
     })?;
     (record.least_margin < NEAR_LIMIT).then_some(MotorFinding {
         motor,
@@ -324,7 +328,13 @@ mod tests {
     #[test]
     fn of_two_motors_at_zero_the_one_that_stopped_first_is_named() {
         let mut flown = Flown::new([0.0, 0.0]);
-        for (at_zero_s, named) in [([0.1, 0.3], 1), ([0.3, 0.1], 0), ([0.2, 0.2], 0)] {
+        // A motor at the upper limit is as near to it.
+        for (at_zero_s, named) in [
+            ([0.1, 0.3], 1),
+            ([0.3, 0.1], 0),
+            ([0.2, 0.2], 0),
+            ([0.0, 0.3], 0),
+        ] {
             for (motor, at_zero_s) in flown.motors.iter_mut().zip(at_zero_s) {
                 motor.at_zero_s = at_zero_s;
                 motor.record.add(0.0);

@@ -40,7 +40,7 @@ local function is_reached(risk, risk_limit, elevated_limit)
 end
 
 -- @if motor_cause
--- The motor with the least mean margin, where it is near a limit; of equal ones the one that is at zero for longest.
+-- The motor with the least mean margin, where it is near a limit; of motors at zero the one that is there for longest.
 local function weakest()
   local found
   for i = 1, motors do
@@ -48,7 +48,7 @@ local function weakest()
     if margin and (not found or margin < least) then
       found = i
 -- @if imbalance
-    elseif margin == least and margin and (at_zero[i] or 0.0) > (at_zero[found] or 0.0) then
+    elseif margin == least and margin and (at_zero[found] or 0.0) > 0 and at_zero[i] > at_zero[found] then
       found = i
 -- @end
     end
