@@ -133,6 +133,11 @@ test('a stretch that is selected is drawn anew, with what thinning left out', as
   await page.keyboard.down('Control');
   for (let i = 0; i < 4; i++) await page.mouse.wheel(0, -200);
   await page.keyboard.up('Control');
+  // The browser hands wheel events on when it draws the next frame.
+  await page.waitForFunction(
+    (start) => document.querySelector('.report').shadowRoot.querySelector('.panel').dataset.start !== start,
+    whole,
+  );
   await room.settled();
   await page.waitForTimeout(400);
   const [, zoomed] = await points();

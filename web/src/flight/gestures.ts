@@ -75,9 +75,11 @@ export function gestures(root: HTMLElement | ShadowRoot, areaOf: (event: Event) 
     if (scale > 0) on.zoom(at(0), at(1));
   }
 
-  listen<WheelEvent>(
+  // At the host: browsers do not always hand wheel events on to a listener that only a shadow root has.
+  (root instanceof ShadowRoot ? root.host : root).addEventListener(
     'wheel',
     (event) => {
+      if (!(event instanceof WheelEvent)) return;
       const over = areaOf(event);
       if (!over) return;
       const isZoom = event.ctrlKey || event.metaKey;
