@@ -99,51 +99,34 @@ impl Model {
     /// ```
     pub fn inputs_of(&self, output: &str) -> Vec<&str> {
         let index = |name: &str| self.outputs.iter().position(|o| o.variable.name == name);
-        let reads = reads_of_all(self, &Spans::default());
-        let mut outputs: Vec<usize> = index(output).into_iter().collect();
-        let mut next = 0;
-        while let Some(by) = outputs.get(next) {
-            let read = reads.get(*by).into_iter().flatten().map(|read| read.output);
-            let new: Vec<usize> = read.filter(|read| !outputs.contains(read)).collect();
-            outputs.extend(new);
-            next += 1;
+        let mut names: BTreeMap<usize, BTreeSet<&str>> = BTreeMap::new();
+        visit_reads(self, |by, name, _| {
+            names.entry(by).or_default().insert(name);
+        });
+        let (mut read, mut next) = (BTreeSet::new(), vec![output]);
+        while let Some(by) = next.pop() {
+            let new = index(by)
+                .and_then(|by| names.get(&by))
+                .into_iter()
+                .flatten();
+            next.extend(new.filter(|name| read.insert(**name)));
         }
-        let together = concluded_together(self);
-        let mut names: BTreeSet<&str> = BTreeSet::new();
-        for rule in self.rules.iter().filter(|rule| self.is_enabled(rule)) {
-            let concluded = rule.rule.consequents.iter();
-            let concluded = concluded.filter_map(|c| index(&c.output.text));
-            let mut concluded =
-                concluded.chain(together.get(&rule.block).into_iter().flatten().copied());
-            if concluded.any(|output| outputs.contains(&output)) {
-                rule.rule.condition.visit(&mut |proposition| {
-                    names.insert(&proposition.variable.text);
-                });
-            }
-        }
-        let outputs = outputs
-            .iter()
-            .filter_map(|output| self.outputs.get(*output));
-        // Of a fuzzy set, a formula names its own variable.
-        let of_numbers = outputs.filter(|output| output.defuzzifier.takes_numbers());
-        let terms = of_numbers.flat_map(|output| &output.variable.terms);
-        names.extend(terms.flat_map(|term| term.membership_function.reads()));
         let inputs = self.inputs.iter().map(|input| input.name.as_str());
-        inputs.filter(|name| names.contains(name)).collect()
+        inputs.filter(|name| read.contains(name)).collect()
     }
 }
 
-/// What each output reads, each output once.
-pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
+/// Where an output reads a variable.
+enum Place<'m> {
+    /// In the condition of a rule: its index, and the span of the name.
+    Condition(usize, &'m Range<usize>),
+    /// In the linear function or the formula of a term: its index, and that of the name.
+    Term(usize, usize),
+}
+
+/// Calls `visit` for all that outputs read, with the index of the output, the name of the variable it reads, and the place.
+fn visit_reads<'m>(model: &'m Model, mut visit: impl FnMut(usize, &'m str, Place<'m>)) {
     let index = |name: &str| model.outputs.iter().position(|o| o.variable.name == name);
-    let mut reads: Vec<Vec<Read>> = vec![Vec::new(); model.outputs.len()];
-    let mut add = |by: usize, read: Read| {
-        if let Some(reads) = reads.get_mut(by)
-            && reads.iter().all(|known| known.output != read.output)
-        {
-            reads.push(read);
-        }
-    };
     let together = concluded_together(model);
     for (number, rule) in model.rules.iter().enumerate() {
         if !model.is_enabled(rule) {
@@ -154,42 +137,45 @@ pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
         concluded.extend(together.get(&rule.block).into_iter().flatten());
         rule.rule.condition.visit(&mut |proposition| {
             let name = &proposition.variable;
-            let Some(output) = index(&name.text) else {
-                return;
-            };
             for &by in &concluded {
-                let span = name.span.clone();
-                let rule = Some(number);
-                add(by, Read { output, rule, span });
+                visit(by, &name.text, Place::Condition(number, &name.span));
             }
         });
     }
     for (by, output) in model.outputs.iter().enumerate() {
-        for (term, written) in output.variable.terms.iter().enumerate() {
-            // Of a fuzzy set, a formula names its own variable.
-            if !output.defuzzifier.takes_numbers() {
-                continue;
-            }
-            for (i, name) in written.membership_function.reads().into_iter().enumerate() {
-                let span = spans
-                    .outputs
-                    .get(by)
-                    .and_then(|spans| spans.terms.get(term));
-                let span = span.and_then(|span| span.parameters.get(i).cloned());
-                if let Some(output) = index(name) {
-                    let span = span.unwrap_or_default();
-                    add(
-                        by,
-                        Read {
-                            output,
-                            rule: None,
-                            span,
-                        },
-                    );
-                }
+        // Of a fuzzy set, a formula names its own variable.
+        if !output.defuzzifier.takes_numbers() {
+            continue;
+        }
+        for (number, term) in output.variable.terms.iter().enumerate() {
+            for (i, name) in term.membership_function.reads().into_iter().enumerate() {
+                visit(by, name, Place::Term(number, i));
             }
         }
     }
+}
+
+/// What each output reads of other outputs, each once.
+pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
+    let index = |name: &str| model.outputs.iter().position(|o| o.variable.name == name);
+    let mut reads: Vec<Vec<Read>> = vec![Vec::new(); model.outputs.len()];
+    visit_reads(model, |by, name, place| {
+        let (Some(output), Some(reads)) = (index(name), reads.get_mut(by)) else {
+            return;
+        };
+        if reads.iter().any(|known| known.output == output) {
+            return;
+        }
+        let (rule, span) = match place {
+            Place::Condition(rule, span) => (Some(rule), span.clone()),
+            Place::Term(term, i) => {
+                let terms = spans.outputs.get(by).map(|spans| &spans.terms);
+                let span = terms.and_then(|terms| terms.get(term)?.parameters.get(i).cloned());
+                (None, span.unwrap_or_default())
+            }
+        };
+        reads.push(Read { output, rule, span });
+    });
     reads
 }
 
