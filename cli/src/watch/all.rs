@@ -11,7 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use flagred::{estimator::Estimator, verdict::Level};
+use flagred::estimator::Estimator;
 use flightlog::mavlink::{Key, Next, Stream, next_packet};
 use fuzzy::drawing::visible;
 use report::words::level_style;
@@ -242,7 +242,7 @@ impl<'e> Shown<'e> {
         }
     }
 
-    /// The text of a screen of so many columns and rows. A line end in the last row would scroll the first row away.
+    /// The text of a screen of so many columns and rows.
     fn frame(&self, fleet: &Fleet<'e>, (columns, rows): (usize, usize)) -> String {
         let views = fleet.views();
         let in_air = views.iter().filter(|(_, view)| view.is_in_air).count();
@@ -256,23 +256,16 @@ impl<'e> Shown<'e> {
         } else {
             views.len()
         };
-        let width = columns.saturating_sub(1);
-        let cut = |line: String| line.chars().take(width).collect::<String>();
-        let mut lines = vec![cut(head), String::new()];
+        let mut lines = vec![cut(&head, columns), String::new()];
         let named = views.iter().take(shown);
-        lines.extend(named.map(|(id, view)| {
-            let line = cut(self.row(*id, view));
-            let level = view.latest.and_then(|latest| latest.level);
-            level.map_or(line.clone(), |level| styled(&line, level))
-        }));
+        lines.extend(named.map(|(id, view)| self.row(*id, view, columns)));
         if shown < views.len() {
-            lines.push(cut(format!("and {} more", views.len() - shown)));
+            lines.push(cut(&format!("and {} more", views.len() - shown), columns));
         }
-        lines.truncate(rows.saturating_sub(1));
-        screen::text(&lines)
+        screen::text(&lines, rows)
     }
 
-    fn row(&self, id: Id, view: &View<'_>) -> String {
+    fn row(&self, id: Id, view: &View<'_>, columns: usize) -> String {
         let latest = view.latest;
         let state = match (view.link_lost, view.motors_lost, view.is_in_air) {
             (true, ..) => "LINK LOST",
@@ -284,10 +277,17 @@ impl<'e> Shown<'e> {
         let risk = known.map_or("risk unknown".to_owned(), |known| {
             format!("risk {:3.0} %", known.risk_pct)
         });
-        let level = latest.and_then(|latest| latest.level);
-        let level = level.map_or(String::new(), |level| level.to_string());
         let name = self.name(id);
-        format!("{level:<4}  {risk:<12}  {:<30}  {state}", visible(&name))
+        let rest = format!("  {risk:<12}  {:<30}  {state}", visible(&name));
+        let Some(level) = latest.and_then(|latest| latest.level) else {
+            return cut(&format!("    {rest}"), columns);
+        };
+        let (name, style) = (level.to_string(), level_style(level));
+        let line = cut(&format!("{name:<4}{rest}"), columns);
+        match line.strip_prefix(&name) {
+            Some(rest) => format!("{style}{name}{style:#}{rest}"),
+            None => line,
+        }
     }
 
     /// Leaves the screen, and prints a line for each vehicle.
@@ -350,14 +350,9 @@ impl Drop for Shown<'_> {
     }
 }
 
-/// A line that begins with a level, which gets its color.
-fn styled(line: &str, level: Level) -> String {
-    let style = level_style(level);
-    let name = level.to_string();
-    match line.strip_prefix(&name) {
-        Some(rest) => format!("{style}{name}{style:#}{rest}"),
-        None => line.to_owned(),
-    }
+/// What fits in a row: a full one would wrap.
+fn cut(line: &str, columns: usize) -> String {
+    line.chars().take(columns.saturating_sub(1)).collect()
 }
 
 #[cfg(test)]

@@ -218,14 +218,10 @@ fn gravity(summary: &Summary) -> f64 {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use flightlog::mavlink::{
-        Next, Sender, Version,
-        dialect::{MavMessage, SERVO_OUTPUT_RAW_DATA},
-        next_packet,
-    };
+    use flightlog::mavlink::{Next, Sender, Version, dialect::MavMessage, next_packet};
 
     use super::*;
-    use crate::watch::session::tests::{estimator, quadrotor};
+    use crate::watch::session::tests::{estimator, quadrotor, servo};
 
     /// A fleet on one link, and its clock.
     pub(crate) struct Air<'e> {
@@ -252,19 +248,11 @@ pub(crate) mod tests {
         /// Lets time pass; vehicles send pulses at 10 Hz, and heartbeats.
         pub(crate) fn fly(&mut self, seconds: u32, vehicles: &[(u8, bool, [u16; 4])]) {
             for tick in 0..10 * seconds {
-                for (system, in_air, [a, b, c, d]) in vehicles {
+                for (system, in_air, pulses_us) in vehicles {
                     if tick % 10 == 0 {
                         self.hear(*system, &quadrotor(*in_air));
                     }
-                    let outputs = MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
-                        time_usec: (self.now_s * 1e6) as u32,
-                        servo1_raw: *a,
-                        servo2_raw: *b,
-                        servo3_raw: *c,
-                        servo4_raw: *d,
-                        ..SERVO_OUTPUT_RAW_DATA::default()
-                    });
-                    self.hear(*system, &outputs);
+                    self.hear(*system, &servo(self.now_s, *pulses_us));
                 }
                 self.now_s += 0.1;
                 self.fleet.tick(self.now_s, |_, _, _| {});

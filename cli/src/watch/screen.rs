@@ -72,9 +72,7 @@ impl Screen {
         let title = format!("FLAGRED  {}", self.title);
         let mut lines = wrapped([title.as_str(), ""].into_iter().chain(now.lines()), columns);
         let latest = wrapped(self.latest.iter().map(String::as_str), columns);
-        // A line end in the last row would scroll the first row away.
-        let room = rows.saturating_sub(1);
-        let left = room.saturating_sub(lines.len() + 3);
+        let left = rows.saturating_sub(lines.len() + 4);
         lines.push(String::new());
         lines.extend_from_slice(
             latest
@@ -82,15 +80,15 @@ impl Screen {
                 .unwrap_or(&[]),
         );
         lines.extend([String::new(), "Ctrl-C quits".to_owned()]);
-        lines.truncate(room);
-        text(&lines)
+        text(&lines, rows)
     }
 }
 
-/// The text that puts lines in the place of the screen before.
-pub(crate) fn text(lines: &[String]) -> String {
+/// The text that puts lines in the place of the screen before, as many as it has rows for.
+pub(crate) fn text(lines: &[String], rows: usize) -> String {
     let mut text = HOME.to_owned();
-    for line in lines {
+    // A line end in the last row would scroll the first row away.
+    for line in lines.iter().take(rows.saturating_sub(1)) {
         text += line;
         text += CLEAR_LINE;
         text += "\r\n";

@@ -40,6 +40,19 @@ pub(crate) fn quadrotor(in_air: bool) -> MavMessage {
     })
 }
 
+/// Four motor commands at a time of the vehicle's clock, which starts again every 71 minutes.
+pub(crate) fn servo(t_s: f64, pulses_us: [u16; 4]) -> MavMessage {
+    let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] = pulses_us;
+    MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
+        time_usec: (t_s * 1e6) as u64 as u32,
+        servo1_raw,
+        servo2_raw,
+        servo3_raw,
+        servo4_raw,
+        ..SERVO_OUTPUT_RAW_DATA::default()
+    })
+}
+
 pub(crate) fn estimator() -> Estimator {
     shipped::flagred_paper()
 }
@@ -147,16 +160,7 @@ impl<'e> Bench<'e> {
             if i % 25 == 0 {
                 self.beat(true);
             }
-            let t_s = from_s + f64::from(i) / 25.0;
-            let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] = pulses(i);
-            self.hear(&MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
-                time_usec: ((t_s * 1e6) as u64 % (1 << 32)) as u32,
-                servo1_raw,
-                servo2_raw,
-                servo3_raw,
-                servo4_raw,
-                ..SERVO_OUTPUT_RAW_DATA::default()
-            }));
+            self.hear(&servo(from_s + f64::from(i) / 25.0, pulses(i)));
             self.wait(0.03);
         }
     }

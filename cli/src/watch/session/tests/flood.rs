@@ -122,14 +122,7 @@ fn is_harmless(event: &Event) -> bool {
 
 fn hovering(t_s: f64) -> MavMessage {
     let wiggle = (t_s * 25.0).round() as u16 % 5;
-    MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
-        time_usec: (t_s * 1e6) as u64 as u32,
-        servo1_raw: 1500 + wiggle,
-        servo2_raw: 1500,
-        servo3_raw: 1500 - wiggle,
-        servo4_raw: 1500,
-        ..SERVO_OUTPUT_RAW_DATA::default()
-    })
+    servo(t_s, [1500 + wiggle, 1500, 1500 - wiggle, 1500])
 }
 
 fn link(estimator: &Estimator) -> Link<'_> {

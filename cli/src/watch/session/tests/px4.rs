@@ -49,16 +49,9 @@ impl Bench<'_> {
             }
             let t_s = from_s + f64::from(i) / 25.0;
             let wiggle = (i % 5) as u16;
-            let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] = pulses;
+            let [one, two, three, four] = pulses;
             let before = self.sent.len();
-            self.hear(&MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
-                time_usec: (t_s * 1e6) as u32,
-                servo1_raw: servo1_raw + wiggle,
-                servo2_raw,
-                servo3_raw: servo3_raw - wiggle,
-                servo4_raw,
-                ..SERVO_OUTPUT_RAW_DATA::default()
-            }));
+            self.hear(&servo(t_s, [one + wiggle, two, three - wiggle, four]));
             each(self, before);
             self.wait(0.03);
         }

@@ -36,14 +36,7 @@ impl Bench<'_> {
                 self.beat(true);
             }
             if i % (50 / motors_hz) == 0 {
-                self.hear(&MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
-                    time_usec: (t_s * 1e6) as u32,
-                    servo1_raw: 1500,
-                    servo2_raw: 1500,
-                    servo3_raw: 1500,
-                    servo4_raw: 1500,
-                    ..SERVO_OUTPUT_RAW_DATA::default()
-                }));
+                self.hear(&servo(t_s, [1500; 4]));
             }
             if i % (50 / others_hz) == 0 {
                 self.hear(&MavMessage::ATTITUDE(ATTITUDE_DATA {

@@ -8,17 +8,6 @@ fn address(port: u16) -> Source {
     Some(([192, 0, 2, 1], port).into())
 }
 
-fn servo(t_s: f64, pulse: u16) -> MavMessage {
-    MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
-        time_usec: (t_s * 1e6) as u32,
-        servo1_raw: pulse,
-        servo2_raw: pulse,
-        servo3_raw: pulse,
-        servo4_raw: pulse,
-        ..SERVO_OUTPUT_RAW_DATA::default()
-    })
-}
-
 /// Somebody at an address who speaks as a component of a system.
 struct Peer {
     source: Source,
@@ -76,7 +65,7 @@ fn one_heartbeat_is_no_vehicle_and_a_stray_one_does_not_lock_the_vehicle_out() {
         }
         if i >= 4 {
             vehicle.say(&mut bench, &quadrotor(false));
-            vehicle.say(&mut bench, &servo(f64::from(i) * 0.5, 1500));
+            vehicle.say(&mut bench, &servo(f64::from(i) * 0.5, [1500; 4]));
         }
     }
     assert_eq!(bench.followed(), Some(1));
@@ -120,7 +109,7 @@ fn a_second_sender_is_told_once_and_not_believed_until_the_first_is_silent() {
     for i in 0..100 {
         liar.say(&mut bench, &quadrotor(false));
         liar.say(&mut bench, &on_ground);
-        liar.say(&mut bench, &servo(20.0 + f64::from(i) * 0.04, 1999));
+        liar.say(&mut bench, &servo(20.0 + f64::from(i) * 0.04, [1999; 4]));
     }
     bench.hover(20.0, 10.0, 1500);
     assert_eq!(bench.doubts_told(), [Doubt::SecondSender]);
@@ -132,7 +121,7 @@ fn a_second_sender_is_told_once_and_not_believed_until_the_first_is_silent() {
     bench.wait(2.5);
     for i in 0..50 {
         liar.say(&mut bench, &quadrotor(true));
-        liar.say(&mut bench, &servo(33.0 + f64::from(i) * 0.04, 1500));
+        liar.say(&mut bench, &servo(33.0 + f64::from(i) * 0.04, [1500; 4]));
         bench.wait(0.04);
     }
     let changed = bench.count(
@@ -227,9 +216,9 @@ fn a_clock_that_jumps_while_it_goes_on_is_no_reboot() {
     bench.hover(100.0, 10.0, 1500);
     for i in 0..100 {
         let t_s = 110.0 + f64::from(i) * 0.04;
-        bench.hear(&servo(t_s, 1500));
+        bench.hear(&servo(t_s, [1500; 4]));
         for late_s in [0.0, 0.02] {
-            bench.hear(&servo(t_s - 100.0 + late_s, 1999));
+            bench.hear(&servo(t_s - 100.0 + late_s, [1999; 4]));
         }
         bench.wait(0.04);
     }
@@ -243,7 +232,7 @@ fn a_clock_that_jumps_while_it_goes_on_is_no_reboot() {
     // A vehicle that reboots is silent before.
     bench.wait_beating(3, true);
     for i in 0..5 {
-        bench.hear(&servo(1.0 + f64::from(i) * 0.04, 1000));
+        bench.hear(&servo(1.0 + f64::from(i) * 0.04, [1000; 4]));
         bench.wait(0.04);
     }
     assert_eq!(bench.count(|event| matches!(event, Event::Rebooted)), 1);
