@@ -12,8 +12,11 @@ export interface Gestures {
 /** A pointer that moved less has not selected anything, in pixels. */
 const LEAST_PX = 8;
 
-/** Listens to the pointers on all charts below a root. `areaOf` gives the chart's area that an event is about. */
-export function gestures(root: HTMLElement | ShadowRoot, areaOf: (event: Event) => HTMLElement | undefined, on: Gestures): void {
+/**
+ * Listens to the pointers on all charts in an element. `areaOf` gives the chart's area that an event is about. Where the charts
+ * are in a shadow root, the element is its host: browsers do not always hand wheel events on to listeners of a shadow root.
+ */
+export function gestures(element: HTMLElement, areaOf: (event: Event) => HTMLElement | undefined, on: Gestures): void {
   /** The pointers that are down on one area. */
   let area: HTMLElement | undefined;
   const down = new Map<number, { from: number; now: number }>();
@@ -24,7 +27,7 @@ export function gestures(root: HTMLElement | ShadowRoot, areaOf: (event: Event) 
   };
 
   const listen = <E extends Event>(name: string, take: (event: E) => void, options?: AddEventListenerOptions) =>
-    root.addEventListener(name, take as EventListener, options);
+    element.addEventListener(name, take as EventListener, options);
 
   listen<PointerEvent>('pointerdown', (event) => {
     const touched = areaOf(event);
@@ -75,11 +78,9 @@ export function gestures(root: HTMLElement | ShadowRoot, areaOf: (event: Event) 
     if (scale > 0) on.zoom(at(0), at(1));
   }
 
-  // At the host: browsers do not always hand wheel events on to a listener that only a shadow root has.
-  (root instanceof ShadowRoot ? root.host : root).addEventListener(
+  listen<WheelEvent>(
     'wheel',
     (event) => {
-      if (!(event instanceof WheelEvent)) return;
       const over = areaOf(event);
       if (!over) return;
       const isZoom = event.ctrlKey || event.metaKey;

@@ -109,7 +109,7 @@ export function report(style: string, listener: Listener): Report {
       .composedPath()
       .find((target): target is HTMLElement => target instanceof HTMLElement && target.matches('.panel .area'));
 
-  gestures(root, areaOf, {
+  gestures(element, areaOf, {
     point: listener.onPoint,
     zoom: listener.onZoom,
     select(area, ends) {
