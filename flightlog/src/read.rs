@@ -26,9 +26,10 @@ pub struct Options {
     /// times, modes and messages are always read, and the [`Report`](crate::Report) is the
     /// same whatever is kept.
     pub signals: Option<Vec<String>>,
-    /// Range of the motor outputs of a log that does not report it, such as a telemetry log
-    /// without parameters. [`Flight::assumed`] says that it was given. Reading a log that
-    /// contradicts it is an error: one with a range of its own, or with commands above this one.
+    /// Range of the motor outputs, for a log that does not report it, such as a telemetry log
+    /// without parameters. The flight's [`assumed`](Flight::assumed) names this range. A log that
+    /// reports a range of its own, or has commands above this one, is refused
+    /// ([`ReadError::Range`]).
     pub range: Option<PulseRange>,
 }
 

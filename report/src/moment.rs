@@ -71,32 +71,32 @@ fn latest<'a>(estimator: &Estimator, assessed: &'a Assessment, t_s: f64) -> Opti
 /// with the rules that depend on it.
 fn explain(estimator: &Estimator, step: &Step) -> Option<(Vec<ExplainedInput>, Vec<FiredRule>)> {
     let (model, profile) = (estimator.model(), estimator.profile());
-    let needed = model.inputs_of(&profile.output);
     let mut unknown: Vec<&str> = Vec::new();
     let values = model.inputs.iter().map(|variable| {
         let name = variable.name.as_str();
         let place = profile.inputs.iter().position(|input| input.name == name)?;
-        match step.inputs.get(place).filter(|value| value.is_finite()) {
-            Some(value) => Some(*value),
-            None if needed.contains(&name) => None,
-            None => {
-                unknown.push(name);
-                Some(variable.low)
-            }
-        }
+        let value = step.inputs.get(place).filter(|value| value.is_finite());
+        Some(value.copied().unwrap_or_else(|| {
+            unknown.push(name);
+            variable.low
+        }))
     });
     let values: Vec<f64> = values.collect::<Option<_>>()?;
+    let is_known = |output: &str| {
+        let reads_unknown = |input: &&str| unknown.contains(input);
+        unknown.is_empty() || !model.inputs_of(output).iter().any(reads_unknown)
+    };
+    if !is_known(&profile.output) {
+        return None;
+    }
     let explanation = estimator.engine().explain(&values).ok()?;
     let (mut inputs, mut rules) = (explanation.inputs, explanation.rules);
-    if !unknown.is_empty() {
-        let is_known = |output: &str| model.inputs_of(output).iter().all(|i| !unknown.contains(i));
-        inputs.retain(|input| !unknown.contains(&input.name.as_str()));
-        rules.retain(|fired| {
-            let rule = model.rules.get(fired.rule);
-            let mut concluded = rule.into_iter().flat_map(|rule| &rule.rule.consequents);
-            concluded.all(|consequent| is_known(&consequent.output.text))
-        });
-    }
+    inputs.retain(|input| !unknown.contains(&input.name.as_str()));
+    rules.retain(|fired| {
+        let rule = model.rules.get(fired.rule);
+        let mut concluded = rule.into_iter().flat_map(|rule| &rule.rule.consequents);
+        concluded.all(|consequent| is_known(&consequent.output.text))
+    });
     Some((inputs, rules))
 }
 

@@ -142,14 +142,16 @@ fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     let own = (count - 1.0).min(3.0) / count;
     let all: f64 = motors.iter().map(|m| m.shift() * m.shift()).sum();
     let explains = shift * shift >= ONE_MOTOR * own * all;
-    // On a coaxial arm the other motor may rise nearly as far.
-    let other =
-        highest(motors, Motor::shift, Some(motor)).filter(|(_, next)| !is_ahead(shift, *next));
-    (shift > limit && explains).then(|| Unbalanced {
-        measure: Measure::WeakMotor,
-        value: shift,
-        limit,
-        motor: named(motors, motor, Side::High, other.map(|(other, _)| other)),
+    (shift > limit && explains).then(|| {
+        // On a coaxial arm the other motor may rise nearly as far.
+        let next = highest(motors, Motor::shift, Some(motor));
+        let other = next.filter(|(_, next)| !is_ahead(shift, *next));
+        Unbalanced {
+            measure: Measure::WeakMotor,
+            value: shift,
+            limit,
+            motor: named(motors, motor, Side::High, other.map(|(other, _)| other)),
+        }
     })
 }
 

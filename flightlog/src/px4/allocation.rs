@@ -52,8 +52,8 @@ impl Allocation {
         self.parts.len()
     }
 
-    /// The commands, clipped to 0..1; NaN where a set point is not known. PX4 changes the set points that
-    /// would drive a motor beyond its limits, so the others are estimates then.
+    /// The commands, clipped to 0..1; NaN where a set point is not known. Where one is clipped, PX4 lowers the set points
+    /// instead, and the commands of the other motors are estimates.
     pub(crate) fn commands(&self, set_points: [f64; AXES]) -> impl Iterator<Item = f64> {
         self.parts.iter().map(move |parts| {
             let products = parts.iter().zip(set_points).map(|(part, set)| part * set);
