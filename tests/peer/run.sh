@@ -1,5 +1,6 @@
 #!/bin/sh
-# Runs the tests with pymavlink as the peer, in a Python environment of their own under `target/`. Exits with 3 where there
+# Runs the tests with pymavlink as the peer, in a Python environment of their own under `target/`. Takes the names of
+# tests. Exits with 3 where there
 # is no Python to make one with.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -9,4 +10,4 @@ if [ ! -x "$venv/bin/pip" ] && ! python3 -m venv "$venv"; then
   exit 3
 fi
 "$venv/bin/pip" install --quiet "pymavlink>=2.4"
-FLAGRED_PYTHON="$PWD/$venv/bin/python" cargo test --workspace --test pymavlink -- --ignored
+FLAGRED_PYTHON="$PWD/$venv/bin/python" cargo test --workspace --test pymavlink -- --ignored "$@"
