@@ -171,7 +171,7 @@ fn layouts(flight: &Flight) -> impl Iterator<Item = (i64, String, Vec<[f64; 3]>)
     })
 }
 
-/// Variances and covariances of the commands in the air, and of these with what they serve.
+/// Variances and covariances of the commands in the air while all motors run, and of these with what they serve.
 struct Variance {
     commands: Covariance,
     /// The last columns are the outputs of the rate controllers of roll, pitch and yaw.
@@ -195,7 +195,8 @@ impl Variance {
             }
             row.clear();
             row.extend(raw.iter().map_while(|&raw| flight.effective_command(raw)));
-            if row.len() < motors {
+            // A motor that has stopped does not follow the mixer.
+            if row.len() < motors || row.iter().any(|command| *command <= 0.0) {
                 continue;
             }
             commands.add(&row);
