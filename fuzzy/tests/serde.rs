@@ -231,6 +231,7 @@ fn every_format_keeps_the_order_of_inputs_outputs_terms_and_blocks() {
         toml::from_str(&toml::to_string(&model).unwrap()).unwrap(),
         toml::Value::try_from(&model).unwrap().try_into().unwrap(),
         serde_yaml::from_str(&serde_yaml::to_string(&model).unwrap()).unwrap(),
+        ron::from_str(&ron::to_string(&model).unwrap()).unwrap(),
         // What serde writes, the readers of files read.
         serde_json::to_string(&model).unwrap().parse().unwrap(),
     ];
