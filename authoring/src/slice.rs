@@ -103,7 +103,7 @@ fn cell(mapped: &Mapped<'_>, outcome: &Outcome, point: &[f64]) -> Cell {
 /// than a quarter of the range.
 pub fn shown(variable: &Variable) -> Scale {
     let (low, high) = (variable.low, variable.high);
-    let (first, last) = flagred::gap::changing(variable);
+    let (first, last) = fuzzy::map::changing(variable);
     let width = last - first;
     if width <= 0.0 || width >= (high - low) / 4.0 {
         return Scale::new(low, high);
@@ -138,7 +138,7 @@ pub fn held(
                 Some(value) => vec![*value],
                 None if index == x || Some(index) == y => vec![middle],
                 None => {
-                    let mut peaks = flagred::gap::peaks(input);
+                    let mut peaks = fuzzy::map::peaks(input);
                     peaks.sort_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
                     [vec![middle], peaks].concat()
                 }
@@ -155,7 +155,7 @@ pub fn held(
     }
     let axes = [Some(x), y].into_iter().flatten();
     let axes: Vec<(usize, Vec<f64>)> = axes
-        .filter_map(|input| Some((input, flagred::gap::peaks(inputs.get(input)?))))
+        .filter_map(|input| Some((input, fuzzy::map::peaks(inputs.get(input)?))))
         .collect();
     let (mut best, mut most) = (first.clone(), variation(mapped, &first, &axes));
     for point in combinations(&candidates) {

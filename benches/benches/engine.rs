@@ -3,7 +3,7 @@
 use divan::{Bencher, black_box, counter::ItemsCount};
 use flagred_benches::{four_inputs, points, published, tipper};
 use fuzzy::engine::{Engine, Outcome};
-use fuzzy::map::{DecisionMap, DecisionTable, Grid};
+use fuzzy::map::{DecisionMap, Grid};
 use fuzzy::model::Model;
 
 #[global_allocator]
@@ -91,18 +91,4 @@ fn map_501_by_501(bencher: Bencher<'_, '_>) {
     bencher
         .counter(ItemsCount::new(grid.cells()))
         .bench_local(|| DecisionMap::new(&engine, grid.clone(), 0).unwrap());
-}
-
-#[divan::bench]
-fn table_look_up_of_2_inputs(bencher: Bencher<'_, '_>) {
-    let model = published(true);
-    let engine = Engine::new(&model).unwrap();
-    let grid = Grid::new(&engine, 101).unwrap();
-    let table = DecisionTable::new(&engine, grid, 0).unwrap();
-    let points = points(&model, POINTS);
-    bencher.counter(ItemsCount::new(POINTS)).bench_local(|| {
-        for point in &points {
-            black_box(table.value(black_box(point)));
-        }
-    });
 }

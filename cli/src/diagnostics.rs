@@ -20,8 +20,14 @@ pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: boo
         colored,
         advice: command,
         all: "`flagred check --json` lists them",
+        is_quoted: is_meant_as_rules,
     };
     diagnostics::draw(findings, file, text, style)
+}
+
+/// Whether a text is a rule set, of another program too, or a profile.
+pub(crate) fn is_meant_as_rules(text: &str) -> bool {
+    interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
 }
 
 /// The command that helps with a finding: the engine knows no commands.

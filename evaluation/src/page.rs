@@ -1,15 +1,14 @@
-//! The evaluation as one HTML page that needs nothing beside it.
+//! The evaluation as HTML: its picture and its tables.
 
 use maud::{Markup, PreEscaped, html};
-use report::page::around;
 
 use crate::{
     Evaluation, svg,
     tables::{self, Table},
 };
 
-/// The page of an evaluation: its picture and its tables.
-pub fn html(evaluation: &Evaluation) -> String {
+/// The body of a page, as `report::page::around` takes it.
+pub fn body(evaluation: &Evaluation) -> String {
     let body = html! {
         h1 { "How good the risks are" }
         @for line in tables::head(evaluation) { p.soft { (line) } }
@@ -19,7 +18,7 @@ pub fn html(evaluation: &Evaluation) -> String {
         figure.picture { (PreEscaped(svg::draw(evaluation))) }
         @for one in tables::tables(evaluation) { (table(&one)) }
     };
-    around("Evaluation", body.into_string())
+    body.into_string()
 }
 
 fn table(table: &Table) -> Markup {

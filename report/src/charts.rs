@@ -9,7 +9,12 @@ use flagred::{
 use flightlog::{Flight, Options, Signal};
 use fuzzy::{
     Model,
-    drawing::{Line, Mark, Panel, Phase, Scale, Size, Stretch, Timeline, number, path},
+    drawing::{Scale, number},
+};
+
+use crate::{
+    curve::{Stretch, path},
+    timeline::{Line, Mark, Panel, Phase, Size, Timeline},
 };
 
 /// The signals that a report draws besides those of the profile.

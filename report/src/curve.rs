@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::text::{block, number};
+use fuzzy::drawing::{block, number};
 
 /// The spans of time of a thinned curve; each keeps its first, smallest, largest and last value.
 const SPANS: usize = 500;
@@ -64,7 +64,7 @@ impl Stretch {
 /// Its x is the seconds since the start of the stretch, its y the value: what is drawn can be read back. The line is
 /// broken at unknown values and where there is no point for longer than `gap_s`. Many points are thinned; the smallest
 /// and the largest of each span stay.
-pub fn path(
+pub(crate) fn path(
     points: impl Iterator<Item = (f64, f64)>,
     stretch: Stretch,
     gap_s: f64,
@@ -157,7 +157,7 @@ const ROWS: usize = 5;
 ///
 /// A column shows the highest value of its span of time, so that no peak is lost; `·` marks spans in which all values
 /// are unknown, a blank column a span without points.
-pub fn over_time_text(points: &[(f64, Option<f64>)], width: usize) -> String {
+pub(crate) fn over_time_text(points: &[(f64, Option<f64>)], width: usize) -> String {
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return String::new();
     };

@@ -23,7 +23,7 @@ pub(super) fn focus(model: &Model, name: &str, input: usize, steps: &[Step]) -> 
     let Some(variable) = model.inputs.iter().find(|known| known.name == name) else {
         return Scale::new(0.0, 1.0);
     };
-    let (low, high) = flagred::gap::changing(variable);
+    let (low, high) = fuzzy::map::changing(variable);
     let seen = steps.iter().filter_map(|step| step.inputs.get(input));
     let seen = seen.filter(|x| x.is_finite());
     seen.map(|x| x.clamp(variable.low, variable.high))

@@ -23,6 +23,8 @@ pub struct Style {
     pub advice: fn(&str) -> Option<&'static str>,
     /// Where all findings are, when there are too many to draw.
     pub all: &'static str,
+    /// Whether a text is a rule set or a profile. No other file is quoted: it may hold secrets.
+    pub is_quoted: fn(&str) -> bool,
 }
 
 /// Draws findings with their lines.
@@ -33,7 +35,7 @@ pub struct Style {
 ///
 /// let text = "fuzzy: 1\nnam: kettle\n";
 /// let findings = fuzzy::yaml::parse(text).unwrap_err();
-/// let style = Style { colored: false, advice: |_| None, all: "" };
+/// let style = Style { colored: false, advice: |_| None, all: "", is_quoted: |_| true };
 /// assert!(draw(&findings.0, "kettle.yaml", text, style).contains("--> kettle.yaml:2:1"));
 /// ```
 #[must_use]
@@ -115,7 +117,7 @@ fn report<'a>(
     let title = level
         .primary_title(finding.message.as_str())
         .id(finding.code);
-    let mut group = match is_meant_as_rules(text) {
+    let mut group = match (style.is_quoted)(text) {
         true => title.element(snippet),
         false => {
             let before = text.get(..finding.span.start).unwrap_or(text);
@@ -140,9 +142,4 @@ fn is_drawn_with(text: &str, first: &Range<usize>, second: &Range<usize>) -> boo
         || text
             .get(from..to)
             .is_none_or(|between| between.contains('\n'))
-}
-
-/// Whether a text is a rule set, of another program too, or a profile. No other file is quoted.
-pub fn is_meant_as_rules(text: &str) -> bool {
-    interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
 }

@@ -4,6 +4,7 @@
 //! ([`document`]), as one HTML page ([`page`]) and as tables ([`steps`], [`table`]). It gives text and opens no file.
 
 mod charts;
+mod curve;
 mod decision;
 pub mod diagnostics;
 pub mod document;
@@ -14,9 +15,11 @@ mod panel;
 mod parts;
 pub mod steps;
 pub mod table;
+mod timeline;
 pub mod words;
 
 pub use charts::{SIGNALS, options};
+pub use curve::Stretch;
 
 /// The example of the README, run.
 #[cfg(doctest)]

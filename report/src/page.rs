@@ -1,13 +1,15 @@
 //! The report of one flight, or a comparison of several, as one HTML file that needs nothing beside it; and the parts of both.
 
 use flagred::{flight::Peak, loaded::Loaded};
-use fuzzy::drawing::{CSS, Escaped, Frame, Sheet, Stretch, Timeline, number};
+use fuzzy::drawing::{Escaped, Frame, Sheet, number};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::{
     charts,
+    curve::Stretch,
     panel::panel,
     parts::{badge, findings, percent, share, shown, texts, verdict_class},
+    timeline::{CSS, Timeline},
     words,
 };
 

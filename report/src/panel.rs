@@ -1,7 +1,12 @@
 //! A panel of curves over time as HTML: it takes the width there is, and its text keeps its size.
 
-use fuzzy::drawing::{Panel, Size, Stretch, Timeline, number};
+use fuzzy::drawing::number;
 use maud::{Markup, PreEscaped, html};
+
+use crate::{
+    curve::Stretch,
+    timeline::{Panel, Size, Timeline},
+};
 
 /// The panel; `input` is the index of the rules' input it shows, which the page's script marks on the map.
 pub(super) fn panel(panel: &Panel, timeline: &Timeline, input: Option<usize>) -> Markup {

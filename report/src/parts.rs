@@ -9,14 +9,17 @@ use flagred::{
 use flightlog::Flight;
 use fuzzy::{
     Model,
-    drawing::{Panel, Stretch, Timeline, number, visible_lines},
+    drawing::{number, visible_lines},
 };
 use maud::{Markup, html};
 
 use crate::{
-    charts, decision,
+    charts,
+    curve::Stretch,
+    decision,
     finding::{self, Teller},
     panel::panel,
+    timeline::{Panel, Timeline},
     words,
 };
 

@@ -2,84 +2,81 @@
 
 use std::fmt::Write as _;
 
-use super::{
-    curve::Stretch,
-    scale::Scale,
-    sheet::Frame,
-    text::{Escaped, number},
-};
+use fuzzy::drawing::{Escaped, Frame, Scale, number};
+
+use crate::curve::Stretch;
 
 /// The styles of curves over time. The colours of lines, marks and alerts are yours: `--c` of their classes.
-pub const CSS: &str = include_str!("panel.css");
+pub(crate) const CSS: &str = include_str!("timeline.css");
 
 /// What all panels of one course of events have in common.
 #[derive(Debug, Clone)]
-pub struct Timeline {
+pub(crate) struct Timeline {
     /// The time that is shown.
-    pub stretch: Stretch,
+    pub(crate) stretch: Stretch,
     /// What goes on behind the curves.
-    pub phases: Vec<Phase>,
+    pub(crate) phases: Vec<Phase>,
     /// Stretches marked along the upper edge, each with a class of the style sheet; the last is on top.
-    pub alerts: Vec<(Stretch, &'static str)>,
+    pub(crate) alerts: Vec<(Stretch, &'static str)>,
     /// Single events, in order of time.
-    pub events: Vec<(f64, String)>,
+    pub(crate) events: Vec<(f64, String)>,
 }
 
 /// A phase of a course of events, shaded behind the curves.
 #[derive(Debug, Clone)]
-pub struct Phase {
+pub(crate) struct Phase {
     /// When it is.
-    pub stretch: Stretch,
+    pub(crate) stretch: Stretch,
     /// What it is called.
-    pub name: String,
+    pub(crate) name: String,
     /// Which of the different kinds of phases it is: phases of one kind have one shade.
-    pub kind: usize,
+    pub(crate) kind: usize,
 }
 
 /// One curve.
 #[derive(Debug, Clone)]
-pub struct Line {
+pub(crate) struct Line {
     /// Its class in the style sheet, which gives it its colour.
-    pub class: &'static str,
+    pub(crate) class: &'static str,
     /// What it is called.
-    pub name: String,
-    /// The data of its path, from [`path`](super::path()).
-    pub data: String,
+    pub(crate) name: String,
+    /// The data of its path, from [`path`](crate::curve::path).
+    pub(crate) data: String,
 }
 
 /// A value that is marked over all of the time.
 #[derive(Debug, Clone)]
-pub struct Mark {
+pub(crate) struct Mark {
     /// The value.
-    pub value: f64,
+    pub(crate) value: f64,
     /// Its class in the style sheet.
-    pub class: &'static str,
+    pub(crate) class: &'static str,
     /// What it is; empty where the panel need not name it.
-    pub name: String,
+    pub(crate) name: String,
 }
 
 /// Curves over time on one scale.
 #[derive(Debug, Clone)]
-pub struct Panel {
+pub(crate) struct Panel {
     /// What it shows.
-    pub title: String,
+    pub(crate) title: String,
     /// The unit of the values.
-    pub unit: &'static str,
+    pub(crate) unit: &'static str,
     /// The range of values that is shown.
-    pub scale: Scale,
+    pub(crate) scale: Scale,
     /// How high it is.
-    pub size: Size,
+    pub(crate) size: Size,
     /// The curves.
-    pub lines: Vec<Line>,
+    pub(crate) lines: Vec<Line>,
     /// Values marked over all of the time.
-    pub marks: Vec<Mark>,
+    pub(crate) marks: Vec<Mark>,
     /// Shaded ranges of values.
-    pub zones: Vec<Scale>,
+    pub(crate) zones: Vec<Scale>,
 }
 
 /// How high a panel is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Size {
+pub(crate) enum Size {
     /// The main one.
     Large,
     /// With a scale of its own.
@@ -90,7 +87,7 @@ pub enum Size {
 
 impl Line {
     /// A curve of a class, from the data of its path.
-    pub fn new(class: &'static str, name: impl Into<String>, data: String) -> Line {
+    pub(crate) fn new(class: &'static str, name: impl Into<String>, data: String) -> Line {
         let name = name.into();
         Line { class, name, data }
     }
@@ -98,7 +95,7 @@ impl Line {
 
 impl Panel {
     /// Curves on a scale of a unit, without marks and zones.
-    pub fn new(
+    pub(crate) fn new(
         title: impl Into<String>,
         (scale, unit): (Scale, &'static str),
         size: Size,
@@ -116,7 +113,7 @@ impl Panel {
     }
 
     /// Whether there is anything to draw.
-    pub fn has_data(&self) -> bool {
+    pub(crate) fn has_data(&self) -> bool {
         self.lines.iter().any(|line| !line.data.is_empty())
     }
 
@@ -129,7 +126,7 @@ impl Panel {
     }
 
     /// The values to mark with their labels, the highest with the unit.
-    pub fn labels(&self) -> Vec<(f64, String)> {
+    pub(crate) fn labels(&self) -> Vec<(f64, String)> {
         let labels = self.ticks().into_iter();
         let mut labels: Vec<(f64, String)> =
             labels.map(|value| (value, number(value, 3))).collect();
@@ -143,7 +140,7 @@ impl Panel {
     /// The curves as an SVG element without labels: x is seconds since the start, y the value, upwards.
     ///
     /// `attributes` are those of the element: its position and size within another SVG document, or none.
-    pub fn plot(&self, timeline: &Timeline, attributes: &str) -> String {
+    pub(crate) fn plot(&self, timeline: &Timeline, attributes: &str) -> String {
         let Scale { low, high } = self.scale;
         let (length, height) = (timeline.stretch.length_s(), high - low);
         let (length, height) = (number(length, 3), number(height, 6));
@@ -220,7 +217,7 @@ impl Panel {
     /// The panel with its labels as a part of an SVG document, the curves within `frame`.
     ///
     /// It needs 48 pixels on the left of the frame, and 24 above and below.
-    pub fn svg(&self, timeline: &Timeline, frame: Frame) -> String {
+    pub(crate) fn svg(&self, timeline: &Timeline, frame: Frame) -> String {
         let Frame {
             left,
             top,

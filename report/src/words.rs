@@ -9,9 +9,12 @@ use flagred::{
     verdict::Level,
 };
 use flightlog::Flight;
-use fuzzy::drawing::{number, over_time_text, visible};
+use fuzzy::drawing::{number, visible};
 
-use crate::finding::{self, Teller};
+use crate::{
+    curve::over_time_text,
+    finding::{self, Teller},
+};
 
 /// Columns of the picture of risk over time.
 const PICTURE_COLUMNS: usize = 64;

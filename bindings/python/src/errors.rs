@@ -18,6 +18,9 @@ const STYLE: Style = Style {
     colored: false,
     advice: |_| None,
     all: "`findings` of the error lists them",
+    is_quoted: |text| {
+        interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
+    },
 };
 
 /// A [`DataError`] with what to do about it.

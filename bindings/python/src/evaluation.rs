@@ -311,7 +311,7 @@ impl EvaluationData {
 
     /// The evaluation as one HTML page that needs nothing beside it.
     fn html(&self) -> String {
-        page::html(&self.evaluation)
+        report::page::around("Evaluation", page::body(&self.evaluation))
     }
 
     /// The ROC curves and the reliability as SVG.

@@ -17,9 +17,9 @@ use flagred::{
 };
 use fuzzy::drawing::visible;
 use interchange::{Format, Losses};
-use report::diagnostics::is_meant_as_rules;
 
 use crate::{
+    diagnostics::is_meant_as_rules,
     failure::{Exit, Failure},
     output::{Files, Replace, say},
     profile, rule_set,

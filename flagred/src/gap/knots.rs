@@ -4,7 +4,7 @@ use alloc::{vec, vec::Vec};
 
 use fuzzy::{
     Model,
-    model::{MembershipFunction, Variable},
+    map::{changing, peaks},
 };
 
 use super::filled::read;
@@ -140,89 +140,12 @@ fn count(axes: &[Vec<f64>]) -> usize {
     axes.iter().fold(1, times)
 }
 
-/// The peaks of a variable's terms and the ends of its range, rising. A flat top has two peaks.
-///
-/// # Example: where the paper's spread is low, medium and high
-///
-/// ```
-/// let model = flagred::shipped::flagred_paper_rules();
-/// assert_eq!(flagred::gap::peaks(&model.inputs[1]), [0.0, 0.1, 0.2, 0.5]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn peaks(variable: &Variable) -> Vec<f64> {
-    let (low, high) = (variable.low, variable.high);
-    let tops = variable
-        .terms
-        .iter()
-        .map(|t| top(&t.membership_function, low, high));
-    let mut peaks = vec![low, high];
-    peaks.extend(tops.flat_map(|(first, last)| [first, last]));
-    peaks.sort_by(f64::total_cmp);
-    // Nobody means a thousandth of a range; the ends stay.
-    let apart = 1e-3 * (high - low);
-    peaks.dedup_by(|next, last| *next - *last < apart);
-    if let Some(last) = peaks.last_mut().filter(|last| high - **last < apart) {
-        *last = high;
-    }
-    peaks
-}
-
-/// The part of a variable's range in which its terms change, from and to; all of it where they change nowhere.
-///
-/// # Example: a shoulder
-///
-/// ```
-/// let model = flagred::shipped::flagred_paper_rules();
-/// assert_eq!(flagred::gap::changing(&model.inputs[0]), (0.0, 0.3)); // from 0.3 to 0.5 the margin is high
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn changing(variable: &Variable) -> (f64, f64) {
-    let peaks = peaks(variable);
-    let changes = |pair: &&[f64]| {
-        let differ =
-            |shape: &MembershipFunction| shape.membership(pair[0]) != shape.membership(pair[1]);
-        variable
-            .terms
-            .iter()
-            .any(|term| differ(&term.membership_function))
-    };
-    let first = peaks.windows(2).find(changes);
-    let last = peaks.windows(2).rev().find(changes);
-    match (first, last) {
-        (Some(first), Some(last)) => (first[0], last[1]),
-        _ => (variable.low, variable.high),
-    }
-}
-
 /// Places with another one half way between each two.
 fn with_middles(places: &[f64]) -> Vec<f64> {
     let middles = places.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
     let mut all: Vec<f64> = middles.chain(places.iter().copied()).collect();
     all.sort_by(f64::total_cmp);
     all
-}
-
-/// Where a shape is highest within a range, from and to.
-fn top(shape: &MembershipFunction, low: f64, high: f64) -> (f64, f64) {
-    const STEPS: u32 = 2000;
-    let corners = shape.corners().filter(|corners| corners.len() > 1);
-    let xs: Vec<f64> = match corners {
-        Some(corners) => {
-            let ends = [low, high].into_iter();
-            ends.chain(corners.iter().map(|(x, _)| x.clamp(low, high)))
-                .collect()
-        }
-        None => {
-            let at = |i: u32| low + (high - low) * f64::from(i) / f64::from(STEPS);
-            (0..=STEPS).map(at).collect()
-        }
-    };
-    let highest = xs.iter().map(|x| shape.membership(*x));
-    let highest = highest.fold(f64::NEG_INFINITY, f64::max);
-    let at_top = xs
-        .iter()
-        .filter(|x| shape.membership(**x) >= highest - 1e-9);
-    at_top.fold((high, low), |(first, last), x| (x.min(first), x.max(last)))
 }
 
 #[cfg(test)]
@@ -261,21 +184,6 @@ rules: []
         for (place, expected) in places.iter().zip(expected) {
             approx::assert_abs_diff_eq!(*place, expected, epsilon = 1e-12);
         }
-    }
-
-    #[test]
-    fn flat_tops_count_from_both_ends_and_curves_from_their_highest_place() {
-        let peaks = |terms| {
-            let places = places_of(terms);
-            places.into_iter().step_by(2).collect::<Vec<f64>>()
-        };
-        let flat = "terms: {flat: {trapezoid: [0.1, 0.25, 0.5, 0.7]}}";
-        assert_eq!(peaks(flat), [0.0, 0.25, 0.5, 1.0]);
-        let bell = "terms: {bell: {gaussian: {mean: 0.3, sd: 0.1}}}";
-        assert_eq!(peaks(bell), [0.0, 0.3, 1.0]);
-        let beyond = "terms: {beyond: {gaussian: {mean: 3, sd: 1}}}";
-        assert_eq!(peaks(beyond), [0.0, 1.0]);
-        assert_eq!(peaks("terms: {all: {rectangle: [0, 1]}}"), [0.0, 1.0]);
     }
 
     #[test]

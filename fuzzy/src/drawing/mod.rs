@@ -1,4 +1,4 @@
-//! Pictures of rule sets and of values over time, as SVG and as text.
+//! Pictures of rule sets, as SVG and as text.
 //!
 //! The drawing kit takes plain data and gives text: it opens no file, knows no terminal, and has no dependencies.
 //!
@@ -11,7 +11,6 @@
 //! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`], [`surface_text`], [`values_text`] |
 //! | the rule that dominates each part of a map | [`rules_svg`] | [`rules_text`] |
 //! | lines over a number ([`Plot`]) | [`plots_svg`] | |
-//! | curves over time ([`Panel`]) | [`Panel::svg`] | [`over_time_text`] |
 //!
 //! Names and texts in a picture are escaped: no name can add markup, or act on a terminal ([`visible`]).
 //!
@@ -28,12 +27,10 @@
 
 mod colour;
 mod contour;
-mod curve;
 mod explanation;
 mod explanation_text;
 mod heat;
 mod map_text;
-mod panel;
 mod plot;
 mod regions;
 mod scale;
@@ -45,12 +42,10 @@ mod text;
 mod variables;
 
 pub use colour::{Colour, distinct, distinct_line, reds, viridis};
-pub use curve::{Stretch, over_time_text, path};
 pub use explanation::{explanation_svg, terms_svg};
 pub use explanation_text::explanation_text;
 pub use heat::{map_svg, runs};
 pub use map_text::{map_text, rules_text, values_text};
-pub use panel::{CSS, Line, Mark, Panel, Phase, Size, Timeline};
 pub use plot::{Plot, Series, plots_svg};
 pub use regions::rules_svg;
 pub use scale::Scale;
@@ -58,5 +53,5 @@ pub use sheet::{Anchor, Frame, Sheet};
 pub use slice::{Axis, Cell, Slice};
 pub use surface::surface_svg;
 pub use surface_text::surface_text;
-pub use text::{Escaped, bar, number, short, visible, visible_lines};
+pub use text::{Escaped, bar, block, number, short, visible, visible_lines};
 pub use variables::{moved_svg, variables_svg, variables_text};

@@ -101,7 +101,13 @@ pub fn bar(share: f64, width: usize) -> String {
 }
 
 /// The character that a column of so many eighths of a row shows in a row, counted from the bottom.
-pub(super) fn block(eighths: usize, row: usize) -> char {
+///
+/// # Example: a column one row and a half high
+/// ```
+/// use fuzzy::drawing::block;
+/// assert_eq!([block(12, 2), block(12, 1), block(12, 0)], [' ', '▄', '█']);
+/// ```
+pub fn block(eighths: usize, row: usize) -> char {
     const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     EIGHTHS[eighths.saturating_sub(row * 8).min(8)]
 }

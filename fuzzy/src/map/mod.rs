@@ -9,12 +9,12 @@ use crate::engine::batch::{Memory, ROWS};
 use crate::table::Results;
 
 mod grid;
-mod table;
+mod peaks;
 #[cfg(test)]
 mod tests;
 
 pub use grid::{Axis, Fixed, Grid, GridError};
-pub use table::{DecisionTable, TableError};
+pub use peaks::{changing, peaks};
 
 /// One output of an engine on every cell of a grid.
 ///

@@ -95,38 +95,3 @@ fn between_cells_and_beyond_them() {
     assert_eq!(grid.interpolate(holed, &[0.0, 0.25]), Some(1.0));
     assert_eq!(grid.interpolate(holed, &[0.0, 0.2]), None);
 }
-
-#[test]
-fn a_table_is_as_good_as_it_says() {
-    let engine = Engine::new(&published()).unwrap();
-    let grid = Grid::new(&engine, 101).unwrap();
-    let table = DecisionTable::new(&engine, grid, 0).unwrap();
-    assert!(table.error() > 0.0);
-    // Points that were not measured.
-    for i in 1..2000 {
-        let point = [
-            0.5 * (f64::from(i) * 0.618_034).fract(),
-            0.5 * (f64::from(i) * 0.754_878).fract(),
-        ];
-        let exact = engine.evaluate(&point).unwrap()[0].value();
-        if let (Some(read), Some(exact)) = (table.value(&point), exact) {
-            assert!((read - exact).abs() <= 1.5 * table.error(), "at {point:?}");
-        }
-    }
-    // No rule fires at no spread and no margin, and the table does not make up a value.
-    assert_eq!(table.value(&[0.0, 0.0]), None);
-    assert_eq!(table.value(&[f64::NAN, 0.0]), None);
-    assert_eq!(table.values().len(), 101 * 101);
-}
-
-#[test]
-fn tables_that_cannot_be() {
-    let engine = Engine::new(&published()).unwrap();
-    assert!(DecisionTable::within(&engine, 0, 0.0).is_err());
-    assert!(DecisionTable::within(&engine, 0, f64::NAN).is_err());
-    assert!(DecisionTable::within(&engine, 1, 1.0).is_err());
-    assert!(matches!(
-        DecisionTable::within(&engine, 0, 1e-9),
-        Err(TableError::TooCoarse { .. })
-    ));
-}

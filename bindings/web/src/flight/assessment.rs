@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use flagred::loaded::Loaded;
-use fuzzy::drawing::Stretch;
+use report::Stretch;
 use report::{
     document, moment,
     page::{self, Part, Report, Subject},

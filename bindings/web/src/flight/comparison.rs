@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use fuzzy::drawing::Stretch;
+use report::Stretch;
 use report::page::{self, Subject};
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 
