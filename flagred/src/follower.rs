@@ -361,8 +361,11 @@ impl Follower {
 
     /// What is known where the risk is not: an alarm that stands, and never that all is good.
     fn unknown(&self, t_s: f64, reason: Unknown, ended: Ended) -> Update {
-        let judging = self.in_air_since_s.is_some() && self.last_known_s.is_some();
-        let level = judging.then(|| self.level());
+        let noticed = self.notices.open().map(|finding| finding.level);
+        let level = match self.last_known_s {
+            Some(_) if self.in_air_since_s.is_some() => Some(self.level()),
+            _ => noticed,
+        };
         Update {
             t_s,
             risk: Err(reason),

@@ -16,7 +16,7 @@ local shared = {
 }
 local PARTS = {"motors", "setup", "start", "windows", "rules", "inputs", "levels", "flight", "calls", "elevated", "words", "texts"}
 local number, chunk = 1, nil -- of the next part; what is compiled of it
-local file, text, is_over = nil, "", false -- what is read but not compiled, and whether the part has ended
+local file, is_over = nil, false -- whether the part has ended
 
 local function open()
   if not load then
@@ -32,21 +32,17 @@ local function open()
   end
 end
 
--- The next piece of a part; nil or empty at its end.
-local function piece()
+-- The next line of a part, which stands in a comment; nil at its end.
+local function line()
   if is_over then
     return nil
   end
-  if text == "" then
-    text = file:read(400) or error("its file is cut off", 0)
+  local found = file:read("L")
+  if not found or string.sub(found, -1) ~= "\n" then
+    error("its file is cut off", 0)
   end
-  local found = text
-  local mark = string.find(text, "\f", 1, true)
-  if mark then
-    found, is_over = string.sub(text, 1, mark - 1), true
-  end
-  text = string.sub(text, #found + 2)
-  return found
+  is_over = string.sub(found, 4, 4) == "\f"
+  return not is_over and string.sub(found, 4) or nil
 end
 
 -- Compiles the next part, or runs what is compiled. Returns whether there is more to do.
@@ -60,12 +56,12 @@ local function go_on()
   is_over = false
   if not file then
     open()
-    while (piece() or "") ~= "" do
+    while line() do
     end
     return true
   end
   local why
-  chunk, why = load(piece, "=" .. PARTS[number], "t", shared)
+  chunk, why = load(line, "=" .. PARTS[number], "t", shared)
   if not chunk then
     error(why, 0)
   end
@@ -89,1025 +85,1035 @@ end
 
 return load_all, 1000
 
---[==[
--- Time. Whole microseconds that wrap after 71 min; only differences of under 35 min are used.
-
-clock_us = 0
-held_us, held_s = 0, 0.0 -- since the last call
-bin, bin_us = 0, 0 -- the bin of commands, and the time into it
-has_moved = false -- whether this call has done one of the longer works
-
-function later(us, by_us)
-  return us < 1000000000 and us + by_us or us
-end
-
--- Motors. A command is 0 at the lower limit of the range that is used in flight, 1 at the upper one.
-
-motors, functions, numbers = 0, {}, {} -- how many; function and number of each output
-command = {}
-local low_us, scale = 1000.0, 0.001
-margin = {} -- how far each motor is from its nearer limit
-
-local function pair(low, high, least, most, width)
-  low, high = low and param:get(low), high and param:get(high)
-  if low and high and low >= least and high <= most and high - low >= width then
-    return low, high
-  end
-end
-
--- Reads MOT_PWM_MIN and MAX, or the range of the throttle's channel, and the part of it from MOT_SPIN_MIN to MAX. Returns the
--- limits in us; nil where they are not valid.
-function read_limits()
-  local own = param:get("MOT_PWM_MIN")
-  local low, high
-  if own and own > 0 then
-    low, high = pair("MOT_PWM_MIN", "MOT_PWM_MAX", 500, 2500, 100)
-  else
-    local channel = format("RC%.0f_", param:get("RCMAP_THROTTLE") or 3)
-    low, high = pair(channel .. "MIN", channel .. "MAX", 500, 2500, 100)
-  end
-  if not low then
-    return nil
-  end
-  local spin_low, spin_high = pair("MOT_SPIN_MIN", "MOT_SPIN_MAX", 0, 1, 0.1)
-  spin_low, spin_high = spin_low or 0, spin_high or 1
-  low_us = low + spin_low * (high - low)
-  scale = 1 / ((spin_high - spin_low) * (high - low))
-  return low_us, low_us + 1 / scale
-end
-
--- The sum is nil where the commands are unknown.
-function read_commands()
-  local low_us, scale, command = low_us, scale, command
-  local total = 0.0
-  for i = 1, motors do
-    local pwm = SRV_Channels:get_output_pwm(functions[i])
-    if not pwm then
-      sum = nil
-      return
-    end
-    local e = (pwm - low_us) * scale
-    if e < 0 then
-      e = 0.0
-    elseif e > 1 then
-      e = 1.0
-    end
-    command[i] = e
-    margin[i] = e < 0.5 and e or 1 - e
-    total = total + e
-  end
-  sum = total
-end
-
-function deviation_of(list)
-  local mean, square = 0.0, 0.0
-  for i = 1, motors do
-    mean = mean + list[i]
-  end
-  mean = mean / motors
-  for i = 1, motors do
-    local d = list[i] - mean
-    square = square + d * d
-  end
-  return sqrt(square / motors)
-end
-
-function mean_of(list)
-  local total = 0.0
-  for i = 1, motors do
-    total = total + list[i]
-  end
-  return total / motors
-end
--- Parameters and motors, found once.
-
-local PARAMETERS = {
-  {"ENABLE", 1.0},
-  {"WARN", 67.0},
-  {"FAIL", 85.0},
-}
-
-local function add_parameters()
-  local added = param:add_table(157, "FRISK_", #PARAMETERS)
-  for i, parameter in ipairs(PARAMETERS) do
-    added = added and param:add_param(157, i, parameter[1], parameter[2])
-  end
-  if not added then
-    gcs:send_text(4, "FLAGRED: no parameters, the defaults hold")
-  end
-end
-
-local function output(motor_function)
-  -- Older firmware has fewer functions, and refuses the others.
-  local is_known, pwm = pcall(SRV_Channels.get_output_pwm, SRV_Channels, motor_function)
-  return is_known and pwm
-end
-
-local function find_motors()
-  local is_tri = param:get("FRAME_CLASS") == 7
-  for number = 1, 32 do
-    local motor_function = number <= 8 and number + 32 or number <= 12 and number + 73 or number + 147
-    -- Motor 7 of a tricopter is a servo.
-    if output(motor_function) and not (is_tri and number == 7) then
-      motors = motors + 1
-      functions[motors], numbers[motors] = motor_function, number
-    end
-  end
-end
-
-add_parameters()
-find_motors()
-if motors == 0 or not read_limits() then
-  error("no motors or no limits", 0)
-end
--- The windows, made once.
-
-windows, inputs = {}, {} -- the inputs are rows
-
-local NOTHING = {}
-
--- A list of numbers, one for each slot, which add up. Its constructor has room for all, since a table that grows takes twice the
--- memory; a slot that was never used is nil.
-local function new_list(window)
-  local list = {middle = 0.0, back = 0.0, unpack(NOTHING, 1, window.capacity)}
-  window.lists[#window.lists + 1] = list
-  return list
-end
-
--- `capacity` is the most slots in use at once.
-local function new_window(length_s, capacity)
-  local window = {
-    length_us = floor(length_s * 1000000), needed_s = 0.99 * min(1000000 * 1e-6, length_s), capacity = capacity,
-    number = 0, phase = 0, -- the slot of the present, and 128 times the time into it
-    oldest = 1, newest = 0, newest_number = nil, slots = 0, front = 0, middle = 0, back = 0, turning = 0, unturned = 0,
-    samples = 0, start_us = 0, back_since_us = 0, is_full = false,
-    end_us = {unpack(NOTHING, 1, capacity)}, lists = {}, rows = {},
-    bin = 0, bin_samples = 0, bin_held = 0.0, bin_end_us = 0, bin_number = 0, -- the latest bin, not in a slot yet
-  }
-  window.weight = new_list(window, nil, 0.0)
-  windows[#windows + 1] = window
-  return window
-end
-
--- A statistic of a window: the "mean", the "spread" about the mean, the "lowest" or the "highest" value. `x` is the value
--- of a sample, nil where it is unknown, and `within` the variance that one sample has in itself.
-local function new_row(window, kind)
-  local row = {kind = kind, x = nil, within = 0.0, shift = nil, bin_sum = 0.0, before = nil, sum = nil, square = nil}
-  row.square = kind == "spread" and new_list(window, nil, 0.0) or nil
-  row.sum = row.sum or new_list(window, nil, 0.0)
-  window.rows[#window.rows + 1] = row
-  return row
-end
-
-new_window(2.0, 70)
-inputs[1] = new_row(windows[1], "mean") -- margin
-inputs[2] = new_row(windows[1], "spread") -- spread
-risks = new_window(10.0, 130)
-new_row(risks, "spread")
--- Windows: sums over the last seconds, in slots of time in which samples are merged. The slots lie in a ring, in three runs: the
--- front, of whose slots each holds the sum of itself and the later ones of the front; the middle, which is made the same, two
--- slots a call; and the back, to which slots are added. So a call costs the same whatever the length, and as nothing is
--- subtracted from a sum that stays, nothing drifts.
-
-function clear(window)
-  window.slots, window.front, window.middle, window.back, window.unturned = 0, 0, 0, 0, 0
-  window.oldest, window.newest, window.samples, window.is_full = 1, 0, 0, false
-  window.bin_samples, window.bin_held = 0, 0.0
-  for _, list in ipairs(window.lists) do
-    list.middle, list.back = 0.0, 0.0
-  end
-  for _, row in ipairs(window.rows) do
-    row.bin_sum, row.before, row.shift = 0.0, nil, nil
-  end
-end
-
--- The back becomes the middle.
-local function turn(window)
-  window.middle, window.back, window.unturned = window.back, 0, window.back - 1
-  window.turning = window.newest
-  for _, list in ipairs(window.lists) do
-    list.middle, list.back = list.back, 0.0
-  end
-end
-
--- Makes slots of the middle hold the sum of themselves and the later ones.
-local function sum_middle(window, count)
-  while count > 0 and window.unturned > 0 do
-    local later_slot = window.turning
-    local slot = (later_slot - 2) % window.capacity + 1
-    for _, list in ipairs(window.lists) do
-      list[slot] = list[slot] + list[later_slot]
-    end
-    window.turning, window.unturned, count = slot, window.unturned - 1, count - 1
-  end
-end
-
--- Where the front has run out, the middle becomes the front.
-local function keep_a_front(window)
-  if window.front > 0 then
-    return
-  end
-  if window.middle == 0 then
-    turn(window)
-    window.newest_number = nil
-  end
-  sum_middle(window, 128 + 2)
-  window.front, window.middle = window.middle, 0
-  for _, list in ipairs(window.lists) do
-    list.middle = 0.0
-  end
-end
-
--- Drops what ended so long ago or longer.
-function drop_older(window, us)
-  while window.slots > 0 and clock_us - window.end_us[window.oldest] >= us do
-    keep_a_front(window)
-    window.oldest = window.oldest % window.capacity + 1
-    window.front, window.slots = window.front - 1, window.slots - 1
-    -- Not fewer than that many samples are left.
-    window.samples = window.slots
-  end
-end
-
--- The slot for what ended at a time in a slot of that number.
-local function slot_of(window, number, end_us)
-  if window.slots == 0 or window.newest_number ~= number and window.slots < window.capacity then
-    if window.middle == 0 and window.back > 1 and 2 * (clock_us - window.back_since_us) >= window.length_us then
-      turn(window)
-    end
-    window.newest, window.newest_number = window.newest % window.capacity + 1, number
-    if window.back == 0 then
-      window.back_since_us = clock_us
-    end
-    if window.slots == 0 then
-      window.oldest, window.start_us = window.newest, end_us
-    end
-    window.slots, window.back = window.slots + 1, window.back + 1
-    for _, list in ipairs(window.lists) do
-      list[window.newest] = 0.0
-    end
-  end
-  sum_middle(window, 2)
-  window.end_us[window.newest] = end_us
-  window.samples = window.samples + 1
-  return window.newest
-end
-
-local function put(list, slot, x)
-  list[slot], list.back = list[slot] + x, list.back + x
-end
-
--- Puts a value into a slot. Spreads are sums about a value near the mean, which keeps their digits.
-local function merge(row, slot, held, x, rest)
-  if row.kind == "mean" then
-    put(row.sum, slot, held * x)
-  else
-    row.shift = row.shift or x
-    local d = x - row.shift
-    put(row.sum, slot, held * d)
-    put(row.square, slot, held * (d * d + rest))
-  end
-end
-
--- The value of the latest bin, and its rest: of a spread the noise, half of the squared step from the bin before, is taken
--- away; of a mean, the squared step itself is the value.
-local function of_bin(window, row)
-  local x = row.bin_sum / window.bin_samples
-  local step = row.before and x - row.before or 0.0
-  if row.kind == "mean" then
-    return x, step * step
-  end
-  return x, -0.5 * step * step
-end
-
-function take_bin(window)
-  if window.bin_samples > 0 and window.bin ~= bin then
-    local held = window.bin_held
-    local slot = held > 0 and slot_of(window, window.bin_number, window.bin_end_us)
-    if slot then
-      put(window.weight, slot, held)
-    end
-    for _, row in ipairs(window.rows) do
-      local x, rest = of_bin(window, row)
-      if slot then
-        merge(row, slot, held, row.kind == "mean" and rest or x, rest)
-      end
-      row.before, row.bin_sum = x, 0.0
-    end
-    window.bin_samples, window.bin_held = 0, 0.0
-  end
-  drop_older(window, window.length_us - 1)
-  if window.rows[1].x then
-    window.bin, window.bin_end_us, window.bin_number = bin, clock_us, window.number
-    window.bin_samples = window.bin_samples + 1
-    window.bin_held = window.bin_held + held_s
-    for _, row in ipairs(window.rows) do
-      row.bin_sum = row.bin_sum + row.x
-    end
-  end
-end
-
-function take_sample(window, held)
-  drop_older(window, window.length_us - 1)
-  if window.rows[1].x and held > 0 then
-    local slot = slot_of(window, window.number, clock_us)
-    put(window.weight, slot, held)
-    for _, row in ipairs(window.rows) do
-      merge(row, slot, held, row.x, row.within)
-    end
-  end
-end
-
--- The numbers of a list together, without a share of the oldest slot.
-function total_of(window, list, out)
-  local sum = list.middle + list.back
-  if window.front > 0 then
-    local first = list[window.oldest]
-    sum = sum + first
-    if out > 0 then
-      sum = sum - out * (window.front > 1 and first - list[window.oldest % window.capacity + 1] or first)
-    end
-  end
-  return sum
-end
-
--- The share of the oldest slot that has left the window.
-function outside(window)
-  if not window.is_full and clock_us - window.start_us < window.length_us - 100000 or window.slots == 0 then
-    return 0.0
-  end
-  window.is_full = true
-  keep_a_front(window)
-  local inside_s = (window.end_us[window.oldest] - clock_us + window.length_us) * 1e-6
-  local weight = window.weight
-  local first = weight[window.oldest]
-  local own = window.front > 1 and first - weight[window.oldest % window.capacity + 1] or first
-  return inside_s < own and 1 - inside_s / own or 0.0
-end
-
--- Sums about another value.
-local function move_shift(row, window, by)
-  local sum, square, weight = row.sum, row.square, window.weight
-  for slot = 1, window.capacity do
-    if sum[slot] then
-      square[slot] = square[slot] + by * (by * weight[slot] - 2 * sum[slot])
-      sum[slot] = sum[slot] - by * weight[slot]
-    end
-  end
-  for _, run in ipairs({"middle", "back"}) do
-    square[run] = square[run] + by * (by * weight[run] - 2 * sum[run])
-    sum[run] = sum[run] - by * weight[run]
-  end
-  row.shift = row.shift + by
-end
-
--- The mean, the lowest or the highest value; for a spread the mean and the variance.
-function read_row(window, row, total, out)
-  local kind, held = row.kind, window.bin_held
-  local sum = total_of(window, row.sum, out)
-  if kind == "mean" then
-    if held > 0 then
-      local _, step = of_bin(window, row)
-      sum = sum + held * step
-    end
-    return sum / total
-  end
-  local square, shift = total_of(window, row.square, out), row.shift
-  if held > 0 then
-    local x, rest = of_bin(window, row)
-    shift = shift or x
-    local d = x - shift
-    sum = sum + held * d
-    square = square + held * (d * d + rest)
-  end
-  local off = sum / total
-  local variance = square / total - off * off
-  if off * off > 30 * variance and row.shift and not has_moved then
-    has_moved = true
-    move_shift(row, window, off)
-  end
-  return shift + off, max(variance, 0.0)
-end
-
-function deviation(window, row, total, out)
-  local _, variance = read_row(window, row, total, out)
-  return sqrt(variance)
-end
--- The rules.
-
-fired = {} -- the firing strengths of rules
-local coverage = 0.0 -- the largest firing strength
-local strengths, degrees = {}, {} -- of output terms, and of terms of inputs
-is_filled = false
-
--- Along the corners x1, degree 1, x2, degree 2 and so on.
-local function along(corners, x)
-  local count = #corners
-  if x < corners[1] then
-    return corners[2]
-  end
-  for i = 3, count, 2 do
-    if x < corners[i] then
-      local left, low = corners[i - 2], corners[i - 1]
-      return low + (corners[i + 1] - low) * ((x - left) / (corners[i] - left))
-    end
-  end
-  return corners[count]
-end
-
-local function fire(rule, term, strength)
-  if strength < 1e-12 then
-    strength = 0.0
-  end
-  fired[rule] = strength
-  if strength > strengths[term] then
-    strengths[term] = strength
-  end
-  if strength > coverage then
-    coverage = strength
-  end
-end
-
--- The corners of the terms of inputs: value, degree, value, degree and so on.
-local TERMS = {
-  {0.2, 0.0, 0.3, 1.0}, -- margin high
-  {0.1, 0.0, 0.2, 1.0}, -- spread high
-  {0.0, 1.0, 0.1, 0.0}, -- spread low
-  {0.0, 0.0, 0.1, 1.0, 0.2, 0.0}, -- spread medium
-  {0.1, 0.0, 0.2, 1.0, 0.3, 0.0}, -- margin medium
-  {0.0, 0.0, 0.1, 1.0, 0.2, 0.0}, -- margin low
-  {0.0, 1.0, 0.1, 0.0}, -- margin very_low
-}
-local OUTPUT_TERMS = 6
--- The output's terms: area = a h + b h^2, moment about the middle of the range = c h + d h^2 + e h^3 at
--- firing strength h; width and middle of the overlap with the next term.
-local PARTS = {
-  {25.0, -12.5, -937.5, 312.5, 104.166664, 25.0, -37.5},
-  {50.0, -25.0, -1250.0, 625.0, 0.0, 25.0, -12.5},
-  {50.0, -25.0, 0.0, 0.0, 0.0, 25.0, 12.5},
-  {50.0, -25.0, 1250.0, -625.0, 0.0, 25.0, 37.5},
-  {25.0, -12.5, 937.5, -312.5, -104.166664, 0.0, 0.0},
-  {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0},
-}
-
--- The risk by the rules in %; nil where none fires.
-local function by_rules(x)
-  coverage = 0.0
-  for term = 1, OUTPUT_TERMS do
-    strengths[term] = 0.0
-  end
-  local d = degrees
-  d[1] = along(TERMS[1], x[1]) -- margin high
-  d[2] = along(TERMS[2], x[2]) -- spread high
-  d[3] = along(TERMS[3], x[2]) -- spread low
-  d[4] = along(TERMS[4], x[2]) -- spread medium
-  d[5] = along(TERMS[5], x[1]) -- margin medium
-  d[6] = along(TERMS[6], x[1]) -- margin low
-  d[7] = along(TERMS[7], x[1]) -- margin very_low
-  -- IF margin IS high AND spread IS high THEN risk IS very_low
-  fire(1, 1, min(d[1], d[2]))
-  -- IF margin IS high AND spread IS low THEN risk IS very_low
-  fire(2, 1, min(d[1], d[3]))
-  -- IF margin IS high AND spread IS medium THEN risk IS very_low
-  fire(3, 1, min(d[1], d[4]))
-  -- IF margin IS medium AND spread IS high THEN risk IS very_low
-  fire(4, 1, min(d[5], d[2]))
-  -- IF margin IS medium AND spread IS low THEN risk IS very_low
-  fire(5, 1, min(d[5], d[3]))
-  -- IF margin IS medium AND spread IS medium THEN risk IS low
-  fire(6, 2, min(d[5], d[4]))
-  -- IF margin IS low AND spread IS high THEN risk IS very_high
-  fire(7, 5, min(d[6], d[2]))
-  -- IF margin IS low AND spread IS medium THEN risk IS medium
-  fire(8, 3, min(d[6], d[4]))
-  -- IF margin IS very_low AND spread IS high THEN risk IS very_high
-  fire(9, 5, min(d[7], d[2]))
-  -- IF margin IS very_low AND spread IS medium THEN risk IS very_high
-  fire(10, 5, min(d[7], d[4]))
-  local area, moment = 0.0, 0.0
-  for term = 1, OUTPUT_TERMS do
-    local part, h = PARTS[term], strengths[term]
-    local v = min(h, strengths[term + 1] or 0.0, 0.5)
-    local common = part[6] * (v * (1 - v))
-    area = area + h * (part[1] + h * part[2]) - common
-    moment = moment + h * (part[3] + h * (part[4] + h * part[5])) - part[7] * common
-  end
-  if area > 0 then
-    return max(0.0, min(100.0, 50.0 + moment / area))
-  end
-  return nil -- no rule fires
-end
-
--- Where the rules leave a gap: values at knots, the last input running fastest; linear between them.
-local KNOTS = {
-  {0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5},
-  {0.0, 0.05, 0.1, 0.15, 0.2, 0.5},
-}
-local FILLED = {
-  84.11, 90.28, 91.67, 90.28, 91.67, 91.67, 58.9, 63.43, 63.43, 63.43, 90.28, 90.28, 36.73, 50.0, 50.0,
-  63.43, 91.67, 91.67, 9.72, 34.47, 37.5, 46.43, 50.0, 50.0, 8.33, 22.02, 25.0, 22.02, 8.33, 8.33, 9.72,
-  22.02, 22.02, 22.02, 9.72, 9.72, 8.33, 9.72, 8.33, 9.72, 8.33, 8.33, 8.33, 9.72, 8.33, 9.72, 8.33,
-  8.33,
-}
-
-local function filled(x, axis, knot)
-  local places = KNOTS[axis]
-  if not places then
-    return FILLED[knot + 1]
-  end
-  local count, behind = #places, 0
-  while behind < count and places[behind + 1] <= x[axis] do
-    behind = behind + 1
-  end
-  local first = knot * count
-  if behind == 0 or behind == count then
-    return filled(x, axis + 1, first + (behind == 0 and 0 or count - 1))
-  end
-  local left = places[behind]
-  local share = (x[axis] - left) / (places[behind + 1] - left)
-  local low = filled(x, axis + 1, first + behind - 1)
-  if share == 0 then
-    return low
-  end
-  return (1 - share) * low + share * filled(x, axis + 1, first + behind)
-end
-
-local point = {} -- the inputs of the rules, in their order
-
-function estimate()
-  point[1] = max(0.0, min(0.5, value[1]))
-  point[2] = max(0.0, min(0.5, value[2]))
-  local risk = by_rules(point)
-  -- A coverage a hair below the limit is rounding.
-  is_filled = coverage < 0.5 * (1 - 1e-5)
-  if is_filled then
-    risk = filled(point, 1, 0)
-  end
-  return risk and max(0.0, min(100.0, risk))
-end
--- The inputs of the rules.
-
-value = {} -- of the inputs; nil where one is unknown
-
--- Takes in a sample of flight.
-function observe()
-  local inputs, value, windows = inputs, value, windows
-  local mean_of_margin = sum and mean_of(margin) or nil
-  local deviation_of_command = sum and deviation_of(command) or nil
-  local mean_of_command = sum and mean_of(command) or nil
-  inputs[1].x = mean_of_margin -- margin
-  inputs[2].x = mean_of_command -- spread
-  inputs[2].within = sum and deviation_of_command * deviation_of_command or 0.0
-  take_sample(windows[1], held_s)
-end
-
--- The seconds that are known of a window and the share of its oldest slot that has left it; nil where too little is known.
-local function enough(window)
-  local out = outside(window)
-  local total = total_of(window, window.weight, out) + window.bin_held
-  local samples = window.samples + (window.bin_held > 0 and 1 or 0)
-  if total < window.needed_s or total <= 0 or samples < 5 then
-    return nil
-  end
-  return total, out
-end
-
--- The inputs' values; false where one is not known.
-function read_inputs()
-  local inputs, value, windows = inputs, value, windows
-  local all, total, out = true, nil, nil
-  local window
-  window = windows[1]
-  total, out = enough(window)
-  value[1] = total and read_row(window, inputs[1], total, out) -- margin
-  all = all and value[1]
-  value[2] = total and deviation(window, inputs[2], total, out) -- spread
-  all = all and value[2]
-  return all
-end
--- Levels: raised after a while, held, lowered after a while.
-
--- What each rule is about: the area and the centre of its consequent, an input and a term, whether motors are at a limit.
-CAUSES = {
-  {12.75, 8.166667, "margin", "high", true}, -- 1
-  {12.75, 8.166667, "spread", "low", false}, -- 2
-  {12.75, 8.166667, "margin", "high", true}, -- 3
-  {12.75, 8.166667, "margin", "medium", true}, -- 4
-  {12.75, 8.166667, "spread", "low", false}, -- 5
-  {25.0, 25.0, "margin", "medium", true}, -- 6
-  {12.75, 91.833336, "margin", "low", true}, -- 7
-  {25.0, 50.0, "margin", "low", true}, -- 8
-  {12.75, 91.833336, "margin", "very_low", true}, -- 9
-  {12.75, 91.833336, "margin", "very_low", true}, -- 10
-}
-warn_risk, fail_risk = 67.0, 85.0 -- parameters may change them
-risk_level = 0 -- of the risk alone
-local reached_at = {} -- since when the thresholds of each level are reached
-local held_at = 0 -- when something last held the level
-is_open, by_elevated = false, false -- the time of trouble
-local open_level = 0
-local seen, mean_margin, least_margin = 0, {}, {} -- the motors while a level is being reached
-is_upper = {} -- whether the limit that each motor was nearest to is the upper one
-
--- The rule that raises the risk most: the largest share of it, above half of its value.
-local function find_cause(risk)
-  if is_filled then
-    return nil
-  end
-  local most, rule = -huge, nil
-  for i = 1, #CAUSES do
-    local raises = (fired[i] or 0.0) * CAUSES[i][1] * (CAUSES[i][2] - risk / 2)
-    if (fired[i] or 0.0) > 0 and raises > most then
-      most, rule = raises, i
-    end
-  end
-  return rule
-end
-
-local function is_reached(risk, risk_limit, elevated_limit)
-  if risk_limit and risk >= risk_limit then
-    return true, false
-  elseif elevated_limit and elevated >= elevated_limit then
-    return true, true
-  end
-  return false, false
-end
-
--- The motor with the least mean margin, where it is near a limit; of motors at zero the one that is there for longest.
-local function weakest()
-  local found
-  for i = 1, motors do
-    local margin, least = mean_margin[i], found and mean_margin[found]
-    if margin and (not found or margin < least) then
-      found = i
-    end
-  end
-  return found and least_margin[found] < 0.1 and found or nil
-end
-
-local function raise(level, of_elevated, risk)
-  risk_level = level
-  if not is_open or open_level ~= level then
-    by_elevated = of_elevated
-  end
-  if not is_open or level > open_level then
-    cause, open_level = find_cause(risk), level
-    limit_motor = cause and CAUSES[cause][5] and weakest()
-  end
-  is_open = true
-end
-
--- A level reached now; gives what holds it.
-local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, after_us, until_risk, until_elevated)
-  local reached, of_elevated = is_reached(risk, risk_limit, elevated_limit)
-  reached = reached and can_raise
-  if reached or is_reached(risk, until_risk, until_elevated) then
-    held = min(level, risk_level)
-  end
-  if not reached then
-    reached_at[level] = nil
-    return held
-  end
-  reached_at[level] = reached_at[level] or clock_us
-  if level > risk_level and clock_us - reached_at[level] >= after_us then
-    raise(level, of_elevated, risk)
-    held = level
-  end
-  return held
-end
-
--- Keeps what the motors do while a level is being reached, from its beginning.
-local function watch_motors(risk, takes_off)
-  local warns = not takes_off and is_reached(risk, warn_risk, 50.0)
-  local fails = is_reached(risk, fail_risk, 90.0)
-  if not warns and not fails then
-    return
-  end
-  if warns and not reached_at[2] or fails and not reached_at[3] then
-    seen, mean_margin, least_margin = 0, {}, {}
-  end
-  seen = seen + 1
-  for i = 1, motors do
-    local e = command[i]
-    local near = e < 0.5 and e or 1 - e
-    local mean = mean_margin[i] or 0.0
-    mean_margin[i] = mean + (near - mean) / seen
-    if near < (least_margin[i] or huge) then
-      least_margin[i], is_upper[i] = near, e >= 0.5
-    end
-  end
-end
-
--- The lower of a risk that ends a level and the one that raises it.
-local function lower(until_risk, risk)
-  return until_risk and risk and min(until_risk, risk) or until_risk
-end
-
-doubt_us = nil -- since an alarm: for how long the motors have worked as before
-
--- After an alarm the level is GOOD again when the motors have worked as before for as long as a level is held.
-local function doubt()
-  local is_back = true
-  if (risk_level > 0 or doubt_us) and not is_back then
-    doubt_us = 0
-  elseif risk_level == 0 and doubt_us and doubt_us >= 10000000 then
-    doubt_us = nil
-  end
-end
-
-function judge(risk, takes_off)
-  watch_motors(risk, takes_off)
-  local held, can_fail = 0, true
-  local warn_until, fail_until = lower(25.0, warn_risk), lower(67.0, fail_risk)
-  held = follow(2, held, risk, not takes_off, warn_risk, 50.0, 200000, warn_until, 30.0)
-  held = follow(3, held, risk, can_fail, fail_risk, 90.0, 400000, fail_until, 70.0)
-  if held >= risk_level then
-    held_at = clock_us
-  elseif clock_us - held_at >= 10000000 then
-    risk_level, held_at = held, clock_us
-    is_open = held > 0
-  end
-  doubt()
-end
-
-function stop_judging()
-  clear_elevated()
-  risk_level, is_open = 0, false
-  reached_at[2], reached_at[3] = nil, nil
-end
--- A flight.
-
-flown_us = nil -- since take-off; nil on the ground
-down_us = nil -- for how long it seems to be on the ground
-local settled, settling = false, huge -- whether the take-off is dropped, and the window to drop it from next
-local idle -- "landing" or "trouble"
-local since_high_us, unknown_us -- since a high risk, and since a risk was known
-
--- Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
-function forget(is_gap)
-  local was_alarm = is_gap and level_now() > 0
-  for _, window in ipairs(windows) do
-    clear(window)
-  end
-  flown_us, down_us, settled, settling, idle, since_high_us, unknown_us = nil, nil, false, huge, nil, nil, nil
-  value = {}
-  stop_judging()
-  doubt_us = was_alarm and 0 or nil
-end
-
--- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end. While the command of a
--- motor is unknown, the vehicle counts as in the air.
-local function rests()
-  if not sum then
-    return false
-  end
-  if sum >= 0.1 * motors then
-    idle = nil
-    return false
-  end
-  if not idle then
-    local is_trouble = since_high_us and since_high_us <= 2000000
-    idle = is_trouble and "trouble" or "landing"
-  end
-  return idle == "landing"
-end
-
--- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
-local function settle()
-  if not settled and flown_us >= 0 + 1000000 then
-    settled, settling = true, 1
-    if 0 > 0 then
-      clear_elevated()
-    end
-  end
-  while 0 > 0 and settling <= #windows do
-    local window = windows[settling]
-    settling = settling + 1
-    if window.length_us > 0 then
-      drop_older(window, flown_us - 0 - 1)
-      return
-    end
-  end
-end
-
--- Takes in the time and the motors; gives the risk in %, nil where it is unknown.
-function fly()
-  has_moved = false
-  clock_us = clock_us + held_us
-  bin_us = bin_us + held_us
-  bin, bin_us = bin + bin_us // 100000, bin_us % 100000
-  if held_us > 2000000 then
-    forget(true)
-    held_us, held_s = 0, 0.0
-  end
-  for _, window in ipairs(windows) do
-    local phase = window.phase + 128 * held_us
-    window.number = window.number + phase // window.length_us
-    window.phase = phase % window.length_us
-  end
-  since_high_us = since_high_us and later(since_high_us, held_us)
-  unknown_us = unknown_us and later(unknown_us, held_us)
-  doubt_us = doubt_us and later(doubt_us, held_us)
-  flown_us = flown_us and later(flown_us, held_us)
-  read_commands()
-  if not vehicle:get_likely_flying() or rests() then
-    value = {}
-    if flown_us then
-      down_us = down_us and later(down_us, held_us) or 0
-      if down_us >= 1000000 then
-        forget(false)
-      end
-    else
-      -- It landed in a gap.
-      doubt_us = nil
-    end
-    return nil
-  end
-  down_us = nil
-  flown_us = flown_us or 0
-  observe()
-  settle()
-  local is_known = read_inputs()
-  -- While the command of a motor is unknown, so is the risk.
-  is_known = is_known and sum
-  local risk = is_known and estimate()
-  if not risk then
-    if unknown_us and unknown_us > 2000000 then
-      doubt_us = level_now() > 0 and unknown_us or nil
-      stop_judging()
-      unknown_us = nil
-    end
-    return nil
-  end
-  unknown_us = 0
-  if warn_risk and risk >= warn_risk then
-    since_high_us = 0
-  end
-  add_up(risk)
-  judge(risk, flown_us < 5000000)
-  return risk
-end
--- The calls.
-
-local is_enabled = true
-local last_call -- the autopilot's clock
-local sent_us, logged_bin, settings_us = 1000000000, -1, 0
-local has_failed = false
-
--- FRISK_ENABLE = 0 silences the script.
-local function read_parameters()
-  local enable = param:get("FRISK_ENABLE")
-  is_enabled = enable == nil or enable > 0
-  warn_risk = param:get("FRISK_WARN") or 67.0
-  fail_risk = param:get("FRISK_FAIL") or 85.0
-end
-
-local function update()
-  local now = micros()
-  held_us = last_call and (now - last_call):toint() or 0
-  if held_us < 0 or held_us > 1000000000 then
-    held_us = 1000000000
-  end
-  if not last_call then
-    read_parameters()
-  elseif held_us == 0 then
-    return
-  end
-  last_call = now
-  held_s = held_us * 1e-6
-  -- Limits and parameters may change on the ground.
-  settings_us = later(settings_us, held_us)
-  if not flown_us and settings_us >= 1000000 then
-    settings_us = 0
-    read_parameters()
-    read_limits()
-  end
-  if not is_enabled then
-    return
-  end
-  local before = level_now()
-  local risk = fly()
-  local level = level_now()
-  if level ~= before and flown_us and not down_us then
-    say(level, risk, false)
-  end
-  sent_us = later(sent_us, held_us)
-  if risk and sent_us >= 500000 then
-    sent_us = 0
-    gcs:send_named_float("FR_RISK", risk)
-    gcs:send_named_float("FR_ELEV", elevated)
-  end
-  if risk and logged_bin ~= bin then
-    logged_bin = bin
-    logger:write("FRSK", "Risk,Elev,Level", "ffB", risk, elevated, level)
-  end
-end
-
--- An error that leaves a script stops it and blocks arming.
-function protected()
-  local is_well, told = pcall(update)
-  if is_well then
-    return protected, 30
-  end
-  if not has_failed then
-    has_failed = true
-    gcs:send_text(3, sub("FLAGRED failed: " .. tostring(told), 1, 50))
-  end
-  pcall(forget)
-  return protected, 1000
-end
-
--- The first call, when the memory of the loader is free again. What calls take for a moment must be left.
-function begin()
-  begin = nil
-  if not pcall(rep, " ", 3000) then
-    gcs:send_text(3, "FLAGRED is off: increase SCR_HEAP_SIZE")
-    return
-  end
-  gcs:send_text(6, format("FLAGRED: %d motors, %.0f to %.0f us", motors, read_limits()))
-  return protected, 30
-end
--- The elevated risk: what the risks of the last seconds add up to. Its window is `risks`, with one row.
-
-elevated = 0.0
-local last_risk, last_rate
-
-function clear_elevated()
-  clear(risks)
-  elevated, last_risk, last_rate = 0.0, nil, nil
-end
-
--- Abramowitz and Stegun 7.1.26, right to 1.5e-7.
-local function erf(x)
-  local t = 1 / (1 + 0.3275911 * abs(x))
-  local y = 1 - ((((1.061405429 * t - 1.453152027) * t + 1.421413741) * t - 0.284496736) * t + 0.254829592) * t * exp(-x * x)
-  return x < 0 and -y or y
-end
-
--- The share of a normal distribution below x.
-local function share_below(x, mean, deviation)
-  local distance = x - mean
-  if deviation > 0 then
-    return 0.5 * (1 + erf(distance / deviation * 0.70710678))
-  end
-  return distance == 0 and 0.5 or distance > 0 and 1.0 or 0.0
-end
-
-function add_up(risk)
-  local before, row = last_risk or risk, risks.rows[1]
-  row.x, row.within = 0.5 * (before + risk), (risk - before) * (risk - before) / 12
-  take_sample(risks, held_s)
-  local out = outside(risks)
-  local total = total_of(risks, risks.weight, out)
-  if total > 0 then
-    local mean, variance = read_row(risks, row, total, out)
-    local deviation = sqrt(variance)
-    local rate = 2.0 * (1 - share_below(50.0, mean, deviation)) - 3.0 * share_below(20.0, mean, deviation)
-    elevated = elevated + 0.5 * (rate + (last_rate or rate)) * held_s
-    elevated = max(0.0, min(100.0, elevated))
-    last_risk, last_rate = risk, rate
-  end
-end
--- What the pilot reads, in at most 50 characters.
-
-function level_now()
-  local level = risk_level
-  return doubt_us and max(level, 2) or level
-end
-
--- A cause in two parts; where there is no room for the last one, the first one is true alone.
-function cause_in_words()
-  local about = cause and CAUSES[cause]
-  if not about then
-    return ", interpolated", ""
-  end
-  if limit_motor then
-    local side = is_upper[limit_motor] and "upper" or "lower"
-    return ", " .. side .. " limit", format(", motor %d", numbers[limit_motor])
-  end
-  return ", " .. about[3], " " .. about[4]
-end
-
-local LEVELS = {[0] = "GOOD", [2] = "WARN", [3] = "FAIL"}
-
-function say(level, risk, of_notice)
-  local severity = level == 3 and 2 or level == 2 and 4 or 6
-  local text = "FLAGRED: " .. LEVELS[level]
-  if not is_open and level > 0 then
-    gcs:send_text(severity, text .. " stands: motors not as before")
-    return
-  end
-  if is_open and by_elevated then
-    text = format("%s elevated %.0f %%", text, elevated)
-  elseif risk then
-    text = format("%s risk %.0f %%", text, risk)
-  end
-  if is_open then
-    local first, second = cause_in_words()
-    text = #text + #first <= 50 and text .. first or text
-    text = #text + #second <= 50 and text .. second or text
-  end
-  gcs:send_text(severity, text)
-end
-
-]==]
+-- 
+-- -- Time. Whole microseconds that wrap after 71 min; only differences of under 35 min are used.
+-- 
+-- clock_us = 0
+-- held_us, held_s = 0, 0.0 -- since the last call
+-- bin, bin_us = 0, 0 -- the bin of commands, and the time into it
+-- has_moved = false -- whether this call has done one of the longer works
+-- 
+-- function later(us, by_us)
+--   return us < 1000000000 and us + by_us or us
+-- end
+-- 
+-- -- Motors. A command is 0 at the lower limit of the range that is used in flight, 1 at the upper one.
+-- 
+-- motors, functions, numbers = 0, {}, {} -- how many; function and number of each output
+-- command = {}
+-- local low_us, scale = 1000.0, 0.001
+-- margin = {} -- how far each motor is from its nearer limit
+-- 
+-- local function pair(low, high, least, most, width)
+--   low, high = low and param:get(low), high and param:get(high)
+--   if low and high and low >= least and high <= most and high - low >= width then
+--     return low, high
+--   end
+-- end
+-- 
+-- -- Reads MOT_PWM_MIN and MAX, or the range of the throttle's channel, and the part of it from MOT_SPIN_MIN to MAX. Returns the
+-- -- limits in us; nil where they are not valid.
+-- function read_limits()
+--   local own = param:get("MOT_PWM_MIN")
+--   local low, high
+--   if own and own > 0 then
+--     low, high = pair("MOT_PWM_MIN", "MOT_PWM_MAX", 500, 2500, 100)
+--   else
+--     local channel = format("RC%.0f_", param:get("RCMAP_THROTTLE") or 3)
+--     low, high = pair(channel .. "MIN", channel .. "MAX", 500, 2500, 100)
+--   end
+--   if not low then
+--     return nil
+--   end
+--   local spin_low, spin_high = pair("MOT_SPIN_MIN", "MOT_SPIN_MAX", 0, 1, 0.1)
+--   spin_low, spin_high = spin_low or 0, spin_high or 1
+--   low_us = low + spin_low * (high - low)
+--   scale = 1 / ((spin_high - spin_low) * (high - low))
+--   return low_us, low_us + 1 / scale
+-- end
+-- 
+-- -- The sum is nil where the commands are unknown.
+-- function read_commands()
+--   local low_us, scale, command = low_us, scale, command
+--   local total = 0.0
+--   for i = 1, motors do
+--     local pwm = SRV_Channels:get_output_pwm(functions[i])
+--     if not pwm then
+--       sum = nil
+--       return
+--     end
+--     local e = (pwm - low_us) * scale
+--     if e < 0 then
+--       e = 0.0
+--     elseif e > 1 then
+--       e = 1.0
+--     end
+--     command[i] = e
+--     margin[i] = e < 0.5 and e or 1 - e
+--     total = total + e
+--   end
+--   sum = total
+-- end
+-- 
+-- function deviation_of(list)
+--   local mean, square = 0.0, 0.0
+--   for i = 1, motors do
+--     mean = mean + list[i]
+--   end
+--   mean = mean / motors
+--   for i = 1, motors do
+--     local d = list[i] - mean
+--     square = square + d * d
+--   end
+--   return sqrt(square / motors)
+-- end
+-- 
+-- function mean_of(list)
+--   local total = 0.0
+--   for i = 1, motors do
+--     total = total + list[i]
+--   end
+--   return total / motors
+-- end
+-- 
+-- -- Parameters and motors, found once.
+-- 
+-- local PARAMETERS = {
+--   {"ENABLE", 1.0},
+--   {"WARN", 67.0},
+--   {"FAIL", 85.0},
+-- }
+-- 
+-- local function add_parameters()
+--   local added = param:add_table(157, "FRISK_", #PARAMETERS)
+--   for i, parameter in ipairs(PARAMETERS) do
+--     added = added and param:add_param(157, i, parameter[1], parameter[2])
+--   end
+--   if not added then
+--     gcs:send_text(4, "FLAGRED: no parameters, the defaults hold")
+--   end
+-- end
+-- 
+-- local function output(motor_function)
+--   -- Older firmware has fewer functions, and refuses the others.
+--   local is_known, pwm = pcall(SRV_Channels.get_output_pwm, SRV_Channels, motor_function)
+--   return is_known and pwm
+-- end
+-- 
+-- local function find_motors()
+--   local is_tri = param:get("FRAME_CLASS") == 7
+--   for number = 1, 32 do
+--     local motor_function = number <= 8 and number + 32 or number <= 12 and number + 73 or number + 147
+--     -- Motor 7 of a tricopter is a servo.
+--     if output(motor_function) and not (is_tri and number == 7) then
+--       motors = motors + 1
+--       functions[motors], numbers[motors] = motor_function, number
+--     end
+--   end
+-- end
+-- 
+-- add_parameters()
+-- find_motors()
+-- if motors == 0 or not read_limits() then
+--   error("no motors or no limits", 0)
+-- end
+-- 
+-- -- The windows, made once.
+-- 
+-- windows, inputs = {}, {} -- the inputs are rows
+-- 
+-- local NOTHING = {}
+-- 
+-- -- A list of numbers, one for each slot, which add up. Its constructor has room for all, since a table that grows takes twice the
+-- -- memory; a slot that was never used is nil.
+-- local function new_list(window)
+--   local list = {middle = 0.0, back = 0.0, unpack(NOTHING, 1, window.capacity)}
+--   window.lists[#window.lists + 1] = list
+--   return list
+-- end
+-- 
+-- -- `capacity` is the most slots in use at once.
+-- local function new_window(length_s, capacity)
+--   local window = {
+--     length_us = floor(length_s * 1000000), needed_s = 0.99 * min(1000000 * 1e-6, length_s), capacity = capacity,
+--     number = 0, phase = 0, -- the slot of the present, and 128 times the time into it
+--     oldest = 1, newest = 0, newest_number = nil, slots = 0, front = 0, middle = 0, back = 0, turning = 0, unturned = 0,
+--     samples = 0, start_us = 0, back_since_us = 0, is_full = false,
+--     end_us = {unpack(NOTHING, 1, capacity)}, lists = {}, rows = {},
+--     bin = 0, bin_samples = 0, bin_held = 0.0, bin_end_us = 0, bin_number = 0, -- the latest bin, not in a slot yet
+--   }
+--   window.weight = new_list(window, nil, 0.0)
+--   windows[#windows + 1] = window
+--   return window
+-- end
+-- 
+-- -- A statistic of a window: the "mean", the "spread" about the mean, the "lowest" or the "highest" value. `x` is the value
+-- -- of a sample, nil where it is unknown, and `within` the variance that one sample has in itself.
+-- local function new_row(window, kind)
+--   local row = {kind = kind, x = nil, within = 0.0, shift = nil, bin_sum = 0.0, before = nil, sum = nil, square = nil}
+--   row.square = kind == "spread" and new_list(window, nil, 0.0) or nil
+--   row.sum = row.sum or new_list(window, nil, 0.0)
+--   window.rows[#window.rows + 1] = row
+--   return row
+-- end
+-- 
+-- new_window(2.0, 70)
+-- inputs[1] = new_row(windows[1], "mean") -- margin
+-- inputs[2] = new_row(windows[1], "spread") -- spread
+-- risks = new_window(10.0, 130)
+-- new_row(risks, "spread")
+-- 
+-- -- Windows: sums over the last seconds, in slots of time in which samples are merged. The slots lie in a ring, in three runs: the
+-- -- front, of whose slots each holds the sum of itself and the later ones of the front; the middle, which is made the same, two
+-- -- slots a call; and the back, to which slots are added. So a call costs the same whatever the length, and as nothing is
+-- -- subtracted from a sum that stays, nothing drifts.
+-- 
+-- function clear(window)
+--   window.slots, window.front, window.middle, window.back, window.unturned = 0, 0, 0, 0, 0
+--   window.oldest, window.newest, window.samples, window.is_full = 1, 0, 0, false
+--   window.bin_samples, window.bin_held = 0, 0.0
+--   for _, list in ipairs(window.lists) do
+--     list.middle, list.back = 0.0, 0.0
+--   end
+--   for _, row in ipairs(window.rows) do
+--     row.bin_sum, row.before, row.shift = 0.0, nil, nil
+--   end
+-- end
+-- 
+-- -- The back becomes the middle.
+-- local function turn(window)
+--   window.middle, window.back, window.unturned = window.back, 0, window.back - 1
+--   window.turning = window.newest
+--   for _, list in ipairs(window.lists) do
+--     list.middle, list.back = list.back, 0.0
+--   end
+-- end
+-- 
+-- -- Makes slots of the middle hold the sum of themselves and the later ones.
+-- local function sum_middle(window, count)
+--   while count > 0 and window.unturned > 0 do
+--     local later_slot = window.turning
+--     local slot = (later_slot - 2) % window.capacity + 1
+--     for _, list in ipairs(window.lists) do
+--       list[slot] = list[slot] + list[later_slot]
+--     end
+--     window.turning, window.unturned, count = slot, window.unturned - 1, count - 1
+--   end
+-- end
+-- 
+-- -- Where the front has run out, the middle becomes the front.
+-- local function keep_a_front(window)
+--   if window.front > 0 then
+--     return
+--   end
+--   if window.middle == 0 then
+--     turn(window)
+--     window.newest_number = nil
+--   end
+--   sum_middle(window, 128 + 2)
+--   window.front, window.middle = window.middle, 0
+--   for _, list in ipairs(window.lists) do
+--     list.middle = 0.0
+--   end
+-- end
+-- 
+-- -- Drops what ended so long ago or longer.
+-- function drop_older(window, us)
+--   while window.slots > 0 and clock_us - window.end_us[window.oldest] >= us do
+--     keep_a_front(window)
+--     window.oldest = window.oldest % window.capacity + 1
+--     window.front, window.slots = window.front - 1, window.slots - 1
+--     -- Not fewer than that many samples are left.
+--     window.samples = window.slots
+--   end
+-- end
+-- 
+-- -- The slot for what ended at a time in a slot of that number.
+-- local function slot_of(window, number, end_us)
+--   if window.slots == 0 or window.newest_number ~= number and window.slots < window.capacity then
+--     if window.middle == 0 and window.back > 1 and 2 * (clock_us - window.back_since_us) >= window.length_us then
+--       turn(window)
+--     end
+--     window.newest, window.newest_number = window.newest % window.capacity + 1, number
+--     if window.back == 0 then
+--       window.back_since_us = clock_us
+--     end
+--     if window.slots == 0 then
+--       window.oldest, window.start_us = window.newest, end_us
+--     end
+--     window.slots, window.back = window.slots + 1, window.back + 1
+--     for _, list in ipairs(window.lists) do
+--       list[window.newest] = 0.0
+--     end
+--   end
+--   sum_middle(window, 2)
+--   window.end_us[window.newest] = end_us
+--   window.samples = window.samples + 1
+--   return window.newest
+-- end
+-- 
+-- local function put(list, slot, x)
+--   list[slot], list.back = list[slot] + x, list.back + x
+-- end
+-- 
+-- -- Puts a value into a slot. Spreads are sums about a value near the mean, which keeps their digits.
+-- local function merge(row, slot, held, x, rest)
+--   if row.kind == "mean" then
+--     put(row.sum, slot, held * x)
+--   else
+--     row.shift = row.shift or x
+--     local d = x - row.shift
+--     put(row.sum, slot, held * d)
+--     put(row.square, slot, held * (d * d + rest))
+--   end
+-- end
+-- 
+-- -- The value of the latest bin, and its rest: of a spread the noise, half of the squared step from the bin before, is taken
+-- -- away; of a mean, the squared step itself is the value.
+-- local function of_bin(window, row)
+--   local x = row.bin_sum / window.bin_samples
+--   local step = row.before and x - row.before or 0.0
+--   if row.kind == "mean" then
+--     return x, step * step
+--   end
+--   return x, -0.5 * step * step
+-- end
+-- 
+-- function take_bin(window)
+--   if window.bin_samples > 0 and window.bin ~= bin then
+--     local held = window.bin_held
+--     local slot = held > 0 and slot_of(window, window.bin_number, window.bin_end_us)
+--     if slot then
+--       put(window.weight, slot, held)
+--     end
+--     for _, row in ipairs(window.rows) do
+--       local x, rest = of_bin(window, row)
+--       if slot then
+--         merge(row, slot, held, row.kind == "mean" and rest or x, rest)
+--       end
+--       row.before, row.bin_sum = x, 0.0
+--     end
+--     window.bin_samples, window.bin_held = 0, 0.0
+--   end
+--   drop_older(window, window.length_us - 1)
+--   if window.rows[1].x then
+--     window.bin, window.bin_end_us, window.bin_number = bin, clock_us, window.number
+--     window.bin_samples = window.bin_samples + 1
+--     window.bin_held = window.bin_held + held_s
+--     for _, row in ipairs(window.rows) do
+--       row.bin_sum = row.bin_sum + row.x
+--     end
+--   end
+-- end
+-- 
+-- function take_sample(window, held)
+--   drop_older(window, window.length_us - 1)
+--   if window.rows[1].x and held > 0 then
+--     local slot = slot_of(window, window.number, clock_us)
+--     put(window.weight, slot, held)
+--     for _, row in ipairs(window.rows) do
+--       merge(row, slot, held, row.x, row.within)
+--     end
+--   end
+-- end
+-- 
+-- -- The numbers of a list together, without a share of the oldest slot.
+-- function total_of(window, list, out)
+--   local sum = list.middle + list.back
+--   if window.front > 0 then
+--     local first = list[window.oldest]
+--     sum = sum + first
+--     if out > 0 then
+--       sum = sum - out * (window.front > 1 and first - list[window.oldest % window.capacity + 1] or first)
+--     end
+--   end
+--   return sum
+-- end
+-- 
+-- -- The share of the oldest slot that has left the window.
+-- function outside(window)
+--   if not window.is_full and clock_us - window.start_us < window.length_us - 100000 or window.slots == 0 then
+--     return 0.0
+--   end
+--   window.is_full = true
+--   keep_a_front(window)
+--   local inside_s = (window.end_us[window.oldest] - clock_us + window.length_us) * 1e-6
+--   local weight = window.weight
+--   local first = weight[window.oldest]
+--   local own = window.front > 1 and first - weight[window.oldest % window.capacity + 1] or first
+--   return inside_s < own and 1 - inside_s / own or 0.0
+-- end
+-- 
+-- -- Sums about another value.
+-- local function move_shift(row, window, by)
+--   local sum, square, weight = row.sum, row.square, window.weight
+--   for slot = 1, window.capacity do
+--     if sum[slot] then
+--       square[slot] = square[slot] + by * (by * weight[slot] - 2 * sum[slot])
+--       sum[slot] = sum[slot] - by * weight[slot]
+--     end
+--   end
+--   for _, run in ipairs({"middle", "back"}) do
+--     square[run] = square[run] + by * (by * weight[run] - 2 * sum[run])
+--     sum[run] = sum[run] - by * weight[run]
+--   end
+--   row.shift = row.shift + by
+-- end
+-- 
+-- -- The mean, the lowest or the highest value; for a spread the mean and the variance.
+-- function read_row(window, row, total, out)
+--   local kind, held = row.kind, window.bin_held
+--   local sum = total_of(window, row.sum, out)
+--   if kind == "mean" then
+--     if held > 0 then
+--       local _, step = of_bin(window, row)
+--       sum = sum + held * step
+--     end
+--     return sum / total
+--   end
+--   local square, shift = total_of(window, row.square, out), row.shift
+--   if held > 0 then
+--     local x, rest = of_bin(window, row)
+--     shift = shift or x
+--     local d = x - shift
+--     sum = sum + held * d
+--     square = square + held * (d * d + rest)
+--   end
+--   local off = sum / total
+--   local variance = square / total - off * off
+--   if off * off > 30 * variance and row.shift and not has_moved then
+--     has_moved = true
+--     move_shift(row, window, off)
+--   end
+--   return shift + off, max(variance, 0.0)
+-- end
+-- 
+-- function deviation(window, row, total, out)
+--   local _, variance = read_row(window, row, total, out)
+--   return sqrt(variance)
+-- end
+-- 
+-- -- The rules.
+-- 
+-- fired = {} -- the firing strengths of rules
+-- local coverage = 0.0 -- the largest firing strength
+-- local strengths, degrees = {}, {} -- of output terms, and of terms of inputs
+-- is_filled = false
+-- 
+-- -- Along the corners x1, degree 1, x2, degree 2 and so on.
+-- local function along(corners, x)
+--   local count = #corners
+--   if x < corners[1] then
+--     return corners[2]
+--   end
+--   for i = 3, count, 2 do
+--     if x < corners[i] then
+--       local left, low = corners[i - 2], corners[i - 1]
+--       return low + (corners[i + 1] - low) * ((x - left) / (corners[i] - left))
+--     end
+--   end
+--   return corners[count]
+-- end
+-- 
+-- local function fire(rule, term, strength)
+--   if strength < 1e-12 then
+--     strength = 0.0
+--   end
+--   fired[rule] = strength
+--   if strength > strengths[term] then
+--     strengths[term] = strength
+--   end
+--   if strength > coverage then
+--     coverage = strength
+--   end
+-- end
+-- 
+-- -- The corners of the terms of inputs: value, degree, value, degree and so on.
+-- local TERMS = {
+--   {0.2, 0.0, 0.3, 1.0}, -- margin high
+--   {0.1, 0.0, 0.2, 1.0}, -- spread high
+--   {0.0, 1.0, 0.1, 0.0}, -- spread low
+--   {0.0, 0.0, 0.1, 1.0, 0.2, 0.0}, -- spread medium
+--   {0.1, 0.0, 0.2, 1.0, 0.3, 0.0}, -- margin medium
+--   {0.0, 0.0, 0.1, 1.0, 0.2, 0.0}, -- margin low
+--   {0.0, 1.0, 0.1, 0.0}, -- margin very_low
+-- }
+-- local OUTPUT_TERMS = 6
+-- -- The output's terms: area = a h + b h^2, moment about the middle of the range = c h + d h^2 + e h^3 at
+-- -- firing strength h; width and middle of the overlap with the next term.
+-- local PARTS = {
+--   {25.0, -12.5, -937.5, 312.5, 104.166664, 25.0, -37.5},
+--   {50.0, -25.0, -1250.0, 625.0, 0.0, 25.0, -12.5},
+--   {50.0, -25.0, 0.0, 0.0, 0.0, 25.0, 12.5},
+--   {50.0, -25.0, 1250.0, -625.0, 0.0, 25.0, 37.5},
+--   {25.0, -12.5, 937.5, -312.5, -104.166664, 0.0, 0.0},
+--   {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0},
+-- }
+-- 
+-- -- The risk by the rules in %; nil where none fires.
+-- local function by_rules(x)
+--   coverage = 0.0
+--   for term = 1, OUTPUT_TERMS do
+--     strengths[term] = 0.0
+--   end
+--   local d = degrees
+--   d[1] = along(TERMS[1], x[1]) -- margin high
+--   d[2] = along(TERMS[2], x[2]) -- spread high
+--   d[3] = along(TERMS[3], x[2]) -- spread low
+--   d[4] = along(TERMS[4], x[2]) -- spread medium
+--   d[5] = along(TERMS[5], x[1]) -- margin medium
+--   d[6] = along(TERMS[6], x[1]) -- margin low
+--   d[7] = along(TERMS[7], x[1]) -- margin very_low
+--   -- IF margin IS high AND spread IS high THEN risk IS very_low
+--   fire(1, 1, min(d[1], d[2]))
+--   -- IF margin IS high AND spread IS low THEN risk IS very_low
+--   fire(2, 1, min(d[1], d[3]))
+--   -- IF margin IS high AND spread IS medium THEN risk IS very_low
+--   fire(3, 1, min(d[1], d[4]))
+--   -- IF margin IS medium AND spread IS high THEN risk IS very_low
+--   fire(4, 1, min(d[5], d[2]))
+--   -- IF margin IS medium AND spread IS low THEN risk IS very_low
+--   fire(5, 1, min(d[5], d[3]))
+--   -- IF margin IS medium AND spread IS medium THEN risk IS low
+--   fire(6, 2, min(d[5], d[4]))
+--   -- IF margin IS low AND spread IS high THEN risk IS very_high
+--   fire(7, 5, min(d[6], d[2]))
+--   -- IF margin IS low AND spread IS medium THEN risk IS medium
+--   fire(8, 3, min(d[6], d[4]))
+--   -- IF margin IS very_low AND spread IS high THEN risk IS very_high
+--   fire(9, 5, min(d[7], d[2]))
+--   -- IF margin IS very_low AND spread IS medium THEN risk IS very_high
+--   fire(10, 5, min(d[7], d[4]))
+--   local area, moment = 0.0, 0.0
+--   for term = 1, OUTPUT_TERMS do
+--     local part, h = PARTS[term], strengths[term]
+--     local v = min(h, strengths[term + 1] or 0.0, 0.5)
+--     local common = part[6] * (v * (1 - v))
+--     area = area + h * (part[1] + h * part[2]) - common
+--     moment = moment + h * (part[3] + h * (part[4] + h * part[5])) - part[7] * common
+--   end
+--   if area > 0 then
+--     return max(0.0, min(100.0, 50.0 + moment / area))
+--   end
+--   return nil -- no rule fires
+-- end
+-- 
+-- -- Where the rules leave a gap: values at knots, the last input running fastest; linear between them.
+-- local KNOTS = {
+--   {0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5},
+--   {0.0, 0.05, 0.1, 0.15, 0.2, 0.5},
+-- }
+-- local FILLED = {
+--   84.11, 90.28, 91.67, 90.28, 91.67, 91.67, 58.9, 63.43, 63.43, 63.43, 90.28, 90.28, 36.73, 50.0, 50.0,
+--   63.43, 91.67, 91.67, 9.72, 34.47, 37.5, 46.43, 50.0, 50.0, 8.33, 22.02, 25.0, 22.02, 8.33, 8.33, 9.72,
+--   22.02, 22.02, 22.02, 9.72, 9.72, 8.33, 9.72, 8.33, 9.72, 8.33, 8.33, 8.33, 9.72, 8.33, 9.72, 8.33,
+--   8.33,
+-- }
+-- 
+-- local function filled(x, axis, knot)
+--   local places = KNOTS[axis]
+--   if not places then
+--     return FILLED[knot + 1]
+--   end
+--   local count, behind = #places, 0
+--   while behind < count and places[behind + 1] <= x[axis] do
+--     behind = behind + 1
+--   end
+--   local first = knot * count
+--   if behind == 0 or behind == count then
+--     return filled(x, axis + 1, first + (behind == 0 and 0 or count - 1))
+--   end
+--   local left = places[behind]
+--   local share = (x[axis] - left) / (places[behind + 1] - left)
+--   local low = filled(x, axis + 1, first + behind - 1)
+--   if share == 0 then
+--     return low
+--   end
+--   return (1 - share) * low + share * filled(x, axis + 1, first + behind)
+-- end
+-- 
+-- local point = {} -- the inputs of the rules, in their order
+-- 
+-- function estimate()
+--   point[1] = max(0.0, min(0.5, value[1]))
+--   point[2] = max(0.0, min(0.5, value[2]))
+--   local risk = by_rules(point)
+--   -- A coverage a hair below the limit is rounding.
+--   is_filled = coverage < 0.5 * (1 - 1e-5)
+--   if is_filled then
+--     risk = filled(point, 1, 0)
+--   end
+--   return risk and max(0.0, min(100.0, risk))
+-- end
+-- 
+-- -- The inputs of the rules.
+-- 
+-- value = {} -- of the inputs; nil where one is unknown
+-- 
+-- -- Takes in a sample of flight.
+-- function observe()
+--   local inputs, value, windows = inputs, value, windows
+--   local mean_of_margin = sum and mean_of(margin) or nil
+--   local deviation_of_command = sum and deviation_of(command) or nil
+--   local mean_of_command = sum and mean_of(command) or nil
+--   inputs[1].x = mean_of_margin -- margin
+--   inputs[2].x = mean_of_command -- spread
+--   inputs[2].within = sum and deviation_of_command * deviation_of_command or 0.0
+--   take_sample(windows[1], held_s)
+-- end
+-- 
+-- -- The seconds that are known of a window and the share of its oldest slot that has left it; nil where too little is known.
+-- local function enough(window)
+--   local out = outside(window)
+--   local total = total_of(window, window.weight, out) + window.bin_held
+--   local samples = window.samples + (window.bin_held > 0 and 1 or 0)
+--   if total < window.needed_s or total <= 0 or samples < 5 then
+--     return nil
+--   end
+--   return total, out
+-- end
+-- 
+-- -- The inputs' values; false where one is not known.
+-- function read_inputs()
+--   local inputs, value, windows = inputs, value, windows
+--   local all, total, out = true, nil, nil
+--   local window
+--   window = windows[1]
+--   total, out = enough(window)
+--   value[1] = total and read_row(window, inputs[1], total, out) -- margin
+--   all = all and value[1]
+--   value[2] = total and deviation(window, inputs[2], total, out) -- spread
+--   all = all and value[2]
+--   return all
+-- end
+-- 
+-- -- Levels: raised after a while, held, lowered after a while.
+-- 
+-- -- What each rule is about: the area and the centre of its consequent, an input and a term, whether motors are at a limit.
+-- CAUSES = {
+--   {12.75, 8.166667, "margin", "high", true}, -- 1
+--   {12.75, 8.166667, "spread", "low", false}, -- 2
+--   {12.75, 8.166667, "margin", "high", true}, -- 3
+--   {12.75, 8.166667, "margin", "medium", true}, -- 4
+--   {12.75, 8.166667, "spread", "low", false}, -- 5
+--   {25.0, 25.0, "margin", "medium", true}, -- 6
+--   {12.75, 91.833336, "margin", "low", true}, -- 7
+--   {25.0, 50.0, "margin", "low", true}, -- 8
+--   {12.75, 91.833336, "margin", "very_low", true}, -- 9
+--   {12.75, 91.833336, "margin", "very_low", true}, -- 10
+-- }
+-- warn_risk, fail_risk = 67.0, 85.0 -- parameters may change them
+-- risk_level = 0 -- of the risk alone
+-- local reached_at = {} -- since when the thresholds of each level are reached
+-- local held_at = 0 -- when something last held the level
+-- is_open, by_elevated = false, false -- the time of trouble
+-- local open_level = 0
+-- local seen, mean_margin, least_margin = 0, {}, {} -- the motors while a level is being reached
+-- is_upper = {} -- whether the limit that each motor was nearest to is the upper one
+-- 
+-- -- The rule that raises the risk most: the largest share of it, above half of its value.
+-- local function find_cause(risk)
+--   if is_filled then
+--     return nil
+--   end
+--   local most, rule = -huge, nil
+--   for i = 1, #CAUSES do
+--     local raises = (fired[i] or 0.0) * CAUSES[i][1] * (CAUSES[i][2] - risk / 2)
+--     if (fired[i] or 0.0) > 0 and raises > most then
+--       most, rule = raises, i
+--     end
+--   end
+--   return rule
+-- end
+-- 
+-- local function is_reached(risk, risk_limit, elevated_limit)
+--   if risk_limit and risk >= risk_limit then
+--     return true, false
+--   elseif elevated_limit and elevated >= elevated_limit then
+--     return true, true
+--   end
+--   return false, false
+-- end
+-- 
+-- -- The motor with the least mean margin, where it is near a limit; of motors at zero the one that is there for longest.
+-- local function weakest()
+--   local found
+--   for i = 1, motors do
+--     local margin, least = mean_margin[i], found and mean_margin[found]
+--     if margin and (not found or margin < least) then
+--       found = i
+--     end
+--   end
+--   return found and least_margin[found] < 0.1 and found or nil
+-- end
+-- 
+-- local function raise(level, of_elevated, risk)
+--   risk_level = level
+--   if not is_open or open_level ~= level then
+--     by_elevated = of_elevated
+--   end
+--   if not is_open or level > open_level then
+--     cause, open_level = find_cause(risk), level
+--     limit_motor = cause and CAUSES[cause][5] and weakest()
+--   end
+--   is_open = true
+-- end
+-- 
+-- -- A level reached now; gives what holds it.
+-- local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, after_us, until_risk, until_elevated)
+--   local reached, of_elevated = is_reached(risk, risk_limit, elevated_limit)
+--   reached = reached and can_raise
+--   if reached or is_reached(risk, until_risk, until_elevated) then
+--     held = min(level, risk_level)
+--   end
+--   if not reached then
+--     reached_at[level] = nil
+--     return held
+--   end
+--   reached_at[level] = reached_at[level] or clock_us
+--   if level > risk_level and clock_us - reached_at[level] >= after_us then
+--     raise(level, of_elevated, risk)
+--     held = level
+--   end
+--   return held
+-- end
+-- 
+-- -- Keeps what the motors do while a level is being reached, from its beginning.
+-- local function watch_motors(risk, takes_off)
+--   local warns = not takes_off and is_reached(risk, warn_risk, 50.0)
+--   local fails = is_reached(risk, fail_risk, 90.0)
+--   if not warns and not fails then
+--     return
+--   end
+--   if warns and not reached_at[2] or fails and not reached_at[3] then
+--     seen, mean_margin, least_margin = 0, {}, {}
+--   end
+--   seen = seen + 1
+--   for i = 1, motors do
+--     local e = command[i]
+--     local near = e < 0.5 and e or 1 - e
+--     local mean = mean_margin[i] or 0.0
+--     mean_margin[i] = mean + (near - mean) / seen
+--     if near < (least_margin[i] or huge) then
+--       least_margin[i], is_upper[i] = near, e >= 0.5
+--     end
+--   end
+-- end
+-- 
+-- -- The lower of a risk that ends a level and the one that raises it.
+-- local function lower(until_risk, risk)
+--   return until_risk and risk and min(until_risk, risk) or until_risk
+-- end
+-- 
+-- doubt_us = nil -- since an alarm: for how long the motors have worked as before
+-- 
+-- -- After an alarm the level is GOOD again when the motors have worked as before for as long as a level is held.
+-- local function doubt()
+--   local is_back = true
+--   if (risk_level > 0 or doubt_us) and not is_back then
+--     doubt_us = 0
+--   elseif risk_level == 0 and doubt_us and doubt_us >= 10000000 then
+--     doubt_us = nil
+--   end
+-- end
+-- 
+-- function judge(risk, takes_off)
+--   watch_motors(risk, takes_off)
+--   local held, can_fail = 0, true
+--   local warn_until, fail_until = lower(25.0, warn_risk), lower(67.0, fail_risk)
+--   held = follow(2, held, risk, not takes_off, warn_risk, 50.0, 200000, warn_until, 30.0)
+--   held = follow(3, held, risk, can_fail, fail_risk, 90.0, 400000, fail_until, 70.0)
+--   if held >= risk_level then
+--     held_at = clock_us
+--   elseif clock_us - held_at >= 10000000 then
+--     risk_level, held_at = held, clock_us
+--     is_open = held > 0
+--   end
+--   doubt()
+-- end
+-- 
+-- function stop_judging()
+--   clear_elevated()
+--   risk_level, is_open = 0, false
+--   reached_at[2], reached_at[3] = nil, nil
+-- end
+-- 
+-- -- A flight.
+-- 
+-- flown_us = nil -- since take-off; nil on the ground
+-- down_us = nil -- for how long it seems to be on the ground
+-- local settled, settling = false, huge -- whether the take-off is dropped, and the window to drop it from next
+-- local idle -- "landing" or "trouble"
+-- local since_high_us, unknown_us -- since a high risk, and since a risk was known
+-- 
+-- -- Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
+-- function forget(is_gap)
+--   local was_alarm = is_gap and level_now() > 0
+--   for _, window in ipairs(windows) do
+--     clear(window)
+--   end
+--   flown_us, down_us, settled, settling, idle, since_high_us, unknown_us = nil, nil, false, huge, nil, nil, nil
+--   value = {}
+--   stop_judging()
+--   doubt_us = was_alarm and 0 or nil
+-- end
+-- 
+-- -- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end. While the command of a
+-- -- motor is unknown, the vehicle counts as in the air.
+-- local function rests()
+--   if not sum then
+--     return false
+--   end
+--   if sum >= 0.1 * motors then
+--     idle = nil
+--     return false
+--   end
+--   if not idle then
+--     local is_trouble = since_high_us and since_high_us <= 2000000
+--     idle = is_trouble and "trouble" or "landing"
+--   end
+--   return idle == "landing"
+-- end
+-- 
+-- -- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
+-- local function settle()
+--   if not settled and flown_us >= 0 + 1000000 then
+--     settled, settling = true, 1
+--     if 0 > 0 then
+--       clear_elevated()
+--     end
+--   end
+--   while 0 > 0 and settling <= #windows do
+--     local window = windows[settling]
+--     settling = settling + 1
+--     if window.length_us > 0 then
+--       drop_older(window, flown_us - 0 - 1)
+--       return
+--     end
+--   end
+-- end
+-- 
+-- -- Takes in the time and the motors; gives the risk in %, nil where it is unknown.
+-- function fly()
+--   has_moved = false
+--   clock_us = clock_us + held_us
+--   bin_us = bin_us + held_us
+--   bin, bin_us = bin + bin_us // 100000, bin_us % 100000
+--   if held_us > 2000000 then
+--     forget(true)
+--     held_us, held_s = 0, 0.0
+--   end
+--   for _, window in ipairs(windows) do
+--     local phase = window.phase + 128 * held_us
+--     window.number = window.number + phase // window.length_us
+--     window.phase = phase % window.length_us
+--   end
+--   since_high_us = since_high_us and later(since_high_us, held_us)
+--   unknown_us = unknown_us and later(unknown_us, held_us)
+--   doubt_us = doubt_us and later(doubt_us, held_us)
+--   flown_us = flown_us and later(flown_us, held_us)
+--   read_commands()
+--   if not vehicle:get_likely_flying() or rests() then
+--     value = {}
+--     if flown_us then
+--       down_us = down_us and later(down_us, held_us) or 0
+--       if down_us >= 1000000 then
+--         forget(false)
+--       end
+--     else
+--       -- It landed in a gap.
+--       doubt_us = nil
+--     end
+--     return nil
+--   end
+--   down_us = nil
+--   flown_us = flown_us or 0
+--   observe()
+--   settle()
+--   local is_known = read_inputs()
+--   -- While the command of a motor is unknown, so is the risk.
+--   is_known = is_known and sum
+--   local risk = is_known and estimate()
+--   if not risk then
+--     if unknown_us and unknown_us > 2000000 then
+--       doubt_us = level_now() > 0 and unknown_us or nil
+--       stop_judging()
+--       unknown_us = nil
+--     end
+--     return nil
+--   end
+--   unknown_us = 0
+--   if warn_risk and risk >= warn_risk then
+--     since_high_us = 0
+--   end
+--   add_up(risk)
+--   judge(risk, flown_us < 5000000)
+--   return risk
+-- end
+-- 
+-- -- The calls.
+-- 
+-- local is_enabled = true
+-- local last_call -- the autopilot's clock
+-- local sent_us, logged_bin, settings_us = 1000000000, -1, 0
+-- local has_failed = false
+-- 
+-- -- FRISK_ENABLE = 0 silences the script.
+-- local function read_parameters()
+--   local enable = param:get("FRISK_ENABLE")
+--   is_enabled = enable == nil or enable > 0
+--   warn_risk = param:get("FRISK_WARN") or 67.0
+--   fail_risk = param:get("FRISK_FAIL") or 85.0
+-- end
+-- 
+-- local function update()
+--   local now = micros()
+--   held_us = last_call and (now - last_call):toint() or 0
+--   if held_us < 0 or held_us > 1000000000 then
+--     held_us = 1000000000
+--   end
+--   if not last_call then
+--     read_parameters()
+--   elseif held_us == 0 then
+--     return
+--   end
+--   last_call = now
+--   held_s = held_us * 1e-6
+--   -- Limits and parameters may change on the ground.
+--   settings_us = later(settings_us, held_us)
+--   if not flown_us and settings_us >= 1000000 then
+--     settings_us = 0
+--     read_parameters()
+--     read_limits()
+--   end
+--   if not is_enabled then
+--     return
+--   end
+--   local before = level_now()
+--   local risk = fly()
+--   local level = level_now()
+--   if level ~= before and flown_us and not down_us then
+--     say(level, risk, false)
+--   end
+--   sent_us = later(sent_us, held_us)
+--   if risk and sent_us >= 500000 then
+--     sent_us = 0
+--     gcs:send_named_float("FR_RISK", risk)
+--     gcs:send_named_float("FR_ELEV", elevated)
+--   end
+--   if risk and logged_bin ~= bin then
+--     logged_bin = bin
+--     logger:write("FRSK", "Risk,Elev,Level", "ffB", risk, elevated, level)
+--   end
+-- end
+-- 
+-- -- An error that leaves a script stops it and blocks arming.
+-- function protected()
+--   local is_well, told = pcall(update)
+--   if is_well then
+--     return protected, 30
+--   end
+--   if not has_failed then
+--     has_failed = true
+--     gcs:send_text(3, sub("FLAGRED failed: " .. tostring(told), 1, 50))
+--   end
+--   pcall(forget)
+--   return protected, 1000
+-- end
+-- 
+-- -- The first call, when the memory of the loader is free again. What calls take for a moment must be left.
+-- function begin()
+--   begin = nil
+--   if not pcall(rep, " ", 3000) then
+--     gcs:send_text(3, "FLAGRED is off: increase SCR_HEAP_SIZE")
+--     return
+--   end
+--   gcs:send_text(6, format("FLAGRED: %d motors, %.0f to %.0f us", motors, read_limits()))
+--   return protected, 30
+-- end
+-- 
+-- -- The elevated risk: what the risks of the last seconds add up to. Its window is `risks`, with one row.
+-- 
+-- elevated = 0.0
+-- local last_risk, last_rate
+-- 
+-- function clear_elevated()
+--   clear(risks)
+--   elevated, last_risk, last_rate = 0.0, nil, nil
+-- end
+-- 
+-- -- Abramowitz and Stegun 7.1.26, right to 1.5e-7.
+-- local function erf(x)
+--   local t = 1 / (1 + 0.3275911 * abs(x))
+--   local y = 1 - ((((1.061405429 * t - 1.453152027) * t + 1.421413741) * t - 0.284496736) * t + 0.254829592) * t * exp(-x * x)
+--   return x < 0 and -y or y
+-- end
+-- 
+-- -- The share of a normal distribution below x.
+-- local function share_below(x, mean, deviation)
+--   local distance = x - mean
+--   if deviation > 0 then
+--     return 0.5 * (1 + erf(distance / deviation * 0.70710678))
+--   end
+--   return distance == 0 and 0.5 or distance > 0 and 1.0 or 0.0
+-- end
+-- 
+-- function add_up(risk)
+--   local before, row = last_risk or risk, risks.rows[1]
+--   row.x, row.within = 0.5 * (before + risk), (risk - before) * (risk - before) / 12
+--   take_sample(risks, held_s)
+--   local out = outside(risks)
+--   local total = total_of(risks, risks.weight, out)
+--   if total > 0 then
+--     local mean, variance = read_row(risks, row, total, out)
+--     local deviation = sqrt(variance)
+--     local rate = 2.0 * (1 - share_below(50.0, mean, deviation)) - 3.0 * share_below(20.0, mean, deviation)
+--     elevated = elevated + 0.5 * (rate + (last_rate or rate)) * held_s
+--     elevated = max(0.0, min(100.0, elevated))
+--     last_risk, last_rate = risk, rate
+--   end
+-- end
+-- 
+-- -- What the pilot reads, in at most 50 characters.
+-- 
+-- function level_now()
+--   local level = risk_level
+--   return doubt_us and max(level, 2) or level
+-- end
+-- 
+-- -- A cause in two parts; where there is no room for the last one, the first one is true alone.
+-- function cause_in_words()
+--   local about = cause and CAUSES[cause]
+--   if not about then
+--     return ", interpolated", ""
+--   end
+--   if limit_motor then
+--     local side = is_upper[limit_motor] and "upper" or "lower"
+--     return ", " .. side .. " limit", format(", motor %d", numbers[limit_motor])
+--   end
+--   return ", " .. about[3], " " .. about[4]
+-- end
+-- 
+-- 
+-- local LEVELS = {[0] = "GOOD", [2] = "WARN", [3] = "FAIL"}
+-- 
+-- function say(level, risk, of_notice)
+--   local severity = level == 3 and 2 or level == 2 and 4 or 6
+--   local text = "FLAGRED: " .. LEVELS[level]
+--   if not is_open and level > 0 then
+--     gcs:send_text(severity, text .. " stands: motors not as before")
+--     return
+--   end
+--   if is_open and by_elevated then
+--     text = format("%s elevated %.0f %%", text, elevated)
+--   elseif risk then
+--     text = format("%s risk %.0f %%", text, risk)
+--   end
+--   if is_open then
+--     local first, second = cause_in_words()
+--     text = #text + #first <= 50 and text .. first or text
+--     text = #text + #second <= 50 and text .. second or text
+--   end
+--   gcs:send_text(severity, text)
+-- end
+-- 

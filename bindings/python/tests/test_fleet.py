@@ -456,7 +456,7 @@ def test_a_torn_file_of_the_dataset_is_named(kind, logs, tmp_path, here, capsys)
     torn.write_bytes(torn.read_bytes()[: torn.stat().st_size // 2])
     assert main(["report", str(out), "-o", str(tmp_path / "fleet.html")]) == 3
     told = capsys.readouterr().err
-    assert f"`{torn}` is damaged" in told and "help: restore the file, or delete it" in told
+    assert f"`{torn}` is damaged" in told and "help: restore the file, or delete all files of its name" in told
     if kind == "flights":
         assert main(["assess", str(logs), "--out", str(out)]) == 3
         assert f"`{torn}` is damaged" in capsys.readouterr().err

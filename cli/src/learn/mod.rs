@@ -69,8 +69,7 @@ struct Outcome {
     kept: usize,
     refused: Vec<String>,
     refused_count: usize,
-    coverage: f64,
-    after_filling: f64,
+    coverage: Option<(f64, f64)>,
     errors: Option<Errors>,
     gaps: Option<GapComparison>,
     /// Where the output does not go the way that was asked for.
@@ -110,14 +109,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let learned = learner.finish();
     let gap = GapSettings::default();
     let examined = |error: flagred::learning::ExamineError| Failure::unreadable(error.to_string());
-    let (coverage, after_filling) = coverage(&learned.model, &gap)?;
+    let coverage = coverage(&learned.model, &gap)?;
     let counterexamples = counterexamples(arguments, &learned.model)?;
     let outcome = Outcome {
         kept: model.rules.len(),
         refused_count: refused.len(),
         refused,
         coverage,
-        after_filling,
         errors: match arguments.rows.no_validation {
             true => None,
             false => Some(cross_validate(&model, &settings, &gap, &rows).map_err(examined)?),
@@ -192,14 +190,24 @@ fn monotone_help(arguments: &Arguments, outcome: &Outcome) -> Option<&'static st
     }
 }
 
+/// The most cells of the map that `coverage` looks at: 13 inputs.
+const MOST_CELLS: usize = 2_000_000;
+
 fn unusable(error: impl std::fmt::Display) -> Failure {
     Failure::unusable("the learned rules cannot be used", &error)
 }
 
-/// The shares of the map that rules cover, and that have a value after filling.
-fn coverage(model: &Model, gap: &GapSettings) -> Result<(f64, f64), Failure> {
+/// The shares of the map that rules cover, and that have a value after filling; `None` of a map with too many cells.
+fn coverage(model: &Model, gap: &GapSettings) -> Result<Option<(f64, f64)>, Failure> {
     let engine = Engine::new(model).map_err(unusable)?;
     let points = crate::map::points_along(model.inputs.len());
+    let inputs = u32::try_from(model.inputs.len()).unwrap_or(u32::MAX);
+    if points
+        .checked_pow(inputs)
+        .is_none_or(|cells| cells > MOST_CELLS)
+    {
+        return Ok(None);
+    }
     let grid = Grid::new(&engine, points).map_err(unusable)?;
     let map = DecisionMap::new(&engine, grid, 0).map_err(unusable)?;
     let filling = Filling::new(&engine, model, 0, gap).map_err(unusable)?;
@@ -207,5 +215,5 @@ fn coverage(model: &Model, gap: &GapSettings) -> Result<(f64, f64), Failure> {
     let cells = filled.map().grid().cells();
     let known = (0..cells).filter(|cell| filled.value(*cell).is_some());
     let known = known.count() as f64 / cells.max(1) as f64;
-    Ok((1.0 - filled.filled_share(), known))
+    Ok(Some((1.0 - filled.filled_share(), known)))
 }

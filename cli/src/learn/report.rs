@@ -96,13 +96,16 @@ pub(super) fn words(
             writeln!(out, "           help: {help}")?;
         }
     }
-    writeln!(
-        out,
-        "coverage   {:.1} % of the map by rules, {:.1} % after filling ({})",
-        100.0 * outcome.coverage,
-        100.0 * outcome.after_filling,
-        GapMethod::default().name()
-    )?;
+    match outcome.coverage {
+        Some((by_rules, after_filling)) => writeln!(
+            out,
+            "coverage   {:.1} % of the map by rules, {:.1} % after filling ({})",
+            100.0 * by_rules,
+            100.0 * after_filling,
+            GapMethod::default().name()
+        )?,
+        None => writeln!(out, "coverage   not computed for so many inputs")?,
+    }
     let parts = match &arguments.rows.group_by {
         Some(column) => format!("groups of `{}` left out in turn", visible(column)),
         None => "tenths of the rows left out in turn".to_owned(),
@@ -169,7 +172,8 @@ pub(super) struct Document<'a> {
     missing: Missing,
     /// `None` where no direction was asked for.
     monotone: Option<Monotone<'a>>,
-    coverage: Coverage,
+    /// `None` of a map with too many cells.
+    coverage: Option<Coverage>,
     /// `None` where rows were too few, or validation was not wanted.
     cross_validation: Option<&'a Errors>,
     gap_methods: Option<GapMethods<'a>>,
@@ -251,11 +255,11 @@ impl<'a> Document<'a> {
                 moved: learned.moved,
                 counterexamples: &outcome.counterexamples,
             }),
-            coverage: Coverage {
-                by_rules: outcome.coverage,
-                after_filling: outcome.after_filling,
+            coverage: outcome.coverage.map(|(by_rules, after_filling)| Coverage {
+                by_rules,
+                after_filling,
                 gap_method: GapMethod::default().name(),
-            },
+            }),
             cross_validation: outcome.errors.as_ref().filter(|e| e.rows > 0),
             gap_methods: outcome.gaps.as_ref().map(|gaps| GapMethods {
                 rules_left_out: gaps.rules,

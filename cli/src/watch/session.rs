@@ -368,7 +368,7 @@ impl<'e> Session<'e> {
         let to = tracked.address();
         let in_air = tracked.telemetry.is_in_air();
         let pulses = tracked.telemetry.pulses();
-        if in_air && !tracked.is_complete {
+        if in_air {
             tracked.history.push(t_s, pulses);
         } else {
             tracked.history.clear();

@@ -99,7 +99,7 @@ pub(crate) fn slowed(rate_hz: f64, asker: Option<(u8, u8)>) -> String {
         Some((system, _)) => {
             format!("{PREFIX}station {system} slows motor data to {rate_hz:.0} Hz")
         }
-        None => format!("{PREFIX}station slows motor data to {rate_hz:.0} Hz"),
+        None => format!("{PREFIX}motor data slowed to {rate_hz:.0} Hz"),
     }
 }
 

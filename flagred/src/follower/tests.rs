@@ -196,6 +196,32 @@ fn little_reserve_is_told_while_it_lasts_and_ends_with_the_flight() {
     assert_eq!(last(&landed).level, None);
 }
 
+/// Few samples: the risk is unknown all the time.
+#[test]
+fn little_reserve_is_told_where_the_risk_is_unknown() {
+    let flown = noticing(NoticeSettings {
+        reserve: limit(0.1, 3.0),
+        ..NoticeSettings::default()
+    });
+    let mut monitor = flown.monitor;
+    let updates: Vec<Update> = (0..60)
+        .map(|t_s| {
+            let motors = if t_s < 30 { [0.8; 4] } else { [0.96; 4] };
+            monitor.push(&Sample {
+                t_s: f64::from(t_s),
+                motors: &motors,
+                in_air: true,
+                signals: &[],
+            })
+        })
+        .collect();
+    assert!(updates.iter().all(|update| update.risk.is_err()));
+    let levels: Vec<_> = updates.iter().filter_map(|update| update.change).collect();
+    assert_eq!(levels, [Level::Warn]);
+    assert!(updates[..30].iter().all(|update| update.level.is_none()));
+    assert_eq!(last(&updates).level, Some(Level::Warn));
+}
+
 #[test]
 fn a_motor_that_leaves_its_own_part_is_told_and_one_that_always_had_it_is_not() {
     let notices = NoticeSettings {

@@ -141,7 +141,13 @@ pub(super) fn apply_header(
             "system_id" => flight.vehicle.system_id = entry.value.parse().ok(),
             "boot_count" => flight.vehicle.boot_count = entry.value.parse().ok(),
             "firmware" => flight.vehicle.firmware = Some(entry.value.clone()),
-            "motors" => flight.vehicle.motors = entry.value.parse().ok(),
+            "motors" => {
+                let motors = entry.value.parse().ok().filter(|motors| *motors > 0);
+                flight.vehicle.motors = Some(motors.ok_or_else(|| {
+                    let text = format!("`motors` is `{}`", entry.value);
+                    problem(entry.line, text, "write how many motors the vehicle has")
+                })?);
+            }
             "armed" if entry.value == "never" => {
                 flight.armed = Some(Intervals {
                     spans: Vec::new(),
@@ -174,6 +180,9 @@ pub(super) fn apply_header(
     }
     flight.utc_at_zero_s = value("utc_at_zero_s")?;
     let declared = geometry_of(&header, layout.motors.len())?;
+    if flight.vehicle.motors.is_none() {
+        flight.vehicle.motors = declared.class().and_then(tables::motors_of_class);
+    }
     flight.header = header
         .into_iter()
         .map(|entry| (entry.key, entry.value))

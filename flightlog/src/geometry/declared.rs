@@ -34,7 +34,7 @@ impl Declared {
         }
     }
 
-    pub(super) fn class(&self) -> Option<i64> {
+    pub(crate) fn class(&self) -> Option<i64> {
         match self {
             Self::Frame { class, .. } => Some(*class),
             Self::Nothing | Self::Factors { .. } => None,

@@ -78,7 +78,10 @@ impl Setup {
                 .map(|motor| motor.number)
                 .collect::<Vec<_>>()
         };
-        (self.outputs == other.outputs && limits(self) == limits(other))
+        // A parameter has single precision.
+        let alike = |(a, b): (f64, f64)| (a - b).abs() <= 1e-6 * a.abs().max(1.0);
+        let limits_alike = limits(self).into_iter().zip(limits(other)).all(alike);
+        (self.outputs == other.outputs && limits_alike)
             && numbers(self) == numbers(other)
             && same_factors(self.geometry.as_ref(), other.geometry.as_ref())
     }

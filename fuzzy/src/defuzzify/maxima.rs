@@ -119,7 +119,12 @@ impl Maxima {
         self.values.value(match defuzzifier {
             Defuzzifier::SmallestOfMaxima => SetDefuzzifier::SMALLEST_OF_MAXIMA,
             Defuzzifier::LargestOfMaxima => SetDefuzzifier::LARGEST_OF_MAXIMA,
-            _ => SetDefuzzifier::MEAN_OF_MAXIMA,
+            Defuzzifier::MeanOfMaxima
+            | Defuzzifier::Centroid
+            | Defuzzifier::Bisector
+            | Defuzzifier::WeightedAverage
+            | Defuzzifier::WeightedSum
+            | Defuzzifier::Tsukamoto => SetDefuzzifier::MEAN_OF_MAXIMA,
         })
     }
 }

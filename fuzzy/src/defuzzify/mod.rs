@@ -98,13 +98,21 @@ pub(crate) enum Method {
 
 impl Merging {
     pub(crate) fn of(defuzzifier: Defuzzifier, operators: Operators) -> Self {
-        use Aggregation::{BoundedSum, Maximum, Sum};
-        match (operators.aggregation, operators.implication) {
-            _ if defuzzifier.takes_numbers() => Merging::Sum,
-            _ if defuzzifier == Defuzzifier::Tsukamoto => Merging::Apart,
-            (Maximum, _) => Merging::Largest,
-            (Sum | BoundedSum, Implication::Product) => Merging::Sum,
-            _ => Merging::Apart,
+        use Aggregation::{
+            BoundedSum, Drastic, Einstein, Hamacher, Maximum, NilpotentMaximum, ProbabilisticSum,
+            Sum,
+        };
+        if defuzzifier.takes_numbers() {
+            return Merging::Sum;
+        }
+        if defuzzifier == Defuzzifier::Tsukamoto {
+            return Merging::Apart;
+        }
+        match operators.aggregation {
+            Maximum => Merging::Largest,
+            Sum | BoundedSum if operators.implication == Implication::Product => Merging::Sum,
+            Sum | BoundedSum | ProbabilisticSum | Drastic | Einstein | Hamacher
+            | NilpotentMaximum => Merging::Apart,
         }
     }
 }
@@ -112,10 +120,15 @@ impl Merging {
 impl Defuzzifier {
     /// Whether its terms are numbers and functions, as Takagi-Sugeno consequents are, rather than fuzzy sets.
     pub(crate) fn takes_numbers(self) -> bool {
-        matches!(
-            self,
-            Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
-        )
+        match self {
+            Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => true,
+            Defuzzifier::Centroid
+            | Defuzzifier::Bisector
+            | Defuzzifier::SmallestOfMaxima
+            | Defuzzifier::MeanOfMaxima
+            | Defuzzifier::LargestOfMaxima
+            | Defuzzifier::Tsukamoto => false,
+        }
     }
 
     /// Whether it weighs numbers, one for each rule: Takagi-Sugeno or Tsukamoto.
@@ -289,7 +302,10 @@ impl Defuzzify {
                 });
                 bisector.filter(|_| whole.area > 0.0)
             }
-            _ => {
+            Defuzzifier::Centroid
+            | Defuzzifier::WeightedAverage
+            | Defuzzifier::WeightedSum
+            | Defuzzifier::Tsukamoto => {
                 let mut integrals = self.integrals();
                 self.pieces(strengths, workspace, &mut |piece| integrals.add(piece));
                 integrals.centroid()

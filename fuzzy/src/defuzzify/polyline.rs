@@ -87,13 +87,20 @@ impl Polylines {
     /// Whether activated lines are lines, and their aggregate is smooth but for corners that are found. With other operators
     /// terms made of straight lines are curves.
     pub(super) fn can(joint: Joint) -> bool {
-        matches!(
+        let is_straight = matches!(
             joint.implication,
             Implication::Minimum | Implication::Product
-        ) && !matches!(
-            joint.aggregation,
-            Aggregation::Drastic | Aggregation::NilpotentMaximum
-        )
+        );
+        is_straight
+            && match joint.aggregation {
+                Aggregation::Drastic | Aggregation::NilpotentMaximum => false,
+                Aggregation::Maximum
+                | Aggregation::Sum
+                | Aggregation::BoundedSum
+                | Aggregation::ProbabilisticSum
+                | Aggregation::Einstein
+                | Aggregation::Hamacher => true,
+            }
     }
 
     /// Cuts `[low, high]` at every corner of every term; `None` where a term is curved.
@@ -279,7 +286,11 @@ fn join(
                 visit(&straight(stretch, t, 1.0, 1.0, smaller(1.0, sum.right)));
             }
         }
-        _ => {
+        Aggregation::ProbabilisticSum
+        | Aggregation::Drastic
+        | Aggregation::Einstein
+        | Aggregation::Hamacher
+        | Aggregation::NilpotentMaximum => {
             let sloped = |t: f64| {
                 segments.iter().fold(Sloped::default(), |sum, segment| {
                     let slope = segment.right - segment.left;

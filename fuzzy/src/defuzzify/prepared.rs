@@ -42,7 +42,12 @@ impl Prepared {
         let sum = match joint.aggregation {
             Aggregation::Maximum => false,
             Aggregation::Sum => true,
-            _ => return None,
+            Aggregation::ProbabilisticSum
+            | Aggregation::BoundedSum
+            | Aggregation::Drastic
+            | Aggregation::Einstein
+            | Aggregation::Hamacher
+            | Aggregation::NilpotentMaximum => return None,
         };
         let defuzzifier = match defuzzifier {
             Defuzzifier::Centroid => To::CENTROID,
@@ -50,7 +55,12 @@ impl Prepared {
             Defuzzifier::SmallestOfMaxima if !sum => To::SMALLEST_OF_MAXIMA,
             Defuzzifier::MeanOfMaxima if !sum => To::MEAN_OF_MAXIMA,
             Defuzzifier::LargestOfMaxima if !sum => To::LARGEST_OF_MAXIMA,
-            _ => return None,
+            Defuzzifier::SmallestOfMaxima
+            | Defuzzifier::MeanOfMaxima
+            | Defuzzifier::LargestOfMaxima
+            | Defuzzifier::WeightedAverage
+            | Defuzzifier::WeightedSum
+            | Defuzzifier::Tsukamoto => return None,
         };
         let has_form = matches!(
             joint.implication,

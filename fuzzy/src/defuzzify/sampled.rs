@@ -15,7 +15,10 @@ impl Sampling {
             | Defuzzifier::MeanOfMaxima
             | Defuzzifier::LargestOfMaxima => self.maxima(defuzzifier, low, high, degree),
             Defuzzifier::Bisector => self.bisector(low, high, degree),
-            _ => {
+            Defuzzifier::Centroid
+            | Defuzzifier::WeightedAverage
+            | Defuzzifier::WeightedSum
+            | Defuzzifier::Tsukamoto => {
                 let (mut area, mut moment) = (0.0, 0.0);
                 for i in 0..self.samples {
                     let (x, weight) = self.sample(i, low, high);
@@ -85,7 +88,12 @@ impl Sampling {
         (count > 0.0).then_some(match defuzzifier {
             Defuzzifier::SmallestOfMaxima => smallest,
             Defuzzifier::LargestOfMaxima => largest,
-            _ => sum / count,
+            Defuzzifier::MeanOfMaxima
+            | Defuzzifier::Centroid
+            | Defuzzifier::Bisector
+            | Defuzzifier::WeightedAverage
+            | Defuzzifier::WeightedSum
+            | Defuzzifier::Tsukamoto => sum / count,
         })
     }
 }

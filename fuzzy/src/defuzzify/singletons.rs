@@ -72,7 +72,11 @@ impl Singletons {
                 let count = top.clone().count() as f64;
                 top.map(|(x, _)| x / count).sum()
             }
-            _ => places().map(|(x, degree)| x * (degree / total)).sum(),
+            Defuzzifier::Centroid
+            | Defuzzifier::Bisector
+            | Defuzzifier::WeightedAverage
+            | Defuzzifier::WeightedSum
+            | Defuzzifier::Tsukamoto => places().map(|(x, degree)| x * (degree / total)).sum(),
         })
     }
 }

@@ -36,7 +36,10 @@ pub(super) fn activate(implication: Implication, strength: f64, membership: Slop
         {
             1.0
         }
-        _ => 0.0,
+        Implication::BoundedDifference
+        | Implication::Minimum
+        | Implication::Drastic
+        | Implication::NilpotentMinimum => 0.0,
     };
     Sloped {
         degree,
@@ -72,7 +75,11 @@ pub(super) fn aggregate(aggregation: Aggregation, a: Sloped, b: Sloped) -> Slope
         {
             (0.0, 1.0)
         }
-        _ => (0.0, 0.0),
+        Aggregation::BoundedSum
+        | Aggregation::Hamacher
+        | Aggregation::Maximum
+        | Aggregation::Drastic
+        | Aggregation::NilpotentMaximum => (0.0, 0.0),
     };
     Sloped {
         degree,

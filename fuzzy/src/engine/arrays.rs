@@ -250,7 +250,13 @@ impl OwnedTable {
                 }
                 let form = match defuzzify.defuzzifier {
                     Defuzzifier::WeightedSum => ClosedForm::WEIGHTED_SUM,
-                    _ => ClosedForm::WEIGHTED_AVERAGE,
+                    Defuzzifier::WeightedAverage
+                    | Defuzzifier::Centroid
+                    | Defuzzifier::Bisector
+                    | Defuzzifier::SmallestOfMaxima
+                    | Defuzzifier::MeanOfMaxima
+                    | Defuzzifier::LargestOfMaxima
+                    | Defuzzifier::Tsukamoto => ClosedForm::WEIGHTED_AVERAGE,
                 };
                 (form, extend(&mut self.consequents, &consequents))
             }

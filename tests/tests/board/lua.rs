@@ -348,15 +348,29 @@ fn a_damaged_script_does_not_block_arming() {
     let records = &eventful(&vehicle)[..100];
     let parts = text.match_indices('\x0c').map(|(at, _)| at);
     let whole = text.len();
-    let [cut, misspelled] = [
-        format!("{}\n]==]\n", &text[..whole / 2]),
-        text.replacen("function judge(", "function judge((", 1),
-    ];
+    let misspelled = text.replacen("function judge(", "function judge((", 1);
+    let first = text.find('\x0c').unwrap();
+    // Anywhere behind the loader, in a line or between lines, but where a comment begins.
+    let ends =
+        (first..whole)
+            .step_by(whole / 40)
+            .chain([whole - 1, whole - 2, whole - 3, whole - 5]);
+    let cut = ends
+        .filter(|end| !text[..*end].ends_with(['\n', '-']))
+        .flat_map(|end| {
+            let kept = &text[..end];
+            let line = kept.rfind('\n').map_or(end, |at| at + 1);
+            [
+                kept.to_owned(),
+                text[..line].to_owned(),
+                format!("{kept}{}", "\0".repeat(whole - end)),
+            ]
+        });
     let lost = parts
         .clone()
         .zip(parts.skip(1))
         .map(|(from, to)| format!("{}{}", &text[..from], &text[to..]));
-    for damaged in [cut, misspelled].into_iter().chain(lost) {
+    for damaged in cut.chain([misspelled]).chain(lost) {
         let run = run(&folder.file("damaged.lua", damaged), &vehicle, records, &[]);
         assert_eq!(run.blocks, None);
         assert!(

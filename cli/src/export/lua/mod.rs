@@ -138,14 +138,20 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Ref
     Ok(file)
 }
 
-/// Parts as a comment of Lua, each after a form feed, and one at the end.
+/// Parts as comments of Lua, each line for itself, so that a file that is cut off is still one that ArduPilot can compile. A form
+/// feed stands before each part and at the end.
 fn commented(parts: &[&str]) -> String {
-    let text = parts.join("\x0c");
-    let mut fence = "==".to_owned();
-    while text.contains(&format!("]{fence}]")) {
-        fence.push('=');
+    const BREAK: &str = "-- \x0c\n";
+    let mut text = format!("\n{BREAK}");
+    for part in parts {
+        for line in part.lines() {
+            text += "-- ";
+            text += line;
+            text.push('\n');
+        }
+        text += BREAK;
     }
-    format!("\n--[{fence}[\n\x0c{text}\x0c\n]{fence}]\n")
+    text
 }
 
 /// The settings of the profile and what the script itself fixes, by the names that they have in its parts.

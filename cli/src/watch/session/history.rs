@@ -1,5 +1,5 @@
-//! The motor commands of a flight so far, kept while motors or limits are not known for sure: with those that become known
-//! later the flight is assessed again from its beginning.
+//! The motor commands of a flight so far. Where motors or limits become known better, the flight is assessed again from its
+//! beginning.
 
 use flightlog::mavlink::Pulses;
 

@@ -36,9 +36,7 @@ pub(super) struct Tracked {
     pub(super) heard_s: f64,
     pub(super) link_lost: bool,
     pub(super) set_up_tried: bool,
-    /// Whether nothing about motors and limits can become known any more.
-    pub(super) is_complete: bool,
-    /// The flight so far, until that is the case.
+    /// The flight so far: a parameter that comes late may change motors or limits.
     pub(super) history: History,
     slowed_told_s: Option<f64>,
     pub(super) watch: Option<Watch>,
@@ -94,7 +92,6 @@ impl Tracked {
             heard_s: now_s,
             link_lost: false,
             set_up_tried: false,
-            is_complete: false,
             history: History::new(history),
             slowed_told_s: None,
             watch: None,
@@ -220,7 +217,6 @@ impl Tracked {
         }
         if done {
             self.set_up_tried = true;
-            self.is_complete = parameters_known(&self.telemetry);
         }
         if let Some(watch) = &mut self.watch
             && watch.setup.is_equivalent(&setup)
@@ -292,7 +288,6 @@ impl Tracked {
         out.events.push(Event::Rebooted);
         self.watch = None;
         self.history.clear();
-        self.is_complete = false;
         self.set_up_tried = false;
         self.requests = Requests::new();
         self.found_s = now_s;

@@ -88,7 +88,12 @@ impl Curves {
                 Aggregation::Drastic => {
                     cuts.at_sign_change(|x| degree(first, x) - LEAST_STRENGTH);
                 }
-                _ => {}
+                // All together, below.
+                Aggregation::BoundedSum => {}
+                Aggregation::Sum
+                | Aggregation::ProbabilisticSum
+                | Aggregation::Einstein
+                | Aggregation::Hamacher => {}
             }
         }
         if aggregation == Aggregation::BoundedSum {
@@ -152,6 +157,9 @@ fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2] {
         Implication::Minimum => [Some(strength), None],
         Implication::BoundedDifference => [Some(1.0 - strength), None],
         Implication::NilpotentMinimum => [Some(strength), Some(1.0 - strength + LEAST_STRENGTH)],
-        _ => [None, None],
+        Implication::Product
+        | Implication::Drastic
+        | Implication::Einstein
+        | Implication::Hamacher => [None, None],
     }
 }

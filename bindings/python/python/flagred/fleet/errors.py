@@ -25,5 +25,5 @@ class DamagedError(FleetError):
     def of(cls, file: str, error: object) -> DamagedError:
         """The error of a file, by its path as a person writes it."""
         reason = str(error).partition("\n")[0]
-        help = "restore the file, or delete it: `assess` then reads its logs again"
+        help = "restore the file, or delete all files of its name in the dataset: `assess` then reads its logs again"
         return cls(f"`{file}` is damaged: {reason}", help)

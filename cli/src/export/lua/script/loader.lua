@@ -19,7 +19,7 @@ local shared = {
 }
 -- @put parts
 local number, chunk = 1, nil -- of the next part; what is compiled of it
-local file, text, is_over = nil, "", false -- what is read but not compiled, and whether the part has ended
+local file, is_over = nil, false -- whether the part has ended
 
 local function open()
   if not load then
@@ -35,21 +35,17 @@ local function open()
   end
 end
 
--- The next piece of a part; nil or empty at its end.
-local function piece()
+-- The next line of a part, which stands in a comment; nil at its end.
+local function line()
   if is_over then
     return nil
   end
-  if text == "" then
-    text = file:read(400) or error("its file is cut off", 0)
+  local found = file:read("L")
+  if not found or string.sub(found, -1) ~= "\n" then
+    error("its file is cut off", 0)
   end
-  local found = text
-  local mark = string.find(text, "\f", 1, true)
-  if mark then
-    found, is_over = string.sub(text, 1, mark - 1), true
-  end
-  text = string.sub(text, #found + 2)
-  return found
+  is_over = string.sub(found, 4, 4) == "\f"
+  return not is_over and string.sub(found, 4) or nil
 end
 
 -- Compiles the next part, or runs what is compiled. Returns whether there is more to do.
@@ -63,12 +59,12 @@ local function go_on()
   is_over = false
   if not file then
     open()
-    while (piece() or "") ~= "" do
+    while line() do
     end
     return true
   end
   local why
-  chunk, why = load(piece, "=" .. PARTS[number], "t", shared)
+  chunk, why = load(line, "=" .. PARTS[number], "t", shared)
   if not chunk then
     error(why, 0)
   end

@@ -218,6 +218,36 @@ fn limits_that_come_in_the_air_apply_to_the_flight_from_its_beginning() {
     assert_ne!(bench.session.finish(&mut out), Verdict::Known(Level::Good));
 }
 
+/// PX4 refused these parameters; then a ground station loads all of them.
+#[test]
+fn a_refused_parameter_that_comes_in_the_air_takes_no_alarm_back() {
+    const FAULT: [u16; 4] = [1000, 2000, 1000, 2000];
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.px4_beat();
+    bench.px4_motors();
+    bench.px4_lacks(&limits());
+    bench.px4_lacks(&coefficients());
+    bench.wait(0.6);
+    bench.px4_fly(100.0, 15.0, [1500; 4]);
+    bench.px4_fly(115.0, 10.0, FAULT);
+    for rotor in 0..4 {
+        let coefficient = if rotor == 1 { 10.83 } else { 6.5 };
+        bench.px4_parameter(&format!("CA_ROTOR{rotor}_CT"), coefficient);
+    }
+    bench.px4_fly(125.0, 3.0, FAULT);
+    assert_eq!(bench.ready(), 2);
+    let took_off = bench.count(|event| matches!(event, Event::TookOff { .. }));
+    let over = bench.count(|event| matches!(event, Event::Over { .. }));
+    assert_eq!((took_off, over), (1, 0), "it is one flight");
+    assert_eq!(
+        bench.session.view().unwrap().latest.unwrap().level,
+        Some(Level::Fail)
+    );
+    let mut out = Out::default();
+    assert_eq!(bench.session.finish(&mut out), Verdict::Known(Level::Fail));
+}
+
 impl Bench<'_> {
     fn wait_beating_px4(&mut self, seconds: u32) {
         for _ in 0..seconds {
