@@ -330,6 +330,38 @@ fn directions_hold_or_are_refuted_with_the_place() {
     }
 }
 
+/// A map of 20 inputs has more cells than any memory.
+#[test]
+fn many_inputs_are_learned_without_their_map() {
+    let folder = Folder::new();
+    let names = |format: &dyn Fn(usize) -> String| (0..20).map(format).collect::<String>();
+    let inputs = names(&|i| format!("  x{i}: {{range: [0, 1], partition: [low, high]}}\n"));
+    let output = "outputs: {y: {range: [0, 1], partition: [low, high]}}\nrules: []\n";
+    let model = format!("fuzzy: 1\nname: many\ninputs:\n{inputs}{output}");
+    let mut rows = names(&|i| format!("x{i},")) + "y\n";
+    for row in 0..50 {
+        rows += &names(&|i| format!("{},", (row * 7 + i * 13) % 11 % 2));
+        rows += &format!("{}\n", row % 2);
+    }
+    let (model, rows) = (
+        folder.file("many.yaml", model),
+        folder.file("rows.csv", rows),
+    );
+    let (text, json) = (folder.at("text.yaml"), folder.at("json.yaml"));
+    let said = learn(&[&model, &rows, "--output", &text]);
+    let said = String::from_utf8(said.stdout).unwrap();
+    assert!(
+        said.contains("coverage   not computed for so many inputs"),
+        "{said}"
+    );
+    let said = learn(&[&model, &rows, "--json", "--output", &json]);
+    let said: Value = serde_json::from_slice(&said.stdout).unwrap();
+    assert!(
+        said["coverage"].is_null() && said["rules"]["learned"].as_u64() > Some(0),
+        "{said}"
+    );
+}
+
 #[test]
 fn an_error_on_no_rows_is_unknown_and_not_nought() {
     let folder = Folder::new();

@@ -313,3 +313,38 @@ fn cells_with_another_unit_are_refused_where_they_stand() {
     let rounded = verdict(of("1.0000001,-0.01,1.2,0"));
     assert_eq!(rounded, verdict(of("1,0,1,0")));
 }
+
+#[test]
+fn a_frame_with_more_motors_than_columns_is_not_good() {
+    let rows: String = (0..1500)
+        .map(|i| format!("{},0.5,0.5,0.5,0.5,1\n", f64::from(i) * 0.04))
+        .collect();
+    let of = |header: &str| {
+        assess_csv(
+            &format!(
+                "# vehicle_kind: multirotor\n{header}\nt_s,motor1,motor2,motor3,motor4,in_air\n{rows}"
+            ),
+            &[],
+        )
+    };
+    assert_eq!(of("# frame: QUAD/X").0, Some(0));
+    for header in [
+        "# frame: HEXA/X",
+        "# frame: Y6/Y6B",
+        "# frame_class: 2",
+        "# motors: 6",
+    ] {
+        let (code, text) = of(header);
+        assert!(
+            code == Some(3) && text.contains("outputs are known for 4 of the 6 motors only"),
+            "{header}: {text}"
+        );
+    }
+    for motors in ["6.5", "0", "six"] {
+        let (code, text) = of(&format!("# motors: {motors}"));
+        assert!(
+            code == Some(3) && text.contains(&format!("`motors` is `{motors}`")),
+            "{text}"
+        );
+    }
+}
