@@ -83,6 +83,8 @@ fn compare_assessments(log: &Path) {
             Verdict::NotAvailable(Reason::Log(Gap::NotAMultirotor { kind, .. })) => {
                 kind.to_string()
             }
+            // A CSV has no parameters, and so not the one that may be the cause.
+            Verdict::NotAvailable(Reason::Log(Gap::NoCommands { .. })) => "no commands".into(),
             Verdict::NotAvailable(reason) => reason.to_string(),
             Verdict::Known(level) => level.to_string(),
         };

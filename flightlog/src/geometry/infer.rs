@@ -42,7 +42,7 @@ pub(crate) const SIGNALS: [&str; 7] = [
 /// The common layout that fits the commands, if only one does. Layouts with the same space
 /// count as one, for which the most common stands.
 pub(super) fn geometry(flight: &Flight, class: Option<i64>) -> Option<Geometry> {
-    let variance = Variance::of_commands(flight)?;
+    let variance = Variance::of_commands(flight, false)?;
     let of_class = |of: &i64| class.is_none_or(|class| class == *of);
     let shares: Vec<(f64, String, Vec<[f64; 3]>)> = layouts(flight)
         .filter(|(class, ..)| of_class(class))
@@ -121,11 +121,15 @@ fn is_clearly_more(share: f64, than: f64) -> bool {
 
 /// Why the commands of the flight contradict a layout.
 pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<String> {
-    let variance = Variance::of_commands(flight)?;
+    let variance = Variance::of_commands(flight, false)?;
     let is_other = |name: &String| Some(name) != geometry.frame.as_ref();
     let others = || layouts(flight).filter(|(_, name, _)| is_other(name));
     let share = variance.outside(&geometry.factors);
     if share > FITS_NOT {
+        let running = Variance::of_commands(flight, true);
+        if running.is_some_and(|running| running.outside(&geometry.factors) <= FITS) {
+            return None;
+        }
         let better = others()
             .map(|(_, name, factors)| (variance.outside(&factors), name))
             .min_by(|(a, _), (b, _)| a.total_cmp(b))
@@ -171,7 +175,7 @@ fn layouts(flight: &Flight) -> impl Iterator<Item = (i64, String, Vec<[f64; 3]>)
     })
 }
 
-/// Variances and covariances of the commands in the air while all motors run, and of these with what they serve.
+/// Variances and covariances of the commands in the air, and of these with what they serve.
 struct Variance {
     commands: Covariance,
     /// The last columns are the outputs of the rate controllers of roll, pitch and yaw.
@@ -181,7 +185,8 @@ struct Variance {
 }
 
 impl Variance {
-    fn of_commands(flight: &Flight) -> Option<Self> {
+    /// `all_run` leaves out the times at which a motor stands still: it does not follow the mixer.
+    fn of_commands(flight: &Flight, all_run: bool) -> Option<Self> {
         let motors = flight.motors.len();
         let mut commands = Covariance::new(motors);
         let mut with_outputs = Covariance::new(motors + 3);
@@ -195,8 +200,7 @@ impl Variance {
             }
             row.clear();
             row.extend(raw.iter().map_while(|&raw| flight.effective_command(raw)));
-            // A motor that has stopped does not follow the mixer.
-            if row.len() < motors || row.iter().any(|command| *command <= 0.0) {
+            if row.len() < motors || all_run && row.iter().any(|command| *command <= 0.0) {
                 continue;
             }
             commands.add(&row);
