@@ -18,7 +18,7 @@ const MOST_GONE: usize = 10_000;
 const STRAY_S: f64 = 10.0;
 /// A vehicle that is silent for so long is gone; when it is heard again it is a new one.
 const GONE_S: f64 = 60.0;
-/// Samples of a flight that are kept while limits are not known: a minute at 25 Hz, in 0.1 MB.
+/// Samples of a flight that are kept, in case limits become known later: a minute at 25 Hz, in 0.1 MB.
 const HISTORY: usize = 1_500;
 
 /// Who a vehicle is: systems of different senders are different vehicles, since a new autopilot is number 1.

@@ -84,7 +84,7 @@ impl Screen {
     }
 }
 
-/// The text that puts lines in the place of the screen before, as many as it has rows for.
+/// The text that replaces what is on the screen by lines, as many as there are rows for.
 pub(crate) fn text(lines: &[String], rows: usize) -> String {
     let mut text = HOME.to_owned();
     // A line end in the last row would scroll the first row away.

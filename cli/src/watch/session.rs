@@ -93,7 +93,7 @@ impl<'e> Session<'e> {
         Session { range, ..self }
     }
 
-    /// The same, keeping at most so many samples of a flight while motors and limits are not known for sure.
+    /// The same, keeping at most so many samples of a flight.
     pub(crate) fn keeping(self, history: usize) -> Session<'e> {
         Session { history, ..self }
     }

@@ -35,7 +35,6 @@ pub use filled::{FilledKnots, Reading};
 #[cfg(feature = "std")]
 pub use filling::Filling;
 #[cfg(feature = "std")]
-#[cfg(feature = "std")]
 pub use map::FilledMap;
 #[cfg(feature = "std")]
 pub use settings::{GapMethod, GapSettings};

@@ -78,10 +78,7 @@ impl Setup {
                 .map(|motor| motor.number)
                 .collect::<Vec<_>>()
         };
-        // A parameter has single precision.
-        let alike = |(a, b): (f64, f64)| (a - b).abs() <= 1e-6 * a.abs().max(1.0);
-        let limits_alike = limits(self).into_iter().zip(limits(other)).all(alike);
-        (self.outputs == other.outputs && limits_alike)
+        (self.outputs == other.outputs && are_alike(&limits(self), &limits(other)))
             && numbers(self) == numbers(other)
             && same_factors(self.geometry.as_ref(), other.geometry.as_ref())
     }
@@ -118,8 +115,12 @@ fn same_factors(one: Option<&Geometry>, other: Option<&Geometry>) -> bool {
     let factors = |geometry: Option<&Geometry>| {
         geometry.map_or(Vec::new(), |geometry| geometry.factors.concat())
     };
-    let (one, other) = (factors(one), factors(other));
-    one.len() == other.len() && one.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-6)
+    are_alike(&factors(one), &factors(other))
+}
+
+/// Whether numbers are the same but for rounding: a parameter has single precision.
+fn are_alike(one: &[f64], other: &[f64]) -> bool {
+    one.len() == other.len() && one.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-6)
 }
 
 /// The parameters that motors and their range depend on, and that are not known yet.

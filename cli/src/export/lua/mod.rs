@@ -138,8 +138,8 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Ref
     Ok(file)
 }
 
-/// Parts as comments of Lua, each line for itself, so that a file that is cut off is still one that ArduPilot can compile. A form
-/// feed stands before each part and at the end.
+/// The parts with each line as a comment of its own: ArduPilot can compile the file also where it is cut off. Before each part
+/// and at the end there is a line with a form feed.
 fn commented(parts: &[&str]) -> String {
     const BREAK: &str = "-- \x0c\n";
     let mut text = format!("\n{BREAK}");

@@ -112,6 +112,15 @@ impl Bench<'_> {
     fn ready(&self) -> usize {
         self.count(|event| matches!(event, Event::Ready { .. }))
     }
+
+    /// How many flights have begun, and how many are over.
+    fn flights(&self) -> (usize, usize) {
+        let took_off = self.count(|event| matches!(event, Event::TookOff { .. }));
+        (
+            took_off,
+            self.count(|event| matches!(event, Event::Over { .. })),
+        )
+    }
 }
 
 /// A packet of MAVLink 2 of the vehicle.
@@ -207,12 +216,7 @@ fn limits_that_come_in_the_air_apply_to_the_flight_from_its_beginning() {
     bench.px4_integer("PWM_MAIN_MAX1", 1402);
     bench.px4_fly(130.0, 5.0, [1400; 4]);
     assert_eq!(bench.ready(), 2);
-    assert_eq!(
-        bench.count(|event| matches!(event, Event::TookOff { .. })),
-        1
-    );
-    let is_over = |event: &Event| matches!(event, Event::Over { .. });
-    assert_eq!(bench.count(is_over), 0, "it is one flight");
+    assert_eq!(bench.flights(), (1, 0), "it is one flight");
     assert!(bench.count(|event| matches!(event, Event::Level { .. })) > 0);
     let mut out = Out::default();
     assert_ne!(bench.session.finish(&mut out), Verdict::Known(Level::Good));
@@ -237,9 +241,7 @@ fn a_refused_parameter_that_comes_in_the_air_takes_no_alarm_back() {
     }
     bench.px4_fly(125.0, 3.0, FAULT);
     assert_eq!(bench.ready(), 2);
-    let took_off = bench.count(|event| matches!(event, Event::TookOff { .. }));
-    let over = bench.count(|event| matches!(event, Event::Over { .. }));
-    assert_eq!((took_off, over), (1, 0), "it is one flight");
+    assert_eq!(bench.flights(), (1, 0), "it is one flight");
     assert_eq!(
         bench.session.view().unwrap().latest.unwrap().level,
         Some(Level::Fail)
@@ -285,11 +287,7 @@ fn parameters_that_change_nothing_change_nothing() {
             "{latest:?}"
         );
     }
-    assert_eq!(
-        bench.count(|event| matches!(event, Event::TookOff { .. })),
-        1
-    );
-    assert_eq!(bench.count(|event| matches!(event, Event::Over { .. })), 0);
+    assert_eq!(bench.flights(), (1, 0), "it is one flight");
 }
 
 /// PX4 sends the last NAMED_VALUE_FLOAT that it heard again as its own, with its own time.
