@@ -158,7 +158,9 @@ impl Gap {
                 Tlog => {
                     "use the log on the vehicle, or raise the rate of SERVO_OUTPUT_RAW (ArduPilot: SRx_RC_CHAN)"
                 }
-                Csv => "convert the log of the vehicle again at a higher rate",
+                Csv => {
+                    "convert the log of the vehicle again at a higher rate; if `t_s` is in milliseconds, divide it by 1000"
+                }
             },
         })
     }

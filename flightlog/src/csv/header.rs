@@ -1,6 +1,6 @@
 //! The `# key: value` lines on top of a flight CSV.
 
-use std::io::BufRead as _;
+use std::{io::BufRead as _, ops::RangeInclusive};
 
 use super::{BOM, Layout, problem};
 use crate::error::io_error;
@@ -67,6 +67,7 @@ pub(super) fn apply_header(
     flight: &mut Flight,
     header: Vec<HeaderLine>,
     layout: &Layout,
+    span_s: RangeInclusive<f64>,
 ) -> Result<Declared, ReadError> {
     let value = |key: &str| number_of(&header, key);
     let line_of = |key: &str| {
@@ -169,6 +170,14 @@ pub(super) fn apply_header(
                         "write times in seconds, with spaces between them",
                     )
                 })?;
+                if let Some(outside) = times.iter().find(|t_s| !span_s.contains(t_s)) {
+                    let (from_s, to_s) = (span_s.start(), span_s.end());
+                    let text = format!(
+                        "`rebooted_in_air_s` is {outside}, and the flight goes from {from_s} to {to_s} s"
+                    );
+                    let help = "write times on the clock of `t_s`";
+                    return Err(problem(entry.line, text, help));
+                }
                 flight.rebooted_in_air_s.extend(times);
             }
             "vehicle_kind" => {
@@ -182,6 +191,27 @@ pub(super) fn apply_header(
     let declared = geometry_of(&header, layout.motors.len())?;
     if flight.vehicle.motors.is_none() {
         flight.vehicle.motors = declared.class().and_then(tables::motors_of_class);
+    }
+    let columns = layout.motors.len();
+    let of_frame = declared.class().and_then(tables::motors_of_class);
+    for (keys, motors) in [
+        (&["motors"][..], flight.vehicle.motors),
+        (&["frame", "frame_class"], of_frame),
+    ] {
+        let entry = header
+            .iter()
+            .find(|entry| keys.contains(&entry.key.as_str()));
+        if let (Some(entry), Some(motors)) = (entry, motors)
+            && columns > usize::from(motors)
+        {
+            let stem = layout.stem;
+            let text = format!(
+                "`{}` is `{}`, which has {motors} motors, and there are columns `{stem}1` to `{stem}{columns}`",
+                entry.key, entry.value
+            );
+            let help = "correct it, or give columns that are not motors other names";
+            return Err(problem(entry.line, text, help));
+        }
     }
     flight.header = header
         .into_iter()

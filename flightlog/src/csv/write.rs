@@ -152,7 +152,13 @@ impl Flight {
                 }
             }
         }
-        if let Some(motors) = self.vehicle.motors {
+        // Spare outputs of a log may have the functions of motors, too.
+        let columns = self.motors.len();
+        if let Some(motors) = self
+            .vehicle
+            .motors
+            .filter(|all| usize::from(*all) >= columns)
+        {
             line(out, "motors", &motors.to_string())?;
         }
         if self

@@ -1,0 +1,386 @@
+//! The rows of a flight CSV.
+
+use csv::ByteRecord;
+
+use super::{Layout, cell, problem, unit_of};
+use crate::outputs::{LONGEST_PULSE_US, PULSES_US};
+use crate::signal::Label;
+use crate::{Commands, Intervals, ReadError, Report, Series};
+
+/// A fraction this far outside 0 to 1 comes from rounding, or from limits that are slightly exceeded.
+const MOST_OUTSIDE: f64 = 0.5;
+const HELP_FRACTIONS: &str = "name pulse widths in us `pwm1`.. and add their limits; divide percent by 100; docs/flight-csv.md has DShot";
+const HELP_PULSES: &str = "name fractions from 0 to 1 `motor1`..; divide percent by 100 and name them so; docs/flight-csv.md has DShot";
+/// On either side of 0. Logs that count microseconds in 64 bits are within it, and so is what they are converted to. One damaged
+/// time beyond it would make all later ones go back.
+const FURTHEST_S: f64 = 1e14;
+/// A clock that goes back by more than this, in seconds, was started again.
+const BACK_S: f64 = 2.0;
+/// The smallest step between motor commands that is taken for milliseconds.
+const LEAST_STEP_MS: f64 = 2.0;
+const LEAST_STEPS: usize = 5;
+
+fn is_far_outside(command: f64) -> bool {
+    !command.is_nan() && !(-MOST_OUTSIDE..=1.0 + MOST_OUTSIDE).contains(&command)
+}
+
+pub(super) struct Rows {
+    pub(super) commands: Commands,
+    pub(super) series: Series,
+    air_changes: Vec<(f64, bool)>,
+    has_air: bool,
+    first_s: f64,
+    last_s: f64,
+    pub(super) last_was_short: bool,
+    /// What is added to the times since the clock started again.
+    offset_s: f64,
+    /// The time of the row before, where it went back.
+    back_s: Option<f64>,
+    pub(super) boots_s: Vec<f64>,
+    pub(super) rebooted_in_air_s: Vec<f64>,
+    /// Whether all times so far are whole numbers.
+    is_whole: bool,
+    /// The first row of motor commands with a later time than the row before: line and both times.
+    first_step: Option<(u64, f64, f64)>,
+    /// Rows of motor commands with the time of the row before, and line and time of the first.
+    repeated: usize,
+    first_repeated: Option<(u64, f64)>,
+    /// Of each column of pulse widths.
+    pulses: Vec<Pulses>,
+    /// The first cell that cannot be used.
+    refused: Option<ReadError>,
+}
+
+/// Cells of a column of pulse widths that are neither empty nor 0.
+#[derive(Clone, Default)]
+struct Pulses {
+    known: usize,
+    /// Those that are not a pulse width in us, and line and value of the first.
+    outside: usize,
+    first: Option<(u64, f64)>,
+}
+
+impl Rows {
+    pub(super) fn new(layout: &Layout) -> Self {
+        let kept = layout.signals.iter().filter(|(.., keep)| *keep);
+        let labels = kept.map(|(_, name, _)| Label {
+            name: name.clone(),
+            unit: unit_of(name).into(),
+            source: format!("column `{name}`"),
+        });
+        Self {
+            commands: Commands::new(layout.motors.len()),
+            series: Series::new(labels.collect()),
+            air_changes: Vec::new(),
+            has_air: layout.in_air.is_some(),
+            first_s: f64::INFINITY,
+            last_s: f64::NEG_INFINITY,
+            last_was_short: false,
+            offset_s: 0.0,
+            back_s: None,
+            boots_s: Vec::new(),
+            rebooted_in_air_s: Vec::new(),
+            is_whole: true,
+            first_step: None,
+            repeated: 0,
+            first_repeated: None,
+            pulses: vec![
+                Pulses::default();
+                if layout.stem == "pwm" {
+                    layout.motors.len()
+                } else {
+                    0
+                }
+            ],
+            refused: None,
+        }
+    }
+
+    pub(super) fn add(
+        &mut self,
+        layout: &Layout,
+        record: &ByteRecord,
+        lines: u64,
+        report: &mut Report,
+    ) {
+        let Some(position) = record.position() else {
+            return;
+        };
+        if report.leaves_out(false) {
+            return;
+        }
+        let line = lines + position.line();
+        self.last_was_short = false;
+        match self.try_add(layout, record, line, report) {
+            Ok(()) => report.messages += 1,
+            Err(why) => {
+                report.bad(&format!("line {line}: {why}"));
+                self.last_was_short = record.len() < layout.columns;
+            }
+        }
+    }
+
+    fn try_add(
+        &mut self,
+        layout: &Layout,
+        record: &ByteRecord,
+        line: u64,
+        report: &mut Report,
+    ) -> Result<(), String> {
+        if record.len() < layout.columns {
+            return Err(format!("{} of {} columns", record.len(), layout.columns));
+        }
+        let t_s = self.time(layout, record, line)?;
+        if t_s.abs() > FURTHEST_S {
+            return Err(format!("the time is beyond {FURTHEST_S} s"));
+        }
+        self.is_whole &= t_s.fract() == 0.0;
+        let t_s = self.on_one_clock(t_s)?;
+        // A row with a damaged cell counts, with an unknown value in its place: without it the flight would be shorter.
+        let mut damaged = None;
+        let mut read = |column: &usize| match number(record, *column) {
+            Ok(value) => value,
+            Err(why) => {
+                damaged.get_or_insert(why);
+                f64::NAN
+            }
+        };
+        let commands: Vec<f64> = layout.motors.iter().map(&mut read).collect();
+        let mut signals = Vec::new();
+        for (column, _, keep) in &layout.signals {
+            let value = read(column);
+            signals.extend(keep.then_some(value));
+        }
+        if let Some(why) = damaged {
+            report.bad(&format!("line {line}: {why}"));
+        }
+        self.look_at_units(layout, &commands, line);
+        let mut took_off_or_landed = false;
+        if let Some(column) = layout.in_air
+            && let Some(state) = self.state(record, column, line)?
+        {
+            let before = self.is_in_air();
+            report.state(&mut self.air_changes, t_s, Some(state));
+            took_off_or_landed = self.is_in_air() != before;
+        }
+        report.row(commands.len() + signals.len(), false);
+        self.first_s = self.first_s.min(t_s);
+        self.last_s = t_s;
+        // A row without any command that tells of a take-off or a landing is between two samples of the motors.
+        let is_between = took_off_or_landed && commands.iter().all(|command| command.is_nan());
+        if !commands.is_empty() && !is_between {
+            match self.commands.t_s().last() {
+                Some(&before_s) if before_s == t_s => {
+                    self.repeated += 1;
+                    self.first_repeated.get_or_insert((line, t_s));
+                }
+                Some(&before_s) => {
+                    self.first_step.get_or_insert((line, before_s, t_s));
+                }
+                None => {}
+            }
+            self.commands.push(t_s, commands);
+        }
+        if !signals.is_empty() {
+            self.series.push(t_s, signals);
+        }
+        Ok(())
+    }
+
+    /// Refuses the file, for the first reason.
+    fn refuse(&mut self, line: u64, text: String, help: &str) {
+        self.refused
+            .get_or_insert_with(|| problem(line, text, help));
+    }
+
+    /// The time of a row. Without it the row cannot be placed, and leaving it out would make the flight shorter.
+    fn time(&mut self, layout: &Layout, record: &ByteRecord, line: u64) -> Result<f64, String> {
+        if let Ok(t_s) = number(record, layout.time)
+            && t_s.is_finite()
+        {
+            return Ok(t_s);
+        }
+        // Spreadsheets end a table with rows of empty cells.
+        if record.iter().all(|bytes| cell(bytes).is_empty()) {
+            return Err("all cells are empty".into());
+        }
+        let bytes = cell(record.get(layout.time).unwrap_or_default());
+        let text = match bytes.is_empty() {
+            true => "`t_s` is empty".to_owned(),
+            false => format!(
+                "`t_s` is `{}`, not a time in seconds",
+                String::from_utf8_lossy(bytes)
+            ),
+        };
+        self.refuse(
+            line,
+            text.clone(),
+            "give every row a time, or delete the row",
+        );
+        Err(text)
+    }
+
+    /// Whether the vehicle is in the air, where the cell is not empty.
+    fn state(
+        &mut self,
+        record: &ByteRecord,
+        column: usize,
+        line: u64,
+    ) -> Result<Option<bool>, String> {
+        match number(record, column) {
+            Ok(0.0) => Ok(Some(false)),
+            Ok(1.0) => Ok(Some(true)),
+            Ok(value) if value.is_nan() => Ok(None),
+            _ => {
+                let bytes = cell(record.get(column).unwrap_or_default());
+                let text = format!(
+                    "`in_air` is `{}`, not 0 or 1",
+                    String::from_utf8_lossy(bytes)
+                );
+                let help = "write 1 in the air and 0 on the ground, and leave the cell empty where neither is known";
+                self.refuse(line, text.clone(), help);
+                Err(text)
+            }
+        }
+    }
+
+    /// Looks for commands in another unit than the names of their columns promise.
+    fn look_at_units(&mut self, layout: &Layout, commands: &[f64], line: u64) {
+        if layout.stem == "motor"
+            && let Some(motor) = commands.iter().position(|command| is_far_outside(*command))
+        {
+            let (number, command) = (motor + 1, commands[motor]);
+            let text = format!("`motor{number}` is {command}, not a fraction from 0 to 1");
+            self.refuse(line, text, HELP_FRACTIONS);
+        }
+        for (pulses, &raw) in self.pulses.iter_mut().zip(commands) {
+            // 0 is the output of a motor that is off.
+            if raw.is_nan() || raw == 0.0 {
+                continue;
+            }
+            pulses.known += 1;
+            if !(PULSES_US.least..=LONGEST_PULSE_US).contains(&raw) {
+                pulses.outside += 1;
+                pulses.first.get_or_insert((line, raw));
+            }
+        }
+    }
+
+    /// A column whose cells are mostly not pulse widths, so that all motors would seem to be at one of their limits. Single
+    /// ones are damage.
+    pub(super) fn other_unit(&self) -> Option<ReadError> {
+        let mut columns = (1..).zip(&self.pulses);
+        let (number, pulses) = columns.find(|(_, pulses)| pulses.outside > pulses.known / 2)?;
+        let (line, raw) = pulses.first?;
+        let text = format!("`pwm{number}` is {raw}, not a pulse width in us");
+        Some(problem(line, text, HELP_PULSES))
+    }
+
+    /// First and last time of the rows; of no rows, one that nothing is in.
+    pub(super) fn span_s(&self) -> (f64, f64) {
+        (self.first_s, self.last_s)
+    }
+
+    /// Why the file is refused.
+    pub(super) fn refusal(&mut self) -> Option<ReadError> {
+        let refused = self.refused.take();
+        refused
+            .or_else(|| self.milliseconds())
+            .or_else(|| self.coarse())
+    }
+
+    /// The time on the clock of the first row. A clock that goes back for two rows or more was started again, as after a
+    /// reboot, and continues at the end of the time before.
+    fn on_one_clock(&mut self, t_s: f64) -> Result<f64, String> {
+        let now_s = t_s + self.offset_s;
+        if now_s >= self.last_s {
+            self.back_s = None;
+            return Ok(now_s);
+        }
+        let before_s = self.back_s.replace(t_s);
+        match before_s.filter(|before_s| *before_s <= t_s && self.last_s - now_s > BACK_S) {
+            Some(before_s) => {
+                self.back_s = None;
+                self.offset_s = self.last_s - before_s;
+                self.boots_s.push(self.last_s);
+                if self.is_in_air() {
+                    self.rebooted_in_air_s.push(self.last_s);
+                }
+                Ok(t_s + self.offset_s)
+            }
+            None => Err("the time goes back".into()),
+        }
+    }
+
+    fn is_in_air(&self) -> bool {
+        self.air_changes
+            .last()
+            .map_or(!self.has_air, |(_, state)| *state)
+    }
+
+    /// Times that look like milliseconds or microseconds: whole numbers, and most steps between motor commands at least 2.
+    fn milliseconds(&self) -> Option<ReadError> {
+        let times = self.commands.t_s();
+        let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+        let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+        steps.sort_by(f64::total_cmp);
+        let middle = *steps.get(steps.len() / 2)?;
+        let (line, from, to) = self.first_step?;
+        (self.is_whole && steps.len() >= LEAST_STEPS && middle >= LEAST_STEP_MS).then(|| {
+            let text = format!("`t_s` goes from {from} to {to} in one row, and is in seconds");
+            problem(line, text, "divide milliseconds by 1000")
+        })
+    }
+
+    /// Whole numbers that repeat: milliseconds at 1 kHz and above, or a clock of whole seconds. Which of the two cannot be told,
+    /// so the rows are not spread over the time between. Fractions that repeat need no spreading: windows are longer than
+    /// what such a clock leaves open.
+    fn coarse(&self) -> Option<ReadError> {
+        let (line, t_s) = self.first_repeated?;
+        (self.is_whole && self.repeated >= LEAST_STEPS).then(|| {
+            let text = format!(
+                "`t_s` is {t_s} as in the row before, and a whole number in every row: the clock is too coarse"
+            );
+            problem(line, text, "write seconds with decimals; divide milliseconds by 1000")
+        })
+    }
+
+    /// `None` where the column is there and empty. The log may go on after the last row.
+    pub(super) fn in_air(&self, end_s: Option<f64>) -> Option<Intervals> {
+        if self.has_air && self.air_changes.is_empty() {
+            return None;
+        }
+        let rule = match self.has_air {
+            true => "column `in_air`",
+            false => "there is no column `in_air`: every row counts as in the air",
+        };
+        let before = !self.has_air;
+        let last_change_s = self
+            .air_changes
+            .last()
+            .map_or(self.first_s, |(t_s, _)| *t_s);
+        let end_s = end_s.filter(|end_s| *end_s >= last_change_s);
+        let (first_s, last_s) = (self.first_s, end_s.unwrap_or(self.last_s));
+        Some(Intervals::from_changes(
+            &self.air_changes,
+            before,
+            first_s,
+            last_s,
+            rule,
+        ))
+    }
+}
+
+/// The number in a cell: NaN for an empty one and for `nan`.
+fn number(record: &ByteRecord, column: usize) -> Result<f64, String> {
+    let bytes = cell(record.get(column).unwrap_or_default());
+    if bytes.is_empty() {
+        return Ok(f64::NAN);
+    }
+    let text = String::from_utf8_lossy(bytes);
+    match text.parse::<f64>() {
+        Ok(value) if value.is_infinite() => Err(format!("`{text}` is not finite")),
+        Ok(value) => Ok(value),
+        Err(_) => Err(format!("`{text}` is not a number")),
+    }
+}

@@ -1,0 +1,198 @@
+//! What a flight CSV says that cannot be: refused where it stands, never a shorter or another flight.
+
+use std::fmt::Write as _;
+
+use flagred::{log::assess, shipped};
+use flightlog::{Flight, Options, ReadError};
+
+const HEAD: &str = "# pwm_low_us: 1000\n# pwm_high_us: 2000\n";
+const NAMES: &str = "t_s,pwm1,pwm2,pwm3,pwm4,in_air\n";
+
+/// A calm flight of 60 s at 25 Hz; `row` may replace a row.
+fn flight(header: &str, row: impl Fn(usize, f64) -> Option<String>) -> String {
+    let mut csv = format!("{HEAD}{header}{NAMES}");
+    for i in 0..1500 {
+        let t_s = i as f64 * 0.04;
+        let calm = || {
+            let pwm = 1500 + i % 7;
+            format!("{t_s},{pwm},{pwm},{pwm},{pwm},1")
+        };
+        let _ = writeln!(csv, "{}", row(i, t_s).unwrap_or_else(calm));
+    }
+    csv
+}
+
+fn read(csv: &str) -> Result<Flight, ReadError> {
+    flightlog::read(csv.as_bytes(), &Options::default())
+}
+
+#[track_caller]
+fn refused(csv: &str, said: &str, help: &str) {
+    let error = read(csv).unwrap_err();
+    assert!(error.to_string().contains(said), "{error}");
+    assert!(error.help().unwrap().contains(help), "{:?}", error.help());
+}
+
+fn verdict(csv: &str) -> String {
+    let flight = read(csv).unwrap();
+    assess(&flight, &shipped::flagred(), None)
+        .verdict
+        .to_string()
+}
+
+#[test]
+fn the_flight_that_is_changed_is_good() {
+    assert_eq!(verdict(&flight("", |_, _| None)), "GOOD");
+}
+
+#[test]
+fn a_frame_with_fewer_motors_than_columns_is_refused() {
+    for (header, said) in [
+        (
+            "# frame: TRI\n",
+            "line 3: `frame` is `TRI`, which has 3 motors, and there are columns `pwm1` to `pwm4`",
+        ),
+        (
+            "# frame_class: 7\n",
+            "line 3: `frame_class` is `7`, which has 3",
+        ),
+        (
+            "# motors: 3\n",
+            "line 3: `motors` is `3`, which has 3 motors",
+        ),
+    ] {
+        refused(
+            &flight(header, |_, _| None),
+            said,
+            "give columns that are not motors",
+        );
+    }
+    let six = "# frame: QUAD/X\nt_s,motor1,motor2,motor3,motor4,motor5,motor6\n0,0,0,0,0,0,0\n";
+    refused(
+        six,
+        "line 1: `frame` is `QUAD/X`, which has 4 motors",
+        "correct it",
+    );
+    // Factors of every motor replace the table of the frame.
+    let factors: String = (1..=6)
+        .map(|motor| format!("# motor{motor}_factors: 1 1 1\n"))
+        .collect();
+    assert!(read(&format!("{factors}{six}")).is_ok());
+}
+
+#[test]
+fn a_row_without_a_time_is_refused_and_not_left_out() {
+    for (time, said) in [
+        ("", "line 1004: `t_s` is empty"),
+        ("inf", "line 1004: `t_s` is `inf`, not a time in seconds"),
+        ("nan", "line 1004: `t_s` is `nan`, not a time"),
+        ("40.0x", "line 1004: `t_s` is `40.0x`, not a time"),
+    ] {
+        let csv = flight("", |i, _| {
+            (i >= 1000).then(|| format!("{time},1000,2000,1000,2000,1"))
+        });
+        refused(&csv, said, "give every row a time");
+    }
+    // Spreadsheets leave rows of empty cells at the end.
+    let csv = flight("", |_, _| None) + ",,,,,\n,,,,,\n";
+    assert_eq!(verdict(&csv), "GOOD");
+    assert_eq!(read(&csv).unwrap().report.bad_messages, 2);
+}
+
+#[test]
+fn a_cell_that_is_not_a_number_is_unknown_and_its_row_counts() {
+    for cell in ["inf", "-inf", "x"] {
+        let csv = flight("", |i, t_s| {
+            (i >= 1000).then(|| format!("{t_s},{cell},2000,1000,2000,1"))
+        });
+        let flight = read(&csv).unwrap();
+        assert_eq!(flight.commands.len(), 1500);
+        assert_eq!(flight.report.bad_messages, 500);
+        assert!(flight.report.reason.unwrap().starts_with("line 1004: "));
+        assert_eq!(verdict(&csv), "NA", "{cell}");
+    }
+}
+
+#[test]
+fn a_vehicle_is_in_the_air_or_not() {
+    for state in ["2", "0.5", "-1", "True", "inf"] {
+        let csv = flight("", |i, t_s| {
+            (i == 10).then(|| format!("{t_s},1500,1500,1500,1500,{state}"))
+        });
+        let said = format!("line 14: `in_air` is `{state}`, not 0 or 1");
+        refused(&csv, &said, "write 1 in the air");
+    }
+    for state in ["1.0", "", "nan"] {
+        let csv = flight("", |i, t_s| {
+            (i == 10).then(|| format!("{t_s},1500,1500,1500,1500,{state}"))
+        });
+        assert_eq!(verdict(&csv), "GOOD");
+    }
+}
+
+#[test]
+fn pulse_widths_in_another_unit_are_refused() {
+    for (third, shown) in [
+        ("0.52", "0.52"),
+        ("52", "52"),
+        ("15000", "15000"),
+        ("-0.2", "-0.2"),
+    ] {
+        let csv = flight("", |_, t_s| Some(format!("{t_s},1500,1500,{third},1500,1")));
+        let said = format!("line 4: `pwm3` is {shown}, not a pulse width in us");
+        refused(&csv, &said, "name fractions from 0 to 1 `motor1`");
+        // Without limits there is no verdict in any case; `convert` writes such commands.
+        assert!(read(csv.strip_prefix(HEAD).unwrap()).is_ok());
+    }
+    // Outputs that are off, and a damaged cell.
+    let csv = flight("", |i, t_s| match i {
+        0..800 => Some(format!("{t_s},0,0,0,0,0")),
+        900 => Some(format!("{t_s},15,1500,1500,1500,1")),
+        _ => None,
+    });
+    assert!(read(&csv).is_ok());
+}
+
+#[test]
+fn a_reboot_outside_the_flight_is_refused() {
+    for time in ["1e9", "-1", "20 61", "inf", "nan"] {
+        let header = format!("# rebooted_in_air_s: {time}\n");
+        let said = "line 3: `rebooted_in_air_s` is ";
+        refused(&flight(&header, |_, _| None), said, "on the clock of `t_s`");
+    }
+    assert_eq!(
+        verdict(&flight("# rebooted_in_air_s: 20\n", |_, _| None)),
+        "NA"
+    );
+    let later = "# rebooted_in_air_s: 61\n# end_s: 62\n";
+    assert!(read(&flight(later, |_, _| None)).is_ok());
+}
+
+#[test]
+fn a_clock_of_whole_numbers_is_named() {
+    let at = |time: &dyn Fn(usize) -> String| {
+        flight("", |i, _| {
+            Some(format!("{},1500,1500,1500,1500,1", time(i)))
+        })
+    };
+    // 1 kHz in milliseconds, with the jitter of the clock, and a clock of seconds.
+    for csv in [
+        at(&|i| format!("{}", i * 10 / 11)),
+        at(&|i| format!("{}", i / 25)),
+    ] {
+        refused(
+            &csv,
+            "as in the row before, and a whole number in every row",
+            "divide milliseconds by 1000",
+        );
+    }
+    let csv = at(&|i| format!("{}", i / 3 * 5));
+    refused(
+        &csv,
+        "line 7: `t_s` goes from 0 to 5 in one row",
+        "divide milliseconds by 1000",
+    );
+    // Fractions that repeat are judged.
+    let csv = at(&|i| format!("{}", i / 3 * 2) + "e-2");
+    assert_eq!(verdict(&csv), "GOOD");
+}
