@@ -212,8 +212,19 @@ return load_all, 1000
 --   end
 -- end
 -- 
+-- -- How many motors the frame has, by FRAME_CLASS; by the highest number of a motor where the class is not in the list.
+-- local function motors_of_frame()
+--   local MOTORS_OF = {[1] = 4, [2] = 6, [3] = 8, [4] = 8, [5] = 6, [7] = 3, [12] = 12, [14] = 10}
+--   return MOTORS_OF[param:get("FRAME_CLASS") or 0] or numbers[motors] or 0
+-- end
+-- 
 -- add_parameters()
 -- find_motors()
+-- local expected = motors_of_frame()
+-- if motors > 0 and motors < expected then
+--   -- The risk of the other motors would be called GOOD.
+--   error(format("only %d of %d motors have outputs", motors, expected), 0)
+-- end
 -- if motors == 0 or not read_limits() then
 --   error("no motors or no limits", 0)
 -- end

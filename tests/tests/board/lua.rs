@@ -308,6 +308,35 @@ fn the_script_obeys_its_parameters_and_survives_an_error() {
     assert_eq!((none.logged.len(), none.blocks), (0, None));
 }
 
+/// The motors that are not known may be those at their limit.
+#[test]
+fn a_frame_with_more_motors_than_outputs_is_not_judged() {
+    let folder = Folder::new();
+    let four = Vehicle::named("QUAD/X");
+    let records = &eventful(&four)[..2000];
+    for profile in ["flagred", "flagred-paper"] {
+        let script = script(profile, &folder);
+        let of = |frame| {
+            let factors = four.factors.clone();
+            let vehicle = Vehicle {
+                frame,
+                factors,
+                ..Vehicle::named("QUAD/X")
+            };
+            run(&script, &vehicle, records, &[])
+        };
+        for (frame, motors) in [((2, 1), 6), ((5, 10), 6), ((12, 1), 12)] {
+            let run = of(frame);
+            let text =
+                format!("start, 3: FLAGRED is off: only 4 of {motors} motors have outputs\n");
+            assert_eq!(run.texts, text);
+            assert_eq!((run.logged.len(), run.values, run.blocks), (0, 0, None));
+        }
+        assert!(of((1, 1)).logged.len() > 100);
+        assert!(of((99, 1)).logged.len() > 100);
+    }
+}
+
 /// Whatever the size of the heap, the script flies or sends one text and ends, and the vehicle can be armed.
 #[test]
 fn a_heap_that_is_too_small_does_not_block_arming() {

@@ -103,6 +103,7 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Ref
             .map(|(name, value)| format!("  {{\"{name}\", {}}},", number(value)))
             .collect(),
     );
+    filling.put("motors_of_class", vec![frames::motors_of_class()]);
     filling.set("warn_risk", levels[0].1.is_some());
     filling.set("fail_risk", levels[1].1.is_some());
     let notices = &settings.verdict.notices;

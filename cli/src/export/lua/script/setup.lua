@@ -32,8 +32,19 @@ local function find_motors()
   end
 end
 
+-- How many motors the frame has, by FRAME_CLASS; by the highest number of a motor where the class is not in the list.
+local function motors_of_frame()
+-- @put motors_of_class
+  return MOTORS_OF[param:get("FRAME_CLASS") or 0] or numbers[motors] or 0
+end
+
 add_parameters()
 find_motors()
+local expected = motors_of_frame()
+if motors > 0 and motors < expected then
+  -- The risk of the other motors would be called GOOD.
+  error(format("only %d of %d motors have outputs", motors, expected), 0)
+end
 if motors == 0 or not read_limits() then
   error("no motors or no limits", 0)
 end
