@@ -444,21 +444,98 @@ def test_a_source_that_is_neither_folder_nor_file(tmp_path, here):
         fleet.assess([str(tmp_path) + "/\udcff"], str(tmp_path / "out"))
 
 
+def tear(file: Path) -> Path:
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    return file
+
+
+def weak(number: int) -> str:
+    """A flight with a finding: a motor at its limit."""
+    return csv(number).replace(",0.4,", ",1,")
+
+
 @pytest.mark.parametrize("kind", ["flights", "findings", "steps"])
 def test_a_torn_file_of_the_dataset_is_named(kind, logs, tmp_path, here, capsys):
     pytest.importorskip("duckdb")
     out = tmp_path / "out"
+    (logs / "vehicle=v0" / "weak.csv").write_text(weak(0))
+    (logs / "vehicle=v5" / "weak.csv").write_text(weak(5))
     fleet.assess([str(logs)], str(out), recursive=True)
-    files = sorted((out / kind).rglob("*.parquet"))
-    if not files:
-        pytest.skip("these logs have no findings")
-    torn = files[0]
-    torn.write_bytes(torn.read_bytes()[: torn.stat().st_size // 2])
+    # DuckDB opens the first one in any case.
+    torn = tear(sorted((out / kind).rglob("*.parquet"))[-1])
     assert main(["report", str(out), "-o", str(tmp_path / "fleet.html")]) == 3
     told = capsys.readouterr().err
     assert f"`{torn}` is damaged" in told and "help: restore the file, or delete all files of its name" in told
+    assert main(["compact", str(out)]) == 3
+    assert f"`{torn}` is damaged" in capsys.readouterr().err
     if kind == "flights":
         assert main(["assess", str(logs), "--out", str(out)]) == 3
         assert f"`{torn}` is damaged" in capsys.readouterr().err
         torn.unlink()
         assert main(["assess", str(logs), "--out", str(out), "--recursive"]) == 0
+
+
+@pytest.mark.parametrize("kind", ["findings", "steps"])
+def test_assess_reads_the_logs_of_a_torn_part_again(kind, logs, tmp_path, here, capsys):
+    out = tmp_path / "out"
+    (logs / "vehicle=v5" / "weak.csv").write_text(weak(5))
+    arguments = ["assess", str(logs), "--recursive", "--out", str(out)]
+    assert main(arguments) == 0
+    before = content(out)
+    torn = tear(sorted((out / kind).rglob("*.parquet"))[-1])
+    capsys.readouterr()
+    assert main([*arguments, "--dry-run"]) == 0
+    assert f"warning: `{torn}` is damaged" in capsys.readouterr().err and torn.exists()
+    assert main(arguments) == 0
+    told = capsys.readouterr()
+    assert f"warning: `{torn}` is damaged" in told.err and not told.out.startswith("0 logs")
+    assert content(out) == before
+    assert main(arguments) == 0
+    assert capsys.readouterr().out.startswith("0 logs read")
+    # The row of a log that is gone would be lost.
+    torn = tear(sorted((out / kind).rglob("*.parquet"))[-1])
+    shutil.rmtree(logs)
+    logs.mkdir()
+    assert main(arguments) == 3
+    told = capsys.readouterr().err
+    assert f"`{torn}` is damaged" in told and "is not listed" in told and "help: restore the file" in told
+    assert torn.exists() and main(["compact", str(out)]) == 3
+
+
+def test_damage_inside_a_part_is_named(logs, tmp_path, here, capsys):
+    pytest.importorskip("duckdb")
+    out = tmp_path / "out"
+    fleet.assess([str(logs)], str(out), recursive=True)
+    for kind, commands in (("steps", ["compact"]), ("flights", ["compact", "report"])):
+        # A month with one file has nothing to join.
+        months = [sorted(month.glob("*.parquet")) for month in (out / kind).iterdir()]
+        files = [file for month in months if len(month) > 1 for file in month]
+        assert files
+        for file in files:
+            whole = file.read_bytes()
+            column = pq.ParquetFile(file).metadata.row_group(0).column(0)
+            end = (column.dictionary_page_offset or column.data_page_offset) + column.total_compressed_size
+            file.write_bytes(whole[: end - 8] + bytes(byte ^ 0xFF for byte in whole[end - 8 : end]) + whole[end:])
+            for command in commands:
+                more = ["-o", str(tmp_path / "fleet.html")] if command == "report" else []
+                assert main([command, str(out), *more]) == 3
+                told = capsys.readouterr().err
+                assert f"`{file}` is damaged" in told and "help: restore the file" in told, told
+            file.write_bytes(whole)
+    assert main(["compact", str(out)]) == 0
+
+
+@pytest.mark.parametrize("text", ["", '{"run": "12', "[]", "{}"])
+def test_a_torn_file_of_the_run_is_named_and_written_anew(text, logs, tmp_path, here, capsys):
+    pytest.importorskip("duckdb")
+    out = tmp_path / "out"
+    fleet.assess([str(logs)], str(out), recursive=True)
+    file = out / takeover.RUN
+    file.write_text(text)
+    for command in (["report", str(out), "-o", str(tmp_path / "fleet.html")], ["compact", str(out)]):
+        assert main(command) == 3
+        told = capsys.readouterr().err
+        assert f"`{file}` is damaged" in told and "help: run `assess`" in told
+    assert main(["assess", str(logs), "--out", str(out), "--recursive"]) == 0
+    assert f"warning: `{file}` is damaged" in capsys.readouterr().err
+    assert main(["compact", str(out)]) == 0

@@ -28,6 +28,8 @@ class Progress:
 
     def planned(self, counts: Counts) -> None:
         self._counts = counts
+        for error in counts.damaged:
+            print(f"warning: {error}; it is made again", file=sys.stderr)
         same = counts.listed - counts.new - counts.changed
         print(
             f"{counts.listed} logs, {_size(counts.listed_bytes)}: {counts.new} new, {counts.changed} changed, {same} done",

@@ -16,9 +16,9 @@ from typing import Any
 
 import pyarrow as pa
 
-from .errors import FleetError
-from .schema import VERSION
-from .storage import Log, Place, parquet
+from .errors import DamagedError, FleetError
+from .schema import KINDS, VERSION
+from .storage import Log, Place, beside, parquet
 
 __all__ = ["Catalog", "Counts"]
 
@@ -45,6 +45,8 @@ class Counts:
     todo_bytes: int
     passed_over: int = 0
     """Names of logs that are not those of files."""
+    damaged: tuple[DamagedError, ...] = ()
+    """Files of the dataset that are damaged, and that the run makes again."""
 
 
 class Catalog:
@@ -54,6 +56,7 @@ class Catalog:
         self._folder = tempfile.TemporaryDirectory(prefix="flagred-fleet-")
         self._db = sqlite3.connect(f"{self._folder.name}/catalog.sqlite", isolation_level=None)
         self._db.executescript("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA cache_size=-16384;" + TABLES)
+        self._torn: dict[str, DamagedError] = {}
         self._settings = {"settings": settings, "compare": compare_content}
 
     def __enter__(self) -> Catalog:
@@ -76,14 +79,27 @@ class Catalog:
         changed = [path for path, stamp in now.items() if known.get(path) != stamp]
         with self._transaction(), ThreadPoolExecutor(READERS) as readers:
             for path in known.keys() - (now.keys() - set(changed)):
-                self._forget(path)
+                self.forget(path)
             waiting = iter(changed)
             while some := list(islice(waiting, READERS)):
-                for path, rows in zip(some, readers.map(lambda path: _rows(out, path), some)):
+                for path, (rows, torn) in zip(some, readers.map(lambda path: _rows(out, path), some)):
                     id = self._db.execute("INSERT INTO file(name, stamp) VALUES(?,?)", (path, now[path])).lastrowid
                     self._db.executemany(f"INSERT INTO flight VALUES({id},?,?,?,?,?,?,?,?)", rows)
+                    if torn:
+                        self._torn[path] = torn
 
-    def _forget(self, path: str) -> None:
+    def torn(self) -> dict[str, DamagedError]:
+        """The files of ``flights`` that were taken in and whose steps or findings are torn."""
+        return dict(self._torn)
+
+    def unlisted(self, path: str) -> list[str]:
+        """The logs of a file of ``flights`` that are not listed."""
+        query = "SELECT log FROM flight WHERE file = (SELECT id FROM file WHERE name = ?) AND log NOT IN (SELECT log FROM listed)"
+        return [log for (log,) in self._db.execute(query, (path,))]
+
+    def forget(self, path: str) -> None:
+        """Lets go of the flights of a file."""
+        self._torn.pop(path, None)
         self._db.execute("DELETE FROM flight WHERE file = (SELECT id FROM file WHERE name = ?)", (path,))
         self._db.execute("DELETE FROM file WHERE name = ?", (path,))
 
@@ -161,8 +177,9 @@ class _Transaction:
         self._db.execute("COMMIT" if kind is None else "ROLLBACK")
 
 
-def _rows(out: Place, path: str) -> list[tuple[Any, ...]]:
-    """What of a file's flights the catalog knows. Compaction bounds how many there are in a file."""
+def _rows(out: Place, path: str) -> tuple[list[tuple[Any, ...]], DamagedError | None]:
+    """What of a file's flights the catalog knows, and whether their steps or findings are torn. Compaction bounds how many there
+    are in a file."""
     with parquet(out, path) as file:
         version = (file.schema_arrow.metadata or {}).get(b"flagred.fleet", b"none").decode()
         if version != VERSION:
@@ -171,4 +188,13 @@ def _rows(out: Place, path: str) -> list[tuple[Any, ...]]:
         table = file.read(columns=COLUMNS)
     modified = table["modified_utc"].cast(pa.int64())
     table = table.set_column(table.column_names.index("modified_utc"), "modified_utc", modified)
-    return list(zip(*(table[name].to_pylist() for name in COLUMNS)))
+    rows = list(zip(*(table[name].to_pylist() for name in COLUMNS)))
+    for kind in KINDS[:-1]:
+        try:
+            with parquet(out, beside(out, path, kind)):
+                pass
+        except FileNotFoundError:
+            continue
+        except DamagedError as error:
+            return rows, error
+    return rows, None

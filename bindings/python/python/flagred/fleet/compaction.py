@@ -10,10 +10,10 @@ import pyarrow as pa
 
 from .catalog import Catalog
 from .process import write
-from .repair import beside, read, repair
+from .repair import read, repair
 from .schema import KINDS
-from .storage import Place, absolute, open_place
-from .takeover import take_over
+from .storage import Place, absolute, beside, open_place
+from .takeover import check, take_over
 
 __all__ = ["compact"]
 
@@ -30,8 +30,14 @@ def compact(dataset: str) -> int:
     ----------
     dataset
         The dataset: a folder, or an address on object storage.
+
+    Raises
+    ------
+    DamagedError
+        A file of the dataset is damaged.
     """
     out = open_place(absolute(dataset))
+    check(out)
     take_over(out)
     before = {info.path for info in out.files("flights", ".parquet")}
     with Catalog("") as catalog:

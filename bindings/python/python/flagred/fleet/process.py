@@ -115,5 +115,5 @@ def _fetch(source: Place, path: str) -> tuple[bytes, str | None]:
 def write(out: Place, path: str, table: pa.Table) -> None:
     """Writes a table as a Parquet file."""
     sink = pa.BufferOutputStream()
-    pq.write_table(table, sink, compression="zstd")
+    pq.write_table(table, sink, compression="zstd", write_page_checksum=True)
     out.write(path, sink.getvalue())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import lru_cache
 from importlib.resources import files
@@ -11,9 +12,11 @@ from typing import Any
 
 import pyarrow as pa
 
+from .catalog import READERS
 from .errors import DamagedError, FleetError
-from .schema import FINDINGS, FLIGHTS, STEPS
-from .storage import Place, absolute, open_place
+from .schema import FINDINGS, FLIGHTS, KINDS, STEPS
+from .storage import Place, absolute, open_place, parquet
+from .takeover import check
 
 __all__ = ["QUESTIONS", "ask", "open_dataset"]
 
@@ -40,10 +43,14 @@ def open_dataset(dataset: str) -> Any:
     """
     import duckdb  # Who only assesses does without it and its memory.
 
-    place = open_place(absolute(dataset))
+    uri = absolute(dataset)
+    place = open_place(uri)
+    check(place)
     connection = duckdb.connect()
-    with _reading():
+    with _reading(place):
         _views(connection, place)
+        # Questions name a damaged file.
+        connection.execute("SET VARIABLE flagred_dataset = ?", [uri])
     return connection
 
 
@@ -55,7 +62,11 @@ def _views(connection: Any, place: Place) -> None:
             if kind == "flights":
                 raise FleetError(f"there are no flights in `{place.shown(place.root)}`", "make a dataset with `assess`")
             connection.register(kind, schema.empty_table())
-        elif place.is_local:
+            continue
+        with ThreadPoolExecutor(READERS) as readers:
+            # DuckDB opens only the files that a question needs.
+            list(readers.map(lambda path: _open(place, path), paths))
+        if place.is_local:
             folder = place.file(kind).replace("'", "''")
             connection.execute(
                 f"CREATE VIEW {kind} AS FROM read_parquet('{folder}/*/*.parquet', hive_partitioning = true, hive_types = {{'month': VARCHAR}})"
@@ -71,8 +82,14 @@ def _views(connection: Any, place: Place) -> None:
     connection.execute(_parts()[0])
 
 
+def _open(place: Place, path: str) -> None:
+    """Raises :class:`DamagedError` where a file is cut off."""
+    with parquet(place, path):
+        pass
+
+
 @contextmanager
-def _reading() -> Iterator[None]:
+def _reading(place: Place | None) -> Iterator[None]:
     """Raises errors of DuckDB as those of a dataset, with the name of a file that is damaged."""
     import duckdb
 
@@ -82,6 +99,11 @@ def _reading() -> Iterator[None]:
         named = re.search(r"['\"]([^'\"]*\.parquet)['\"]", str(error))
         if named:
             raise DamagedError.of(named[1], error) from error
+        # DuckDB does not name the file of a page that does not decode.
+        if place:
+            for info in (info for kind in KINDS for info in place.files(kind, ".parquet")):
+                with parquet(place, info.path) as file:
+                    file.read()
         raise FleetError(f"the dataset cannot be read: {error}") from error
 
 
@@ -98,6 +120,7 @@ def ask(dataset: str | Any, question: str) -> pa.Table:
     if question not in _parts()[1]:
         raise FleetError(f"there is no question `{question}`", f"questions are {', '.join(QUESTIONS)}")
     connection = open_dataset(dataset) if isinstance(dataset, str) else dataset
-    with _reading():
+    (dataset_of,) = connection.sql("SELECT getvariable('flagred_dataset')").fetchall()[0]
+    with _reading(open_place(dataset_of) if dataset_of else None):
         answer: pa.Table = connection.sql(_parts()[1][question]).to_arrow_table()
     return answer

@@ -11,16 +11,48 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from .catalog import Catalog
+from .errors import DamagedError
 from .process import write
 from .schema import KINDS
-from .storage import UNFINISHED, Place, parquet
+from .storage import UNFINISHED, Place, beside, parquet
 
-__all__ = ["repair"]
+__all__ = ["redo", "repair"]
+
+
+def redo(out: Place, catalog: Catalog, dry_run: bool) -> tuple[DamagedError, ...]:
+    """Takes files whose steps or findings are torn out of the dataset, so that their logs are read again. Gives their errors.
+
+    Raises
+    ------
+    DamagedError
+        Not all logs of such a file are listed, so that their rows would be lost.
+    """
+    torn = catalog.torn()
+    for path, error in torn.items():
+        unlisted = catalog.unlisted(path)
+        if unlisted:
+            raise DamagedError(
+                f"{error}; `{unlisted[0]}` of its logs is not listed",
+                "restore the file, name the sources of all its logs, or delete all files of its name in the dataset, with the rows of logs that are gone",
+            )
+    for path in torn:
+        for kind in () if dry_run else KINDS[::-1]:
+            out.delete(beside(out, path, kind))
+        catalog.forget(path)
+    return tuple(torn.values())
 
 
 def repair(out: Place, catalog: Catalog, wanted: Callable[[str], bool]) -> None:
-    """Drops rows that others replace, marks logs that are gone, and sweeps what belongs to no flight."""
+    """Drops rows that others replace, marks logs that are gone, and sweeps what belongs to no flight.
+
+    Raises
+    ------
+    DamagedError
+        A file of the dataset is damaged.
+    """
     catalog.load(out)
+    for error in catalog.torn().values():
+        raise error
     for path, flights in list(catalog.doubled()):
         drop(out, path, flights)
     catalog.load(out)
@@ -68,11 +100,6 @@ def sweep(out: Place, flights: set[str]) -> None:
         for kind in KINDS:
             for info in list(out.files(kind, UNFINISHED)):
                 out.delete(info.path)
-
-
-def beside(out: Place, path: str, kind: str, of: str = KINDS[-1]) -> str:
-    """The file of the same shard and month in another table."""
-    return out.file(kind, path.removeprefix(out.file(of) + "/"))
 
 
 def read(out: Place, path: str) -> pa.Table:

@@ -10,13 +10,13 @@ from typing import Protocol
 from .. import Profile
 from . import engine
 from .catalog import Catalog, Counts
-from .errors import FleetError
+from .errors import DamagedError, FleetError
 from .listing import Listing
 from .process import Outcome
-from .repair import repair
+from .repair import redo, repair
 from .shards import Job, Shard, shards
 from .storage import LOGS, Place, absolute, matcher, open_place
-from .takeover import take_over
+from .takeover import check, take_over
 
 __all__ = ["Assessed", "Plan", "Watcher", "assess", "plan"]
 
@@ -106,7 +106,8 @@ def assess(
     Raises
     ------
     FleetError
-        A source cannot be listed, or the engine or the dataset was lost.
+        A source cannot be listed, or the engine or the dataset was lost, or a file of the dataset is damaged whose logs cannot all
+        be read again.
     RuleSetError
         The profile or its rule set has errors.
     """
@@ -170,11 +171,17 @@ def plan(
     with Catalog(job.settings, compare_content) as catalog:
         for place in places:
             catalog.take_in(place, listing.logs(place.root) if place.is_local else place.logs(recursive, include))
+        damaged: tuple[DamagedError, ...] = ()
+        try:
+            check(dataset)
+        except DamagedError as error:
+            damaged = (error,)
         if not dry_run:
             # Before the dataset is read, so that nothing is committed unseen.
             job = job.of_run(take_over(dataset))
         catalog.load(dataset)
-        counts = replace(catalog.counts(), passed_over=listing.passed_over)
+        damaged += redo(dataset, catalog, dry_run)
+        counts = replace(catalog.counts(), passed_over=listing.passed_over, damaged=damaged)
         yield Plan(counts, shards(catalog.todo(), SHARD_BYTES), job)
         if not dry_run:
             repair(dataset, catalog, is_listed)

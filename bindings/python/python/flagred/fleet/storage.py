@@ -19,7 +19,7 @@ import pyarrow.parquet as pq
 
 from .errors import DamagedError, FleetError
 
-__all__ = ["LOGS", "Log", "Place", "absolute", "matcher", "open_place", "parquet"]
+__all__ = ["LOGS", "Log", "Place", "absolute", "beside", "matcher", "open_place", "parquet"]
 
 LOGS = ("*.bin", "*.log", "*.ulg", "*.tlog", "*.csv", "*.bin.gz", "*.log.gz", "*.ulg.gz", "*.tlog.gz", "*.csv.gz")
 """The names of logs, in whatever case, where nothing else is asked for."""
@@ -136,13 +136,23 @@ def parquet(place: Place, path: str) -> Iterator[pq.ParquetFile]:
     Raises
     ------
     DamagedError
-        The file is cut off, or is not Parquet.
+        The file is cut off, is not Parquet, or a page of it is damaged.
     """
     try:
-        with place.fs.open_input_file(path) as source, pq.ParquetFile(source) as file:
+        with place.fs.open_input_file(path) as source, pq.ParquetFile(source, page_checksum_verification=True) as file:
             yield file
     except pa.ArrowException as error:
         raise DamagedError.of(place.shown(path), error) from error
+    except OSError as error:
+        # Arrow raises it without a number for pages that do not decode or do not have their checksum.
+        if error.errno is not None or not place.is_local:
+            raise
+        raise DamagedError.of(place.shown(path), error) from error
+
+
+def beside(place: Place, path: str, kind: str, of: str = "flights") -> str:
+    """The file of the same shard and month in another table."""
+    return place.file(kind, path.removeprefix(place.file(of) + "/"))
 
 
 UNFINISHED = ".unfinished"

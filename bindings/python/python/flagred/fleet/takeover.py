@@ -6,10 +6,10 @@ import json
 import uuid
 
 from .. import __version__
-from .errors import FleetError
+from .errors import DamagedError, FleetError
 from .storage import Place
 
-__all__ = ["Superseded", "still_ours", "take_over"]
+__all__ = ["Superseded", "check", "still_ours", "take_over"]
 
 RUN = "run.json"
 """The file of a dataset that tells which run writes to it."""
@@ -27,8 +27,25 @@ def take_over(out: Place) -> str:
     return run
 
 
+def check(out: Place) -> None:
+    """Raises :class:`DamagedError` where the file of the run that writes is there and damaged."""
+    try:
+        _run(out)
+    except FileNotFoundError:
+        pass
+
+
+def _run(out: Place) -> str:
+    content, _ = out.read(out.file(RUN))
+    try:
+        run: str = json.loads(content)["run"]
+    except (ValueError, KeyError, TypeError) as error:
+        help = "run `assess` for the dataset, which writes it anew, or delete it while no run writes"
+        raise DamagedError(f"`{out.shown(out.file(RUN))}` is damaged: {error}", help) from error
+    return run
+
+
 def still_ours(out: Place, run: str) -> None:
     """Raises :class:`Superseded` where a later run took over."""
-    content, _ = out.read(out.file(RUN))
-    if json.loads(content)["run"] != run:
+    if _run(out) != run:
         raise Superseded(f"another run writes to `{out.shown(out.root)}`", "let one run end before the next begins")
