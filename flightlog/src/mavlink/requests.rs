@@ -50,6 +50,8 @@ pub struct Requests {
     has_old_way: bool,
     has_been_fast: bool,
     slow_looks: u32,
+    /// Whether the next look measures a rate that just fell.
+    measures: bool,
     slowed_hz: Option<f64>,
     parameter_tries: u32,
     parameters_asked_s: Option<f64>,
@@ -68,7 +70,7 @@ impl Requests {
     }
 
     /// Returns the rate of the motor commands, in Hz, once each time that it falls below half of the wanted one: somebody
-    /// else asked for less, or the link became too slow.
+    /// else asked for less, or the link became too slow. It is measured after the fall, over two seconds or more.
     pub fn take_slowed_hz(&mut self) -> Option<f64> {
         self.slowed_hz.take()
     }
@@ -77,6 +79,7 @@ impl Requests {
     pub fn resume(&mut self) {
         self.looked = None;
         self.slow_looks = 0;
+        self.measures = false;
     }
 
     /// Adds the messages to send now to `out`. The time is that of the receiver's clock, in seconds; `lost_share` is the
@@ -110,6 +113,7 @@ impl Requests {
             return;
         };
         let wait_s = match self.rate_tries {
+            _ if self.measures => RATE_WAIT_S,
             0 => LISTEN_S,
             1..4 => RATE_WAIT_S,
             _ => RATE_PATIENCE_S,
@@ -134,14 +138,19 @@ impl Requests {
             });
             self.has_been_fast |= !self.slow[0];
             self.slow_looks = if self.slow[0] { self.slow_looks + 1 } else { 0 };
-            let is_asked = telemetry.rate_asker().is_some();
-            // Without a station that is known to have asked, a short silence of the link may be the reason.
-            let looks = if is_asked { 1 } else { 2 };
-            if self.slow_looks == looks && (self.has_been_fast || is_asked && self.rate_tries > 0) {
+            // The rate fell within the time of the first slow look, so that one has commands from before. A short silence of
+            // the link is over by the next look.
+            if self.slow_looks == 2 && self.has_been_fast {
                 self.slowed_hz = Some(rate_hz(0));
             }
+            // Where a station asked for less, the rate is measured before it is asked for again, which would raise it.
+            let is_asked = telemetry.rate_asker().is_some();
+            self.measures = self.slow_looks == 1 && self.has_been_fast && is_asked;
         }
         self.looked = Some((now_s, seen));
+        if self.measures {
+            return;
+        }
         if !self.slow.contains(&true) {
             // The next time that a rate is low is no sign of a slow link.
             self.rate_tries = 1;

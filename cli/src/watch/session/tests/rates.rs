@@ -153,3 +153,25 @@ fn the_station_that_slows_the_motor_commands_is_named_once() {
         "{texts:?}"
     );
 }
+
+/// Whenever within a look it changes, the rate is that after the change.
+#[test]
+fn the_rate_that_is_told_is_measured_after_the_fall() {
+    let estimator = estimator();
+    for tenths in 0..20 {
+        let mut bench = Bench::new(&estimator, Some(191));
+        bench.beat(true);
+        bench.all_parameters();
+        bench.stream(10.0, 10.0, 25, 5);
+        bench.hear(&accepted(1, (255, 190), MavResult::MAV_RESULT_ACCEPTED));
+        bench.stream(20.0, 4.0 + f64::from(tenths) / 10.0, 25, 5);
+        bench.stream(26.0, 6.5, 2, 5);
+        let told = bench.events.iter().find_map(|event| match event {
+            Event::Slowed { rate_hz, .. } => Some(*rate_hz),
+            _ => None,
+        });
+        let told = told.unwrap_or_else(|| panic!("{tenths}: not told within 6.5 s"));
+        assert!((1.4..2.6).contains(&told), "{tenths}: {told} Hz");
+        assert!(asks(&bench).0 > 0, "{tenths}: the rate is asked for again");
+    }
+}
