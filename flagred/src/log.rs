@@ -84,9 +84,16 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     {
         *motor = logged.number.into();
     }
-    // As for a vehicle that is lost on a live link: what was seen of the flight is not GOOD for that.
+    // As for a vehicle that is lost on a live link: what was seen of the flight is not GOOD for that. What is unknown then is
+    // unknown for that, too.
     if let Some(&at_s) = flight.rebooted_in_air_s.first()
-        && assessment.verdict == Verdict::Known(Level::Good)
+        && matches!(
+            assessment.verdict,
+            Verdict::Known(Level::Good)
+                | Verdict::NotAvailable(
+                    Reason::MotorUnknown { .. } | Reason::RiskUnknown { .. } | Reason::NoCommands
+                )
+        )
     {
         assessment.verdict = Verdict::NotAvailable(Reason::RebootedInAir { at_s });
     }

@@ -190,6 +190,21 @@ fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
             "the autopilot rebooted in the air at 61.0 s"
         );
     }
+    // A motor that is unknown around the reboot is unknown for that, not for itself.
+    let mut csv = String::from("t_s,motor1,motor2,in_air\n");
+    for i in 0..1500 {
+        let first = if (1000..1200).contains(&i) { "" } else { "0.5" };
+        let _ = writeln!(csv, "{},{first},0.5,1", f64::from(i) * 0.04);
+    }
+    let verdict = |csv: &str| assess(&read(csv.as_bytes()), &estimator, None).verdict;
+    let Verdict::NotAvailable(Reason::MotorUnknown { .. }) = verdict(&csv) else {
+        panic!("{:?}", verdict(&csv));
+    };
+    let Verdict::NotAvailable(Reason::RebootedInAir { at_s: 40.0 }) =
+        verdict(&format!("# rebooted_in_air_s: 40\n{csv}"))
+    else {
+        panic!("{:?}", verdict(&format!("# rebooted_in_air_s: 40\n{csv}")));
+    };
     // Trouble before it is known.
     let trouble = |t_s: f64| match t_s > 30.0 {
         true => [2000, 1000, 2000, 1000, 2000, 1000],

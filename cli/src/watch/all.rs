@@ -11,7 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use flagred::estimator::Estimator;
+use flagred::{estimator::Estimator, flight::Verdict};
 use flightlog::mavlink::{Key, Next, Stream, next_packet};
 use fuzzy::drawing::visible;
 use report::words::level_style;
@@ -301,12 +301,17 @@ impl<'e> Shown<'e> {
             let name = self.name(one.id);
             let verdict = one.verdict.to_string();
             let reason = lines::reason(&one.verdict);
+            let help = match &one.verdict {
+                Verdict::NotAvailable(reason) => reason.help(),
+                Verdict::Known(_) => None,
+            };
             let text = match self.face {
                 Face::Json => {
                     let line = serde_json::json!({
                         "vehicle": name,
                         "verdict": verdict,
                         "reason": reason,
+                        "help": help,
                         "risk_max": one.risk_max,
                         "lost_share": one.lost_share,
                     });
@@ -317,7 +322,8 @@ impl<'e> Shown<'e> {
                         format!("highest risk {most:.0} %")
                     });
                     let why = reason.map_or(String::new(), |reason| format!("; {reason}"));
-                    format!("{verdict:<4} {}: {most}{why}\n", visible(&name))
+                    let help = help.map_or(String::new(), |help| format!("\n     help: {help}"));
+                    format!("{verdict:<4} {}: {most}{why}{help}\n", visible(&name))
                 }
             };
             self.printer.print(text);

@@ -280,6 +280,45 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn a_vehicle_without_motor_outputs_ends_with_that_reason() {
+        let estimator = estimator();
+        let mut air = Air::new(&estimator);
+        for second in 0..40 {
+            air.fly(1, &[(1, true, HOVER), (3, false, [1000; 4])]);
+            air.hear(2, &quadrotor(second > 10));
+        }
+        let all = air.fleet.finish(|_, _, _| {});
+        let verdicts: Vec<(u8, String, String)> = all
+            .iter()
+            .map(|one| {
+                let reason = crate::watch::lines::reason(&one.verdict);
+                (
+                    one.id.system,
+                    one.verdict.to_string(),
+                    reason.unwrap_or_default(),
+                )
+            })
+            .collect();
+        let expected = [
+            (
+                2,
+                "NA",
+                "the vehicle sent no motor outputs (SERVO_OUTPUT_RAW)",
+            ),
+            (1, "GOOD", ""),
+            (3, "NA", "no flight was seen"),
+        ];
+        assert_eq!(
+            verdicts,
+            expected.map(|(id, verdict, reason)| (id, verdict.to_owned(), reason.to_owned()))
+        );
+        let Verdict::NotAvailable(reason) = &all[0].verdict else {
+            panic!("{:?}", all[0]);
+        };
+        assert!(reason.help().unwrap().contains("SRx_RC_CHAN"));
+    }
+
+    #[test]
     fn a_vehicle_that_is_silent_for_a_minute_is_gone_and_its_summary_stays() {
         let estimator = estimator();
         let mut air = Air::new(&estimator);

@@ -241,6 +241,11 @@ impl<'e> Session<'e> {
             .as_mut()
             .and_then(|tracked| tracked.finish(out));
         add(&mut self.worst, verdict);
+        let is_mute =
+            (self.tracked.as_ref()).is_some_and(|tracked| !tracked.telemetry.has_commands());
+        if is_mute && self.worst == Verdict::NotAvailable(Reason::NoFlight) {
+            return Verdict::NotAvailable(Reason::NoMotorOutputs);
+        }
         match (&self.worst, self.unknown_part.take()) {
             // A flight is not GOOD where a part of it is not known.
             (Verdict::Known(Level::Good | Level::Info), Some(part)) => part,

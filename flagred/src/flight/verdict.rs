@@ -114,6 +114,9 @@ pub enum Reason {
     /// No flight was watched.
     #[error("no flight was seen")]
     NoFlight,
+    /// The vehicle was heard, and never sent commands of its motors.
+    #[error("the vehicle sent no motor outputs (SERVO_OUTPUT_RAW)")]
+    NoMotorOutputs,
 }
 
 fn motor_unknown(motor: &usize, command: &Option<f64>, (from_s, to_s): (&f64, &f64)) -> String {
@@ -140,6 +143,9 @@ impl Reason {
                 }
                 None => "a missing motor can hide any risk: log the commands of all motors",
             }),
+            Reason::NoMotorOutputs => Some(
+                "ArduPilot: set SRx_RC_CHAN of the port to 25; PX4: `mavlink stream -d PORT -s SERVO_OUTPUT_RAW_0 -r 25`; `flagred watch` without `--all` asks for them",
+            ),
             Reason::LostInAir => {
                 Some("the log on board tells how the flight ended: `flagred assess`")
             }

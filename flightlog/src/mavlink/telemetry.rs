@@ -115,6 +115,7 @@ pub struct Telemetry {
     /// The port that completes the commands of all motors.
     last_port: usize,
     seen: [u64; RATED.len()],
+    has_commands: bool,
     interval_refused: bool,
     rate_asker: Option<(u8, u8)>,
     /// The range of motor outputs where the vehicle does not report it.
@@ -138,6 +139,7 @@ impl Telemetry {
             outputs: NO_OUTPUTS,
             last_port: 0,
             seen: [0; RATED.len()],
+            has_commands: false,
             interval_refused: false,
             rate_asker: None,
             given: None,
@@ -179,6 +181,11 @@ impl Telemetry {
     /// in the air, on standby while landed). A vehicle that does not tell is in the air while it is armed.
     pub fn is_in_air(&self) -> bool {
         self.decoder.is_in_air().unwrap_or(self.is_armed())
+    }
+
+    /// Whether it ever sent motor outputs (SERVO_OUTPUT_RAW).
+    pub fn has_commands(&self) -> bool {
+        self.has_commands
     }
 
     /// How many of each message in [`RATED`] came so far.
@@ -244,6 +251,7 @@ impl Telemetry {
     }
 
     fn count(&mut self, id: u32, payload: &Payload) {
+        self.has_commands |= id == RATED[0];
         // The two ports of one row of commands are one.
         let is_other_port = id == RATED[0] && usize::from(payload[20]) != self.last_port;
         let index = RATED.iter().position(|&rated| rated == id);
