@@ -67,12 +67,18 @@ pub(super) fn run(
         (false, true) => Face::Screen,
     };
     let (sender, receiver) = sync_channel(PACKETS);
-    let mut names = Vec::new();
+    let (mut names, mut small) = (Vec::new(), Vec::new());
     for (link, endpoint) in endpoints.iter().enumerate() {
         let port = Port::open(endpoint, waits)?;
         let name =
             (port.listens_at()).map_or(endpoint.to_string(), |at| format!("listening at {at}"));
         names.push(name);
+        small.extend(port.small_buffer().map(|bytes| {
+            format!(
+                "`{endpoint}`: the system keeps {} kB of packets while this program waits, too few for hundreds of vehicles: `sysctl -w net.core.rmem_max=4194304` as root (Linux), and start again",
+                bytes / 1024
+            )
+        }));
         let stream = key.map_or_else(Stream::new, |key| Stream::with_key(key.clone()));
         let (sender, stop, name) = (sender.clone(), Arc::clone(stop), endpoint.to_string());
         thread::spawn(move || listen(link, &name, port, stream, &sender, &stop));
@@ -86,6 +92,9 @@ pub(super) fn run(
         estimator,
     };
     shown.start(&names);
+    for text in &small {
+        shown.note(0.0, text);
+    }
     let mut fleet = Fleet::new(estimator);
     let start = Instant::now();
     follow(&receiver, &mut fleet, &mut shown, start, stop);

@@ -16,6 +16,10 @@ const WAIT: Duration = Duration::from_millis(20);
 const CONNECT: Duration = Duration::from_secs(3);
 const RETRY: Duration = Duration::from_secs(1);
 
+/// What the system is to keep of datagrams while the program does not run: a second of 500 vehicles, with what it needs beside
+/// each packet. Defaults suffice for a tenth of that.
+const BUFFER: usize = 4 << 20;
+
 /// An open endpoint.
 pub(crate) struct Port {
     kind: Kind,
@@ -112,6 +116,14 @@ impl Port {
             Kind::Udp { socket, .. } => socket.local_addr().ok(),
             Kind::TcpIn { listener, .. } => listener.local_addr().ok(),
             Kind::Closed { .. } | Kind::Tcp { .. } | Kind::Serial { .. } => None,
+        }
+    }
+
+    /// How many bytes the system keeps of datagrams, where that is less than half of what it was asked for.
+    pub(crate) fn small_buffer(&self) -> Option<usize> {
+        match &self.kind {
+            Kind::Udp { socket, .. } => buffer(socket).filter(|bytes| *bytes < BUFFER / 2),
+            _ => None,
         }
     }
 
@@ -226,6 +238,7 @@ impl Port {
 fn open(endpoint: &Endpoint) -> io::Result<Kind> {
     let udp = |socket: UdpSocket, to: Option<SocketAddr>| {
         socket.set_read_timeout(Some(WAIT))?;
+        enlarge(&socket);
         Ok(Kind::Udp {
             socket,
             from: None,
@@ -260,6 +273,24 @@ fn open(endpoint: &Endpoint) -> io::Result<Kind> {
             tried: Instant::now(),
         }),
     }
+}
+
+/// Has the system keep many datagrams. Linux gives as much as it may; others refuse what is too much.
+fn enlarge(socket: &UdpSocket) {
+    #[cfg(unix)]
+    (0..5)
+        .map(|half| BUFFER >> half)
+        .find(|bytes| rustix::net::sockopt::set_socket_recv_buffer_size(socket, *bytes).is_ok());
+    #[cfg(not(unix))]
+    let _ = socket;
+}
+
+/// How many bytes the system keeps for a socket; unknown elsewhere than on Unix.
+fn buffer(socket: &UdpSocket) -> Option<usize> {
+    #[cfg(unix)]
+    return rustix::net::sockopt::socket_recv_buffer_size(socket).ok();
+    #[cfg(not(unix))]
+    return None;
 }
 
 /// Whether an endpoint that does not open may do so later without anybody acting here: the vehicle, its cable, the network or
@@ -429,6 +460,27 @@ mod tests {
     use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
     use super::*;
+
+    /// As much as the system allows; Linux counts what it needs beside the packets, too.
+    #[test]
+    fn a_socket_keeps_a_second_of_many_vehicles() {
+        let usual = buffer(&UdpSocket::bind("127.0.0.1:0").unwrap()).unwrap();
+        let most = std::fs::read_to_string("/proc/sys/net/core/rmem_max").unwrap();
+        let most: usize = most.trim().parse().unwrap();
+        for endpoint in ["udpin:127.0.0.1:0", "udpout:127.0.0.1:9"] {
+            let port = Port::open(&endpoint.parse().unwrap(), true).unwrap_or_else(|_| panic!());
+            let Kind::Udp { socket, .. } = &port.kind else {
+                panic!("{endpoint}");
+            };
+            let bytes = buffer(socket).unwrap();
+            assert!(
+                bytes >= BUFFER.min(most) && bytes >= usual,
+                "{bytes} {usual}"
+            );
+            assert!(bytes > usual || most <= usual / 2, "{bytes} {usual}");
+            assert_eq!(port.small_buffer().is_some(), bytes < BUFFER / 2);
+        }
+    }
 
     #[test]
     fn a_serial_port_is_read_and_written_and_found_again() {
