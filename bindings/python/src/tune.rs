@@ -48,6 +48,7 @@ pub(crate) struct Tuned {
     after: f64,
     without_value: usize,
     moved: Vec<(String, String, f64, f64)>,
+    at_bounds: Vec<String>,
     validation: Option<Validation>,
 }
 
@@ -147,6 +148,7 @@ fn tune_numbers(
         moved: moved
             .map(|one| (one.of, one.name, one.before, one.after))
             .collect(),
+        at_bounds: tuned.at_bounds,
         validation: validation.map(|validation| Validation {
             folds: validation.folds,
             before: interval(validation.before),

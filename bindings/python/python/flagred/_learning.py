@@ -97,6 +97,8 @@ class Tuned(NamedTuple):
     without_value: int
     """Rows without a value of the tuned model; they count as the middle of the range."""
     moved: list[Moved]
+    at_bounds: list[str]
+    """Constants, as ``variable.term``, at the end of the range whose loss would be smaller beyond it."""
     validation: TuneValidation | None
     """None where ``folds`` was not given."""
 
