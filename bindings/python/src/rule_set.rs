@@ -165,6 +165,12 @@ impl RuleSet {
         json.map_err(|error| data_error(error, None))
     }
 
+    /// The same with lists of named entries, whose order no sorting of keys changes.
+    fn _json_lists(&self) -> PyResult<String> {
+        let json = self.model(serde_json::to_string);
+        json.map_err(|error| data_error(error, None))
+    }
+
     /// Puts a document, in JSON, in the place of the model. Nothing changes where it has errors.
     fn _edit(&self, py: Python<'_>, json: &str) -> PyResult<()> {
         let tree: Result<Node, _> = serde_json::from_str(json);

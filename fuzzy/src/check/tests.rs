@@ -29,6 +29,26 @@ fn paper() -> &'static str {
 }
 
 #[test]
+fn warnings_of_reading_are_findings() {
+    let text = "fuzzy: 1
+name: fan
+inputs: {heat: {range: [0, 40], partition: {hot: 35, cool: 5}}}
+outputs: {speed: {range: [0, 10], partition: [slow, fast]}}
+rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
+";
+    let document = crate::yaml::parse(text).unwrap();
+    let (findings, report) = super::document(&document, text, &Options::default()).unwrap();
+    assert!(report.is_some());
+    let found = findings
+        .0
+        .iter()
+        .find(|one| one.code == "inverted-parameters");
+    let found = found.unwrap();
+    assert_eq!(found.severity, crate::diagnostic::Severity::Warning);
+    assert_eq!(found.position.map(|place| place.line), Some(3));
+}
+
+#[test]
 fn the_papers_rules_are_seen_through() {
     let (report, findings) = report_of(paper(), &Options::default());
     let boxes: Vec<&Uncovered> = report.uncovered.iter().filter(|one| !one.silent).collect();

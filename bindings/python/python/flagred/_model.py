@@ -208,8 +208,12 @@ class Model(RuleSet):
         edit(self, change)
 
     def to_dict(self) -> dict[str, Any]:
-        """The rule set as a document, with the keys of the rule-set format."""
-        found: dict[str, Any] = json.loads(self._json())
+        """The rule set as a document, with the keys of the rule-set format.
+
+        Inputs, outputs, terms and blocks are lists of entries with a ``name``: their order has a meaning, also after
+        ``json.dumps(..., sort_keys=True)``. :func:`loads` reads the JSON of the document.
+        """
+        found: dict[str, Any] = json.loads(self._json_lists())
         return found
 
     @property
