@@ -90,6 +90,21 @@ fn many_rules_are_not_simplified_and_many_inputs_not_mapped() {
 }
 
 #[test]
+fn a_long_cell_is_quoted_by_its_beginning() {
+    let folder = Folder::new();
+    let rules = folder.file("wind.yaml", RULE_SET);
+    let long = "9x".repeat(100_000);
+    for table in [
+        format!("wind\n{long}\n"),
+        format!("wind,{long},{long}\n1,2,3\n"),
+        format!("{long}\n1\n"),
+    ] {
+        let output = run(&["eval", &rules, &folder.file("rows.csv", table)]);
+        assert!(output.stderr.len() < 1_000, "{}", output.stderr.len());
+    }
+}
+
+#[test]
 fn a_profile_names_rule_sets_of_its_own_folder() {
     let folder = Folder::new();
     fs::create_dir(folder.at("own")).unwrap();

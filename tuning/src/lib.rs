@@ -35,7 +35,9 @@ pub use folds::Interval;
 pub use numbers::{Moved, Number, numbers, with_numbers_of};
 pub use reliability::Bin;
 pub use settings::{Loss, Settings, TuneError};
-pub use simplify::{Difference, EQUAL, Simplified, SimplifyError, SimplifySettings, simplify};
+pub use simplify::{
+    Difference, EQUAL, MOST_RULES, Simplified, SimplifyError, SimplifySettings, simplify,
+};
 pub use validation::{CurvePoint, Validation, cross_validate, learning_curve};
 
 use objective::{Objective, Point};
