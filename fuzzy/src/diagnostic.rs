@@ -415,7 +415,7 @@ pub(crate) fn listed(words: &[&str]) -> String {
             list.push_str(if last { " and " } else { ", " });
         }
         list.push('`');
-        list.push_str(word);
+        list.push_str(&quoted(word));
         list.push('`');
     }
     if words.len() > MOST {
