@@ -27,7 +27,7 @@ use crate::{
     map::DecisionMap,
     source::Source,
     table::Table,
-    threads::{interruptible, pool},
+    threads::{count, interruptible, pool},
 };
 
 /// A rule set. `flagred.Model` is made of it.
@@ -221,7 +221,7 @@ impl RuleSet {
     fn __call__<'py>(
         slf: &Bound<'py, Self>,
         args: &Bound<'py, PyTuple>,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = count)] threads: Option<usize>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         answer(slf, args, named, threads, false)
@@ -250,7 +250,7 @@ impl RuleSet {
     fn evaluate<'py>(
         slf: &Bound<'py, Self>,
         args: &Bound<'py, PyTuple>,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = count)] threads: Option<usize>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         answer(slf, args, named, threads, true)
@@ -262,7 +262,7 @@ impl RuleSet {
         &self,
         py: Python<'_>,
         frame: &Bound<'_, PyAny>,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = count)] threads: Option<usize>,
         with_reasons: bool,
     ) -> PyResult<Table> {
         let source = self.source();
@@ -332,7 +332,7 @@ impl RuleSet {
         py: Python<'_>,
         points: usize,
         output: Option<&str>,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = count)] threads: Option<usize>,
         fixed: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<DecisionMap> {
         let source = self.source();

@@ -297,9 +297,9 @@ def tune(
         "iterations": iterations,
         "seed": seed,
         "folds": folds,
-        "threads": threads,
     }
-    found, was_interrupted = _tune(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), options)
+    rows = _rows(model, data, columns, weight, group_by, skip_bad_rows)
+    found, was_interrupted = _tune(model, rows, options, threads)
     moved = [Moved(*one) for one in found.pop("moved")]
     worth = found.pop("validation")
     if worth is not None:
