@@ -30,6 +30,7 @@ __all__ = [
     "_learn",
     "_page",
     "_simplify",
+    "_built_in",
     "_tune",
 ]
 
@@ -319,4 +320,5 @@ def _learn(rule_set: RuleSet, rows: dict[str, Any], options: dict[str, Any]) -> 
 def _simplify(
     rule_set: RuleSet, columns: list[NDArray[np.float64]], options: dict[str, Any]
 ) -> dict[str, Any]: ...
+def _built_in(name: str) -> str | None: ...
 def _tune(rule_set: RuleSet, rows: dict[str, Any], options: dict[str, Any], threads: int | None) -> tuple[dict[str, Any], bool]: ...

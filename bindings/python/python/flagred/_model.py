@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._core import RuleSet
+from ._core import RuleSet, _built_in
 from ._edit import Document, Operators, Output, Rules, Variable, Variables, edit, plain, rule_lists
 from ._errors import DataError, RuleSetError
 from ._picture import Picture
@@ -314,7 +314,8 @@ def load(path: str | os.PathLike[str]) -> Model:
     Parameters
     ----------
     path
-        The file: YAML, FIS, FLL, FCL or FML, whatever its name.
+        The file: YAML, FIS, FLL, FCL or FML, whatever its name. Or a built-in rule set: ``flagred``,
+        ``flagred-battery`` or ``flagred-paper``. Such a name wins over a file that is called so.
 
     Raises
     ------
@@ -323,6 +324,9 @@ def load(path: str | os.PathLike[str]) -> Model:
     OSError
         The file cannot be read.
     """
+    built_in = _built_in(path) if isinstance(path, str) else None
+    if built_in is not None:
+        return _read(built_in, str(path))
     with open(path, "rb") as file:
         data = file.read()
     name = os.fspath(path)
