@@ -26,6 +26,15 @@ pub(crate) fn profile(name: &str) -> Result<&'static Shipped, Failure> {
     profile_at(Path::new(name)).ok_or_else(|| unknown(name))
 }
 
+/// How to change what is built in, where a path names it and no file is there.
+pub(crate) fn help_to_edit(path: &Path) -> Option<String> {
+    let known = profile_at(path).filter(|_| !path.exists())?;
+    let name = known.name;
+    Some(format!(
+        "`{name}` is built in; `flagred new NAME --from {name}` writes a copy to edit, with `--profile` that of the profile"
+    ))
+}
+
 fn unknown(name: &str) -> Failure {
     Failure::usage(format!("there is no built-in `{name}`"))
 }

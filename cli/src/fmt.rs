@@ -6,6 +6,7 @@ use authoring::layout::{Unformatted, formatted};
 use fuzzy::drawing::visible;
 
 use crate::{
+    built_in,
     diagnostics::{read_text, refuse},
     failure::{Exit, Failure},
     output::{Files, Replace, Stdout},
@@ -25,7 +26,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut exit = Exit::Clean;
     let mut out = Stdout::text();
     for path in &arguments.files {
-        let text = read_text(path)?;
+        let text =
+            read_text(path).map_err(|failure| failure.help_if(built_in::help_to_edit(path)))?;
         let file = path.display().to_string();
         let formatted = formatted(&text).map_err(|why| match why {
             Unformatted::NotYaml(findings) => refuse(&findings, &file, &text),

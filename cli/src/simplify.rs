@@ -64,6 +64,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             SimplifyError::NoRows => {
                 "the tables have a header and no rows; leave out `--rows-only`"
             }
+            SimplifyError::TooManyRules { .. } => {
+                "learn it with fewer rules, such as with a higher `--min-support`, or split it by outputs"
+            }
             _ => "`flagred check` shows what is wrong with the rule set",
         };
         Failure::unusable(format!("`{name}`"), &error).help(help)

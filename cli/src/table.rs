@@ -10,6 +10,8 @@ use std::{
     },
 };
 
+use fuzzy::diagnostic::quoted;
+
 use crate::failure::Failure;
 
 /// Bytes of a row, with the comments above it.
@@ -175,6 +177,7 @@ impl Header {
     /// The place of a column that must be there; `help` says what else could be done.
     pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
         if self.names.iter().filter(|column| *column == name).count() > 1 {
+            let name = quoted(name);
             let message = format!("`{}` has the column `{name}` more than once", self.file);
             return Err(Failure::unreadable(message).help("rename all but the one that is meant"));
         }
@@ -249,14 +252,15 @@ impl Cell {
     /// Why a cell is [`Cell::Bad`].
     pub(crate) fn problem(text: &[u8]) -> String {
         let text = String::from_utf8_lossy(text.trim_ascii());
+        let shown = quoted(&text);
         match text.parse::<f64>() {
-            Ok(_) => format!("`{text}` is not a finite number"),
+            Ok(_) => format!("`{shown}` is not a finite number"),
             Err(_) if text.is_empty() => "the cell is empty".to_owned(),
             Err(_) => match text.replacen(',', ".", 1).parse::<f64>() {
                 Ok(_) if text.contains(',') => {
-                    format!("`{text}` is not a number: the decimal mark is a point")
+                    format!("`{shown}` is not a number: the decimal mark is a point")
                 }
-                _ => format!("`{text}` is not a number"),
+                _ => format!("`{shown}` is not a number"),
             },
         }
     }

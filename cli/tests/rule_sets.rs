@@ -548,6 +548,23 @@ fn a_built_in_name_wins_over_a_file_and_a_path_is_the_file() {
 }
 
 #[test]
+fn commands_that_change_files_say_how_to_copy_what_is_built_in() {
+    for arguments in [
+        &["fmt", "flagred"][..],
+        &["fmt", "--check", "flagred"],
+        &["studio", "flagred"],
+    ] {
+        let (output, _) = flagred(arguments, "");
+        let told = errors(&output);
+        assert_eq!(output.status.code(), Some(3), "{told}");
+        assert!(
+            told.contains("`flagred new NAME --from flagred` writes a copy to edit"),
+            "{told}"
+        );
+    }
+}
+
+#[test]
 fn fmt_leaves_files_of_other_programs_alone() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("compose.yaml");

@@ -214,6 +214,36 @@ fn constants_stay_in_the_range_unless_asked() {
     assert!(written.contains("fast: {constant: 10}"), "{written}");
 }
 
+/// Rows in other units than the range: the constants end at its end, and the report says why.
+#[test]
+fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
+    let rows = "heat,speed\n5,1400\n15,1500\n25,1600\n35,1700\n";
+    let files = [("fan.yaml", CONSTANTS), ("rows.csv", rows)];
+    let arguments = ["--only", "speed", "--no-validation"];
+    let (code, out, err, written) = tune(&files, &arguments);
+    assert_eq!(code, Some(0), "{err}");
+    assert!(
+        out.contains(
+            "at bounds   speed.slow, speed.fast: the rows ask for values beyond the range;"
+        ),
+        "{out}"
+    );
+    let written = written.unwrap();
+    assert!(
+        written.contains("{slow: {constant: 10}, fast: {constant: 10}}"),
+        "{written}"
+    );
+    let (_, out, ..) = tune(&files, &[&arguments[..], &["--json"]].concat());
+    assert!(
+        out.contains("\"at_bounds\": [\n    \"speed.slow\""),
+        "{out}"
+    );
+    // The file tuned once more: nothing can move.
+    let files = [("fan.yaml", &*written), ("rows.csv", rows)];
+    let (_, out, ..) = tune(&files, &arguments);
+    assert!(out.contains("nothing: no step within the range"), "{out}");
+}
+
 #[test]
 fn numbers_are_rounded_to_three_digits_unless_asked() {
     let mut rows = String::from("heat,speed\n");

@@ -1,6 +1,7 @@
 //! Findings: what is wrong, where, and what to do about it.
 
 use alloc::{
+    borrow::Cow,
     format,
     string::{String, ToString},
     vec::Vec,
@@ -102,13 +103,55 @@ impl Position {
     }
 }
 
+/// The most characters of a text that a message quotes.
+const LONGEST_QUOTE: usize = 60;
+
+/// The most characters of a text that a help quotes: it may be a line to write.
+const LONGEST_ADVICE: usize = 200;
+
+/// A text from outside as messages quote it: at most 60 characters and `...`.
+///
+/// ```
+/// let digits = "1".repeat(1000);
+/// assert_eq!(fuzzy::diagnostic::quoted(&digits).len(), 63);
+/// assert_eq!(fuzzy::diagnostic::quoted("warm"), "warm");
+/// ```
+pub fn quoted(text: &str) -> Cow<'_, str> {
+    cut(text, LONGEST_QUOTE)
+}
+
+fn cut(text: &str, most: usize) -> Cow<'_, str> {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => Cow::Owned(format!("{}...", text.get(..end).unwrap_or_default())),
+        None => Cow::Borrowed(text),
+    }
+}
+
+/// Cuts what a message quotes in backticks. A quoted text may have backticks itself, so that what looks like words of the message
+/// is bounded, too.
+fn shortened(message: String, most: usize) -> String {
+    const LONGEST_WORDS: usize = 1000;
+    if message.len() <= most {
+        return message;
+    }
+    let parts = message.split('`').enumerate();
+    let parts = parts.map(|(i, part)| match i % 2 {
+        0 => cut(part, LONGEST_WORDS),
+        _ => cut(part, most),
+    });
+    // A text of backticks alone has many short parts.
+    const MOST_PARTS: usize = 1000;
+    let parts: Vec<Cow<'_, str>> = parts.take(MOST_PARTS).collect();
+    parts.join("`")
+}
+
 impl Diagnostic {
     /// An error.
     pub fn error(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Error,
             code,
-            message: message.into(),
+            message: shortened(message.into(), LONGEST_QUOTE),
             span,
             position: None,
             help: None,
@@ -135,14 +178,14 @@ impl Diagnostic {
     /// Adds what to do about it.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        self.help = Some(shortened(help.into(), LONGEST_ADVICE));
         self
     }
 
     /// Adds another span that explains it.
     #[must_use]
     pub fn related(mut self, span: Range<usize>, message: impl Into<String>) -> Self {
-        let message = message.into();
+        let message = shortened(message.into(), LONGEST_QUOTE);
         self.related.push(Related { span, message });
         self
     }
@@ -372,7 +415,7 @@ pub(crate) fn listed(words: &[&str]) -> String {
             list.push_str(if last { " and " } else { ", " });
         }
         list.push('`');
-        list.push_str(word);
+        list.push_str(&quoted(word));
         list.push('`');
     }
     if words.len() > MOST {

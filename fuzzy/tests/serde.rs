@@ -263,6 +263,41 @@ fn every_format_keeps_the_order_of_inputs_outputs_terms_and_blocks() {
     }
 }
 
+/// A bad entry in a list of variables, terms or blocks is named, with what was expected, and hides no other finding.
+#[test]
+fn a_bad_entry_of_a_list_is_named() {
+    let list: Model = UNSORTED.parse().unwrap();
+    let json = serde_json::to_string(&list).unwrap();
+    let cases = [
+        (
+            r#"{"name":"load","#,
+            r#"{"nome":"load","#,
+            "entry 2 of `inputs` has no `name`",
+        ),
+        (
+            r#"{"name":"quiet","constant":0}"#,
+            "5",
+            "expected a mapping with a `name` for entry 1 of the terms of `alarm`, found `5`",
+        ),
+        (
+            r#"{"name":"second","#,
+            r#"["a"], {"name":"second","#,
+            "expected a mapping with a `name` for entry 1 of `blocks`, found a list",
+        ),
+        (
+            r#"{"name":"load","#,
+            r#"{"name":"load","name":"mass","#,
+            "has no key `name`",
+        ),
+    ];
+    for (before, after, expected) in cases {
+        assert!(json.contains(before), "{json}");
+        let told = json.replacen(before, after, 1).parse::<Model>();
+        let told = told.unwrap_err().to_string();
+        assert!(told.contains(expected), "{told}");
+    }
+}
+
 #[test]
 fn mappings_that_were_sorted_are_read_as_before() {
     // What earlier versions wrote: the peaks of a partition find their order by their values.

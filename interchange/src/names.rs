@@ -1,6 +1,6 @@
 //! Names that a format can write.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use fuzzy::{
     Model,
@@ -22,7 +22,7 @@ pub(crate) struct Allowed {
 
 impl Allowed {
     /// The name itself, or one like it that the format takes and that is not taken.
-    fn name(&self, name: &str, taken: &[String]) -> String {
+    fn name(&self, name: &str, taken: &BTreeSet<String>) -> String {
         let letter = |c: char| if (self.is_letter)(c) { c } else { '_' };
         let mut plain: String = name.trim().chars().map(letter).collect();
         let begins = plain.starts_with(self.is_first);
@@ -36,6 +36,24 @@ impl Allowed {
             plain = others.find(|name| !is_taken(name)).unwrap_or_default();
         }
         plain
+    }
+
+    /// A name for each of these. Names that the format takes as they are stay, so that no other one takes their place.
+    fn names(&self, before: &[&str]) -> Vec<String> {
+        let mut taken = BTreeSet::new();
+        let mut stays = |name: &&str| {
+            self.name(name, &BTreeSet::new()) == **name && taken.insert((*name).to_owned())
+        };
+        let stay: Vec<bool> = before.iter().map(&mut stays).collect();
+        let names = before.iter().zip(stay).map(|(name, stays)| {
+            if stays {
+                return (*name).to_owned();
+            }
+            let name = self.name(name, &taken);
+            taken.insert(name.clone());
+            name
+        });
+        names.collect()
     }
 }
 
@@ -51,7 +69,7 @@ pub(crate) fn is_plain_first(c: char) -> bool {
 
 /// A name that stands alone, as that of the rule set, in the form that a format takes; a note reports a change.
 pub(crate) fn one(name: &str, allowed: &Allowed, paper: &mut Paper) -> String {
-    let plain = allowed.name(name, &[]);
+    let plain = allowed.name(name, &BTreeSet::new());
     note(paper, name, &plain);
     plain
 }
@@ -60,15 +78,16 @@ pub(crate) fn one(name: &str, allowed: &Allowed, paper: &mut Paper) -> String {
 pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Model {
     let mut model = model.clone();
     let mut variables: BTreeMap<String, (String, BTreeMap<String, String>)> = BTreeMap::new();
-    let mut taken = vec![];
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    let before = model.inputs.iter().chain(outputs);
+    let before: Vec<&str> = before.map(|variable| variable.name.as_str()).collect();
+    let mut names = allowed.names(&before).into_iter();
     let mut rename = |variable: &mut Variable| {
-        let name = allowed.name(&variable.name, &taken);
-        taken.push(name.clone());
+        let name = names.next().unwrap_or_default();
         let mut terms = BTreeMap::new();
-        let mut names = vec![];
-        for term in &mut variable.terms {
-            let name = allowed.name(&term.name, &names);
-            names.push(name.clone());
+        let before: Vec<&str> = variable.terms.iter().map(|t| t.name.as_str()).collect();
+        let names = allowed.names(&before);
+        for (term, name) in variable.terms.iter_mut().zip(names) {
             note(paper, &term.name, &name);
             terms.insert(std::mem::replace(&mut term.name, name.clone()), name);
         }

@@ -158,25 +158,41 @@ impl<'r> Reader<'r, '_, '_> {
 
     fn condition(&mut self) -> Option<Condition> {
         if self.depth > DEEPEST_NESTING {
-            return self.unexpected(&format!("at most {DEEPEST_NESTING} brackets"));
+            return self.too_deep();
         }
         self.depth += 1;
         let condition = if self.take("not") {
-            Condition::Not(Box::new(self.condition()?))
+            self.negation()
         } else if self.take("(") {
-            let inner = self.any_of()?;
-            self.expect(")")?;
-            inner
+            self.any_of().filter(|_| self.expect(")").is_some())
         } else {
-            let (variable, hedges, term) = self.proposition("an input")?;
-            Condition::Is(Proposition {
-                variable,
-                hedges,
-                term,
-            })
+            self.is_term()
         };
         self.depth -= 1;
-        Some(condition)
+        condition
+    }
+
+    // What recursion passes through has small frames: the rest is in functions of its own.
+    fn too_deep<T>(&mut self) -> Option<T> {
+        let part = self.peek().unwrap_or(self.end);
+        let message = format!("a condition has at most {DEEPEST_NESTING} brackets in each other");
+        let help = "write it as several rules";
+        self.draft.error("rule-too-deep", part, message, help);
+        None
+    }
+
+    fn negation(&mut self) -> Option<Condition> {
+        let inner = self.condition()?;
+        Some(Condition::Not(Box::new(inner)))
+    }
+
+    fn is_term(&mut self) -> Option<Condition> {
+        let (variable, hedges, term) = self.proposition("an input")?;
+        Some(Condition::Is(Proposition {
+            variable,
+            hedges,
+            term,
+        }))
     }
 
     /// `variable is hedge* term`. A hedge that no term follows is the term, but for `any`, which needs none.

@@ -114,6 +114,78 @@ const TEXTS: [(Format, &str); 4] = [
     (Format::Fml, FML),
 ];
 
+/// A rule with `deep` brackets around its condition, in each format whose rules have brackets.
+fn bracketed(deep: usize) -> [String; 2] {
+    let condition = format!("{}x is low{}", "(".repeat(deep), ")".repeat(deep));
+    [
+        format!(
+            "FUNCTION_BLOCK f\nVAR_INPUT x : REAL; END_VAR\nVAR_OUTPUT y : REAL; END_VAR\n\
+             FUZZIFY x TERM low := (0, 1) (1, 0); RANGE := (0 .. 1); END_FUZZIFY\n\
+             DEFUZZIFY y TERM low := (0, 1) (1, 0); METHOD : COG; RANGE := (0 .. 1); END_DEFUZZIFY\n\
+             RULEBLOCK r AND : MIN; RULE 1 : IF {condition} THEN y IS low; END_RULEBLOCK\nEND_FUNCTION_BLOCK\n"
+        ),
+        format!(
+            "Engine: e\nInputVariable: x\n  range: 0 1\n  lock-range: true\n  term: low Ramp 1 0\nOutputVariable: y\n  range: 0 1\n  \
+             aggregation: Maximum\n  defuzzifier: Centroid 100\n  default: nan\n  term: low Ramp 1 0\n\
+             RuleBlock: r\n  conjunction: Minimum\n  implication: Minimum\n  activation: General\n  rule: if {condition} then y is low\n"
+        ),
+    ]
+}
+
+/// Brackets are counted, not trusted to the stack: a small thread is enough.
+#[test]
+fn brackets_in_each_other_are_bounded_and_need_little_stack() {
+    let read = || {
+        for (deep, is_read) in [(64, true), (65, false), (100_000, false)] {
+            for text in bracketed(deep) {
+                let read = interchange::document(&text);
+                match read {
+                    Ok(_) => assert!(is_read, "{deep}"),
+                    Err(findings) => {
+                        let told = findings.to_string();
+                        assert!(!is_read, "{told}");
+                        assert!(told.contains("rule-too-deep") && told.len() < 500, "{told}");
+                    }
+                }
+            }
+        }
+    };
+    let thread = std::thread::Builder::new().stack_size(256 * 1024);
+    thread.spawn(read).unwrap().join().unwrap();
+}
+
+/// A word of 200 kB is quoted by its beginning, whatever reads it.
+#[test]
+fn long_words_are_cut_in_messages() {
+    let long = "x".repeat(200_000);
+    let texts = [
+        bracketed(0)[0].replace("x is low", &format!("x is {long}")),
+        bracketed(0)[0].replace("METHOD : COG", &format!("METHOD : {long}")),
+        bracketed(0)[0].replace("x is low", &format!("x {long} low")),
+        bracketed(0)[1].replace("x is low", &format!("x is {long}")),
+        bracketed(0)[1].replace("low Ramp", &format!("low {long}")),
+        bracketed(0)[1].replace("  range: 0 1", &format!("  range: 0 {long}")),
+        format!("[System]\nName='a'\nNumInputs={long}\n"),
+        format!(
+            "[System]\nName='a'\nType='{long}'\nNumInputs=1\n[Input1]\nName='x'\nRange=[0 {long}]\n"
+        ),
+        format!("<fuzzySystem name=\"a\"><{long}/></fuzzySystem>"),
+        format!(
+            "fuzzy: 1\nname: a\ninputs: {{x: {{range: [0, 1], partition: [a, b]}}}}\noutputs: {{y: {{range: [0, 1], partition: [a, b]}}}}\nrules: [IF x IS {long} THEN y IS a, IF x {long} a THEN y IS a, IF {long} IS a THEN y IS a]\n"
+        ),
+        format!(
+            "fuzzy: 1\nname: a\n{long}: 1\ninputs: {{x: {{range: [0, {long}], partition: [a, b]}}}}\n"
+        ),
+    ];
+    for text in texts {
+        let told = interchange::document(&text).unwrap_err();
+        for finding in &told.0 {
+            let shown = finding.to_string();
+            assert!(shown.len() < 700, "{} {}", shown.len(), &shown[..300]);
+        }
+    }
+}
+
 #[test]
 fn each_format_becomes_a_rule_set() {
     let mut read = String::new();

@@ -164,6 +164,29 @@ fn names_of_rule_sets_are_written_so_that_they_can_be_read() {
     }
 }
 
+/// A name that the format takes as it is stays, even where another one before it would become the same.
+#[test]
+fn valid_names_stay_beside_names_that_change() {
+    let text = "fuzzy: 1\nname: names\n\
+                inputs: {my temp: {range: [0, 1], partition: [too low, too_low]}, my_temp: {range: [0, 1], partition: [low, high]}}\n\
+                outputs: {y: {range: [0, 1], defuzzifier: weighted_average, terms: {low: {constant: 0}, high: {constant: 1}}}}\n\
+                rules:\n  - IF 'my temp' IS 'too low' AND my_temp IS low THEN y IS low\n  \
+                - IF 'my temp' IS too_low AND my_temp IS high THEN y IS high\n";
+    let model: Model = text.parse().unwrap_or_else(|findings| panic!("{findings}"));
+    for format in [Format::Fis, Format::Fll, Format::Fcl, Format::Fml] {
+        let written = interchange::write(&model, format, Losses::Accept)
+            .unwrap_or_else(|findings| panic!("{findings}"));
+        let again = interchange::read(&written.text, format, Losses::Refuse)
+            .unwrap_or_else(|findings| panic!("{findings}\n{}", written.text));
+        let [first, second] = &again.model.inputs[..] else {
+            panic!("{}", written.text);
+        };
+        assert_eq!(second.name, "my_temp", "{}", written.text);
+        assert_eq!(first.terms[1].name, "too_low", "{}", written.text);
+        same_values(&model, &again.model, "names");
+    }
+}
+
 #[test]
 fn what_no_format_can_carry_is_refused_even_where_losses_are_accepted() {
     let tsukamoto =

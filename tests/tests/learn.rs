@@ -25,6 +25,39 @@ fn learn(arguments: &[&str]) -> Output {
     flagred().arg("learn").args(arguments).output().unwrap()
 }
 
+/// Each reason why rules cannot be learned has a help of its own.
+#[test]
+fn a_rule_set_that_cannot_be_learned_into_is_refused_with_what_to_do() {
+    let folder = Folder::new();
+    let data = folder.file("data.csv", "margin,spread,risk\n0.1,0.2,50\n");
+    let output = "  risk: {range: [0, 100], partition: [very_low, low, medium, high, very_high]}";
+    let cases = [
+        (
+            VARIABLES.replace(output, "  risk: {range: [0, 100], defuzzifier: weighted_average, terms: {low: {linear: {margin: 2, constant: 1}}, high: {constant: 90}}}"),
+            "help: replace it by a number, such as `{constant: 5}`; `tune` fits functions",
+        ),
+        (
+            VARIABLES.replace(output, "  risk: {range: [0, 100], defuzzifier: weighted_average, terms: {low: {function: 2 * margin}, high: {constant: 90}}}"),
+            "help: replace it by a number, such as `{constant: 5}`; `tune` fits functions",
+        ),
+        (
+            VARIABLES.replace("rules: []", "  more: {range: [0, 1], partition: [a, b]}\nrules: []"),
+            "help: learn from a rule set with this output alone",
+        ),
+        (
+            VARIABLES.replace("rules: []", "blocks: {one: {rules: [IF margin IS low THEN risk IS low]}}"),
+            "help: remove `blocks`",
+        ),
+    ];
+    for (text, expected) in cases {
+        let model = folder.file("model.yaml", &text);
+        let output = learn(&[&model, &data, "-o", &folder.at("out.yaml")]);
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains(expected), "{told}");
+    }
+}
+
 #[test]
 fn rows_become_a_rule_set_with_its_provenance() {
     let folder = Folder::new();

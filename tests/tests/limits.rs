@@ -67,6 +67,44 @@ fn rule_sets_and_profiles_have_a_size_limit() {
 
 /// A profile may come from somebody else.
 #[test]
+fn many_rules_are_not_simplified_and_many_inputs_not_mapped() {
+    let folder = Folder::new();
+    let rule = "  - IF wind IS calm THEN risk IS low\n";
+    let rules = RULE_SET.split_once("rules:").unwrap().0.to_owned() + "rules:\n";
+    let many = folder.file("many.yaml", rules + &rule.repeat(20_000));
+    let out = folder.at("out.yaml");
+    refused(
+        &["simplify", &many, "-o", &out],
+        "the rule set has 20000 rules; at most 1000 are simplified",
+    );
+    let input = |i: u32| format!("  x{i}: {{range: [0, 1], partition: [low, high]}}\n");
+    let inputs: String = (0..17).map(input).collect();
+    let wide = format!(
+        "fuzzy: 1\nname: wide\ninputs:\n{inputs}outputs: {{y: {{range: [0, 1], partition: [low, high]}}}}\n\
+         rules: [IF x0 IS low THEN y IS low]\n"
+    );
+    refused(
+        &["map", "--csv", &folder.file("wide.yaml", wide)],
+        "the grid has 129140163 cells; a map has at most 10000000",
+    );
+}
+
+#[test]
+fn a_long_cell_is_quoted_by_its_beginning() {
+    let folder = Folder::new();
+    let rules = folder.file("wind.yaml", RULE_SET);
+    let long = "9x".repeat(100_000);
+    for table in [
+        format!("wind\n{long}\n"),
+        format!("wind,{long},{long}\n1,2,3\n"),
+        format!("{long}\n1\n"),
+    ] {
+        let output = run(&["eval", &rules, &folder.file("rows.csv", table)]);
+        assert!(output.stderr.len() < 1_000, "{}", output.stderr.len());
+    }
+}
+
+#[test]
 fn a_profile_names_rule_sets_of_its_own_folder() {
     let folder = Folder::new();
     fs::create_dir(folder.at("own")).unwrap();

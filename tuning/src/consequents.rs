@@ -16,6 +16,9 @@ use crate::{
 /// Pulls numbers that the rows say nothing about to what they are; relative to the largest curvature.
 const RIDGE: f64 = 1e-8;
 
+/// The largest such share. Numbers that the rows determine move by about this share of their steps less.
+const LARGEST_RIDGE: f64 = 1e-4;
+
 /// The rows whose firing strengths are held at a time.
 const ROWS: usize = 4096;
 
@@ -92,33 +95,39 @@ pub(crate) fn fit(
     };
     let (near, limits) = (limits(true), limits(beyond_range));
     let is_near = |(step, (low, high)): (&f64, &(f64, f64))| (*low..=*high).contains(step);
+    // Rules that always fire together could have constants of any size whose errors cancel, on these rows and no others. A
+    // larger ridge holds them at less than the width of the range from it. Where that does not help, the rows ask for more than
+    // the range, and the limits alone hold.
     let mut ridge = RIDGE;
-    while let Some(steps) = solve(squares.clone(), &products, ridge) {
-        // Rules that always fire together could have constants of any size whose errors cancel, on these rows and no others. A
-        // larger ridge holds them at less than the width of the range from it.
-        if !steps.iter().zip(&near).all(is_near) {
-            ridge *= 10.0;
-            continue;
-        }
-        let steps = within(&limits, steps, &squares, &products, ridge);
-        let mut terms = variable.terms.clone();
-        let mut rest = steps.iter();
-        for consequent in &consequents {
-            if let Some(term) = terms.get_mut(consequent.term) {
-                let (low, high) = bounds(variable, term, beyond_range);
-                consequent.move_by(&mut term.membership_function, &mut rest);
-                // Sums round.
-                if let MembershipFunction::Constant { value } = &mut term.membership_function {
-                    *value = value.clamp(low, high);
-                }
+    let mut steps = solve(squares.clone(), &products, ridge);
+    while ridge < LARGEST_RIDGE
+        && let Some(far) = &steps
+        && !far.iter().zip(&near).all(is_near)
+    {
+        ridge *= 10.0;
+        steps = solve(squares.clone(), &products, ridge);
+    }
+    let Some(steps) = steps else {
+        return Ok(());
+    };
+    let steps = within(&limits, steps, &squares, &products, ridge);
+    if !steps.iter().all(|step| step.is_finite()) {
+        return Ok(());
+    }
+    let mut terms = variable.terms.clone();
+    let mut rest = steps.iter();
+    for consequent in &consequents {
+        if let Some(term) = terms.get_mut(consequent.term) {
+            let (low, high) = bounds(variable, term, beyond_range);
+            consequent.move_by(&mut term.membership_function, &mut rest);
+            // Sums round.
+            if let MembershipFunction::Constant { value } = &mut term.membership_function {
+                *value = value.clamp(low, high);
             }
         }
-        if steps.iter().all(|step| step.is_finite())
-            && let Some(output) = model.outputs.first_mut()
-        {
-            output.variable.terms = terms;
-        }
-        break;
+    }
+    if let Some(output) = model.outputs.first_mut() {
+        output.variable.terms = terms;
     }
     Ok(())
 }

@@ -28,14 +28,16 @@ mod validation;
 
 use std::ops::ControlFlow;
 
-use fuzzy::{Model, check};
+use fuzzy::{Model, check, model::MembershipFunction};
 
 pub use data::Data;
 pub use folds::Interval;
 pub use numbers::{Moved, Number, numbers, with_numbers_of};
 pub use reliability::Bin;
 pub use settings::{Loss, Settings, TuneError};
-pub use simplify::{Difference, EQUAL, Simplified, SimplifyError, SimplifySettings, simplify};
+pub use simplify::{
+    Difference, EQUAL, MOST_RULES, Simplified, SimplifyError, SimplifySettings, simplify,
+};
 pub use validation::{CurvePoint, Validation, cross_validate, learning_curve};
 
 use objective::{Objective, Point};
@@ -54,6 +56,9 @@ pub struct Tuned {
     pub without_value: usize,
     /// The numbers that moved.
     pub moved: Vec<Moved>,
+    /// The constants, as `variable.term`, that are at the end of the range (see [`Settings::beyond_range`]) and whose loss would be
+    /// smaller beyond it.
+    pub at_bounds: Vec<String>,
     /// Whether the watcher ended the search.
     pub is_stopped: bool,
 }
@@ -177,6 +182,7 @@ pub fn tune(
             .iter()
             .filter(|place| place.is_nan())
             .count(),
+        at_bounds: at_bounds(&objective, &parameters, &best),
         moved: numbers::moved(model, &best.model),
         model: best.model,
         is_stopped,
@@ -226,6 +232,42 @@ fn rounded(
         at = nearest.unwrap_or(at);
     }
     Ok(at)
+}
+
+/// The constants at a bound whose loss is smaller a little beyond it.
+fn at_bounds(objective: &Objective<'_>, parameters: &Parameters, at: &Point) -> Vec<String> {
+    const BEYOND: f64 = 1e-3;
+    let Some(output) = at.model.outputs.first() else {
+        return Vec::new();
+    };
+    let variable = &output.variable;
+    let step = BEYOND * (variable.high - variable.low);
+    let mut names = Vec::new();
+    for (index, (low, high)) in parameters.bounded() {
+        let mut model = at.model.clone();
+        let terms = model
+            .outputs
+            .iter_mut()
+            .next()
+            .map(|o| &mut o.variable.terms);
+        let Some(term) = terms.and_then(|terms| terms.get_mut(index)) else {
+            continue;
+        };
+        let MembershipFunction::Constant { value } = &mut term.membership_function else {
+            continue;
+        };
+        *value += match *value {
+            value if value >= high => step,
+            value if value <= low => -step,
+            _ => continue,
+        };
+        let name = format!("{}.{}", variable.name, term.name);
+        let beyond = objective.point(model);
+        if beyond.is_ok_and(|beyond| beyond.slopes.loss < at.slopes.loss) {
+            names.push(name);
+        }
+    }
+    names
 }
 
 #[cfg(test)]

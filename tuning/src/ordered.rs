@@ -16,12 +16,17 @@ pub(crate) struct Ordered {
 struct Segment {
     from: f64,
     to: f64,
+    /// Whether `from` and `to` are the ends of the range, which a position may reach, and not fixed positions.
+    is_end: [bool; 2],
     /// From one position to the next, the ends included: none where it stays 0, else the least distance and the first share.
     distances: Vec<Option<(f64, f64)>>,
 }
 
 /// The least share of a segment that a distance begins with, so that it can grow.
 const LEAST_SHARE: f64 = 1e-3;
+
+/// A position closer to the end of the range than this share of its segment is at that end.
+const AT_END: f64 = 1e-9;
 
 impl Ordered {
     /// `positions` rise from `low` to `high`. Where one is closer to the next than `apart`, that distance is the least one.
@@ -34,7 +39,8 @@ impl Ordered {
             let is_beside_end = i == 0 || i == positions.len();
             inner.push((*position, if is_beside_end { 0.0 } else { apart }));
             if *is_fixed {
-                segments.push(Segment::new(&inner));
+                let is_end = [segments.is_empty(), i == positions.len()];
+                segments.push(Segment::new(&inner, is_end));
                 inner = vec![(*position, 0.0)];
             }
         }
@@ -83,19 +89,23 @@ impl Segment {
         let slack = 1e-12 * (self.to - self.from);
         let ends = positions.iter().copied().chain([self.to]);
         let mut before = self.from;
-        ends.zip(&self.distances).all(|(position, distance)| {
-            let least = distance.map_or(0.0, |(least, _)| least);
+        let last = self.distances.len().saturating_sub(1);
+        let mut distances = ends.zip(&self.distances).enumerate();
+        distances.all(|(i, (position, distance))| {
             let apart = position - before;
             before = position;
+            let [first_end, last_end] = self.is_end;
+            let is_beside_end = (first_end && i == 0) || (last_end && i == last);
             match distance {
-                Some(_) => apart > 0.0 && apart >= least - slack,
+                Some(_) if is_beside_end => apart >= 0.0,
+                Some((least, _)) => apart > 0.0 && apart >= least - slack,
                 None => apart == 0.0,
             }
         })
     }
 
     /// Positions, each with the least distance from the one before; the first and the last are fixed.
-    fn new(positions: &[(f64, f64)]) -> Segment {
+    fn new(positions: &[(f64, f64)], is_end: [bool; 2]) -> Segment {
         let least = |pair: &[(f64, f64)]| {
             let [(before, _), (position, apart)] = *pair else {
                 return None;
@@ -117,6 +127,7 @@ impl Segment {
         Segment {
             from: end(positions.first()),
             to: end(positions.last()),
+            is_end,
             distances,
         }
     }
@@ -150,6 +161,21 @@ impl Segment {
         let touching = touching.count() + 1;
         let last = positions.len().saturating_sub(touching).max(first);
         for position in positions.iter_mut().skip(last) {
+            *position = self.to;
+        }
+        // What is pulled beyond the range comes as close to its end as the free numbers allow: then it is at that end.
+        let near = AT_END * (self.to - self.from);
+        let [first_end, last_end] = self.is_end;
+        if let Some(position) = positions.get_mut(first).filter(|_| first_end)
+            && *position - self.from < near
+        {
+            *position = self.from;
+        }
+        if let Some(position) = last.checked_sub(1).and_then(|i| positions.get_mut(i))
+            && last_end
+            && last > first
+            && self.to - *position < near
+        {
             *position = self.to;
         }
     }

@@ -182,6 +182,26 @@ impl Parameters {
         limits
     }
 
+    /// The constants of the first output that may move, by the index of their term, and their bounds.
+    pub(crate) fn bounded(&self) -> Vec<(usize, (f64, f64))> {
+        let Some(output) = self.model.outputs.first() else {
+            return Vec::new();
+        };
+        let searched = self
+            .variables
+            .iter()
+            .flat_map(|(_, movable)| match movable {
+                Movable::Consequents(terms) => terms.iter().map(|(term, _)| *term).collect(),
+                _ => Vec::new(),
+            });
+        let moving: Vec<usize> = self.fitted.iter().copied().chain(searched).collect();
+        let terms = output.variable.terms.iter().enumerate();
+        let bounded = terms.filter(|(index, _)| moving.contains(index));
+        let bounded =
+            bounded.map(|(index, term)| (index, bounds(&output.variable, term, self.beyond_range)));
+        bounded.collect()
+    }
+
     /// Whether a model keeps order and least distances, constants their bounds, and what is fixed stays.
     pub(crate) fn keeps(&self, model: &Model) -> bool {
         let outputs = self.model.outputs.iter().zip(&model.outputs);

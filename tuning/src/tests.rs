@@ -444,6 +444,73 @@ fn constants_end_at_the_best_place_within_the_range() {
     assert_eq!(numbers(&outside.unwrap().model)[3].value, 12.0);
 }
 
+/// The rows say nothing about one of two constants alone, and ask for values far above the range: both end at its upper end.
+#[test]
+fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
+    let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
+    for target in [50.0, 1e3, 1e6] {
+        let data = Data {
+            truths: vec![target; heat.len()],
+            inputs: vec![heat.clone()],
+            ..Data::default()
+        };
+        for (beyond_range, end) in [(false, 10.0), (true, 20.0)] {
+            let settings = Settings {
+                only: vec!["speed".into()],
+                beyond_range,
+                ..Settings::default()
+            };
+            let tuned = tune(&constants([3.0, 4.0]), &data, &settings, &mut go_on).unwrap();
+            let values: Vec<f64> = tuned.moved.iter().map(|moved| moved.after).collect();
+            assert_eq!(values, [end, end], "{target}");
+            assert!(tuned.after < tuned.before);
+            assert_eq!(tuned.at_bounds, ["speed.slow", "speed.fast"]);
+        }
+    }
+}
+
+/// One constant is far beyond the range and the other one inside: that one is at its best place, not held back.
+#[test]
+fn a_constant_inside_is_at_its_best_place_beside_one_at_the_end() {
+    let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
+    let truths = heat.iter().map(|heat| if *heat <= 2.0 { 6.0 } else { 1e4 });
+    let data = Data {
+        truths: truths.collect(),
+        inputs: vec![heat.clone()],
+        weights: heat
+            .iter()
+            .map(|heat| if *heat > 2.0 && *heat < 8.0 { 0.0 } else { 1.0 })
+            .collect(),
+        ..Data::default()
+    };
+    let settings = Settings {
+        only: vec!["speed".into()],
+        ..Settings::default()
+    };
+    let tuned = tune(&constants([3.0, 4.0]), &data, &settings, &mut go_on).unwrap();
+    let values: Vec<f64> = tuned.moved.iter().map(|moved| moved.after).collect();
+    assert_eq!(values, [6.0, 10.0]);
+    assert_eq!(tuned.at_bounds, ["speed.fast"]);
+}
+
+/// A peak that the rows pull out of the range ends at its end, not a rounding error away from it.
+#[test]
+fn a_peak_ends_at_the_end_of_the_range_exactly() {
+    let heat: Vec<f64> = (0..=40).map(|i| f64::from(i) / 4.0).collect();
+    let data = Data {
+        truths: heat.iter().map(|heat| 5.0 + heat / 2.0).collect(),
+        inputs: vec![heat],
+        ..Data::default()
+    };
+    let settings = Settings {
+        only: vec!["heat".into()],
+        ..Settings::default()
+    };
+    let tuned = tune(&constants([0.0, 10.0]), &data, &settings, &mut go_on).unwrap();
+    let peaks = tuned.model.inputs[0].partition_peaks().unwrap();
+    assert_eq!(peaks[0], 0.0, "{peaks:?}");
+}
+
 #[test]
 fn numbers_of_another_model_are_taken_where_it_has_the_same_terms() {
     let (one, other) = (constants([1.0, 2.0]), constants([3.0, 4.0]));

@@ -30,7 +30,8 @@ impl<'py> Arrays<'py> {
             let array = array
                 .is_c_contiguous()
                 .then(|| array.try_readonly().ok())??;
-            Some(array)
+            // It may be in one piece and not aligned.
+            array.as_slice().is_ok().then_some(array)
         });
         let arrays: Vec<_> = arrays.collect::<Option<_>>()?;
         let shape = arrays.first()?.shape().to_vec();

@@ -25,7 +25,7 @@ use crate::{
     flight::FlightData,
     profile::Profile,
     table::{Table, known},
-    threads::{interruptible, pool},
+    threads::{count, interruptible, pool},
 };
 
 /// What came of many flights; `flagred.Evaluation` is made of it.
@@ -203,7 +203,7 @@ impl EvaluationData {
         profiles: Vec<PyRef<'_, Profile>>,
         horizon_s: f64,
         skip_bad_logs: bool,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = count)] threads: Option<usize>,
     ) -> PyResult<Self> {
         if !(horizon_s > 0.0 && horizon_s.is_finite()) {
             let help = "write a number of seconds above 0".to_owned();

@@ -101,7 +101,9 @@ fn learn_rules(
     if !options.keep_rules {
         model.rules.clear();
     }
-    let mut learner = Learner::new(&model, settings.clone()).map_err(Failed::data)?;
+    let learner = Learner::new(&model, settings.clone());
+    let mut learner =
+        learner.map_err(|error| Failed::Data(error.to_string(), Some(error.help().into())))?;
     let (mut rows, mut refused) = (Vec::with_capacity(all.len()), Vec::new());
     for (place, row) in all.into_iter().enumerate() {
         match learner.add(&row.values, row.weight) {
@@ -113,7 +115,7 @@ fn learn_rules(
         return Err(Failed::Refused(refused));
     }
     if rows.is_empty() {
-        return Err(Failed::Data("there are no rows to learn from".into()));
+        return Err(Failed::data("there are no rows to learn from"));
     }
     let validation = match options.validation {
         true => {

@@ -39,7 +39,7 @@ mod _core {
         map::DecisionMap,
         monitor::{MonitorData, Update},
         outcome::{Outcome, Outcomes},
-        profile::Profile,
+        profile::{_built_in, Profile},
         rule_set::RuleSet,
         simplify::_simplify,
         table::Table,

@@ -46,6 +46,15 @@ impl Profile {
     }
 }
 
+/// The text of a built-in rule set.
+#[pyfunction]
+pub(crate) fn _built_in(name: &str) -> Option<&'static str> {
+    let mut known = shipped::RULE_SETS.iter();
+    known
+        .find(|known| known.name == name)
+        .map(|known| known.text)
+}
+
 #[pymethods]
 impl Profile {
     #[new]

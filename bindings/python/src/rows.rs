@@ -43,18 +43,19 @@ impl Rows<'_> {
 /// Why there is no result.
 pub(crate) enum Failed {
     Refused(Vec<String>),
-    Data(String),
+    /// A message, and what to do.
+    Data(String, Option<String>),
     Findings(Findings),
 }
 
 impl Failed {
     pub(crate) fn data(error: impl std::fmt::Display) -> Failed {
-        Failed::Data(error.to_string())
+        Failed::Data(error.to_string(), None)
     }
 
     pub(crate) fn raise(self, py: Python<'_>) -> PyErr {
         match self {
-            Failed::Data(message) => data_error(message, None),
+            Failed::Data(message, help) => data_error(message, help),
             Failed::Findings(findings) => rule_set_error(py, &findings, "<model>", ""),
             Failed::Refused(refused) => {
                 let plural = if refused.len() == 1 { "" } else { "s" };

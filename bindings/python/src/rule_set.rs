@@ -27,7 +27,7 @@ use crate::{
     map::DecisionMap,
     source::Source,
     table::Table,
-    threads::{interruptible, pool},
+    threads::{count, interruptible, pool},
 };
 
 /// A rule set. `flagred.Model` is made of it.
@@ -165,6 +165,12 @@ impl RuleSet {
         json.map_err(|error| data_error(error, None))
     }
 
+    /// The same with lists of named entries, whose order no sorting of keys changes.
+    fn _json_lists(&self) -> PyResult<String> {
+        let json = self.model(serde_json::to_string);
+        json.map_err(|error| data_error(error, None))
+    }
+
     /// Puts a document, in JSON, in the place of the model. Nothing changes where it has errors.
     fn _edit(&self, py: Python<'_>, json: &str) -> PyResult<()> {
         let tree: Result<Node, _> = serde_json::from_str(json);
@@ -215,7 +221,7 @@ impl RuleSet {
     fn __call__<'py>(
         slf: &Bound<'py, Self>,
         args: &Bound<'py, PyTuple>,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = count)] threads: Option<usize>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         answer(slf, args, named, threads, false)
@@ -244,7 +250,7 @@ impl RuleSet {
     fn evaluate<'py>(
         slf: &Bound<'py, Self>,
         args: &Bound<'py, PyTuple>,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = count)] threads: Option<usize>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         answer(slf, args, named, threads, true)
@@ -256,7 +262,7 @@ impl RuleSet {
         &self,
         py: Python<'_>,
         frame: &Bound<'_, PyAny>,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = count)] threads: Option<usize>,
         with_reasons: bool,
     ) -> PyResult<Table> {
         let source = self.source();
@@ -326,7 +332,7 @@ impl RuleSet {
         py: Python<'_>,
         points: usize,
         output: Option<&str>,
-        threads: Option<usize>,
+        #[pyo3(from_py_with = count)] threads: Option<usize>,
         fixed: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<DecisionMap> {
         let source = self.source();

@@ -12,6 +12,7 @@ use std::{
     time::Duration,
 };
 
+use fuzzy::diagnostic::quoted;
 use pyo3::{
     exceptions::{PyKeyboardInterrupt, PyRuntimeError},
     prelude::*,
@@ -22,6 +23,23 @@ use crate::errors::data_error;
 
 /// The pools of this process, by the number of their threads.
 type Pools = (u32, HashMap<usize, Arc<ThreadPool>>);
+
+/// The number of threads that Python gives.
+pub(crate) fn count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    value.extract().map_err(|_| {
+        let shown = value
+            .repr()
+            .map_or_else(|_| "?".into(), |text| text.to_string());
+        let message = format!(
+            "`threads` is {}; it must be a whole number from 1",
+            quoted(&shown)
+        );
+        data_error(
+            message,
+            Some("leave it out for as many threads as there are cores".into()),
+        )
+    })
+}
 
 /// Refuses 0 threads.
 pub(crate) fn checked(threads: Option<usize>) -> PyResult<()> {

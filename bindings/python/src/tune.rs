@@ -16,7 +16,7 @@ use tuning::{Data, Loss, Settings, TuneError, cross_validate};
 use crate::{
     rows::{Failed, Rows, choice, claims},
     rule_set::RuleSet,
-    threads::{pool, stoppable},
+    threads::{count, pool, stoppable},
 };
 
 #[derive(FromPyObject)]
@@ -35,7 +35,6 @@ pub(crate) struct TuneOptions {
     iterations: u32,
     seed: u64,
     folds: Option<u32>,
-    threads: Option<usize>,
 }
 
 /// What `flagred.Tuned` is made of.
@@ -48,6 +47,7 @@ pub(crate) struct Tuned {
     after: f64,
     without_value: usize,
     moved: Vec<(String, String, f64, f64)>,
+    at_bounds: Vec<String>,
     validation: Option<Validation>,
 }
 
@@ -94,17 +94,19 @@ impl TuneOptions {
 
 /// Numbers from rows, and whether Ctrl-C ended the search before its next step.
 #[pyfunction]
+#[pyo3(signature = (rule_set, rows, options, threads))]
 pub(crate) fn _tune(
     py: Python<'_>,
     rule_set: &RuleSet,
     rows: Rows<'_>,
     options: TuneOptions,
+    #[pyo3(from_py_with = count)] threads: Option<usize>,
 ) -> PyResult<(Tuned, bool)> {
     rule_set.compile(py)?;
     let settings = options.settings()?;
     let model = rule_set.model(Model::clone);
     let (all, skip) = (rows.rows(), rows.skip_bad_rows);
-    let pool = pool(options.threads)?;
+    let pool = pool(threads)?;
     let stop = Arc::new(AtomicBool::new(false));
     let is_stopped = Arc::clone(&stop);
     let (tuned, was_interrupted) = stoppable(py, &stop, move || {
@@ -147,6 +149,7 @@ fn tune_numbers(
         moved: moved
             .map(|one| (one.of, one.name, one.before, one.after))
             .collect(),
+        at_bounds: tuned.at_bounds,
         validation: validation.map(|validation| Validation {
             folds: validation.folds,
             before: interval(validation.before),

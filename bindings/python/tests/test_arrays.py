@@ -25,6 +25,38 @@ def one_by_one(model, *arrays):
     return np.array(values, dtype=np.float64).reshape(arrays[0].shape)
 
 
+ONE_INPUT = """
+fuzzy: 1
+name: one
+inputs: {x: {range: [0, 4], partition: [low, high]}}
+outputs: {y: {range: [0, 4], terms: {low: {constant: 1}, high: {constant: 3}}, defuzzifier: weighted_average}}
+rules: [IF x IS low THEN y IS low, IF x IS high THEN y IS high]
+"""
+
+
+def test_arrays_that_are_not_aligned_are_copied():
+    packed = np.zeros(5, dtype=[("tag", "u1"), ("x", "f8")])
+    packed["x"] = [0, 1, 2, 3, 4]
+    whole = np.frombuffer(b"\0" + packed["x"].tobytes(), dtype="f8", offset=1)
+    assert not whole.flags.aligned and whole.flags.c_contiguous
+    model = flagred.loads(ONE_INPUT)
+    expected = model(np.arange(5.0))
+    assert np.array_equal(model(whole), expected) and np.array_equal(model(packed["x"]), expected)
+
+
+@pytest.mark.parametrize("threads", [-1, 1.5, "two", 2**70])
+def test_threads_are_a_whole_number(threads):
+    model = flagred.loads(ONE_INPUT)
+    told = "`threads` is .*; it must be a whole number from 1"
+    for call in (model, model.evaluate):
+        with pytest.raises(ValueError, match=told):
+            call(np.arange(5.0), threads=threads)
+    with pytest.raises(ValueError, match=told):
+        model.map(points=3, threads=threads)
+    with pytest.raises(ValueError, match=told):
+        flagred.tune(model, {"x": [1.0, 2.0], "y": [1.0, 2.0]}, threads=threads)
+
+
 def test_arrays_have_the_bits_of_single_calls():
     service, food = np.random.default_rng(0).random((2, 5000)) * 14 - 2
     service[::17], food[::23] = np.nan, np.inf

@@ -1,5 +1,7 @@
 """Rule sets built and edited in Python."""
 
+import json
+
 import pytest
 
 import flagred
@@ -34,7 +36,10 @@ rules:
 """
     assert model == flagred.loads(text) == flagred.loads(model.to_yaml())
     assert model(35, 20) == flagred.loads(text)(35, 20)
-    assert model.to_dict()["inputs"]["humidity"]["terms"]["wet"] == {"gaussian": {"mean": 90, "sd": 20}}
+    document = model.to_dict()
+    assert [one["name"] for one in document["inputs"]] == ["temperature", "humidity"]
+    assert document["inputs"][1]["terms"][1] == {"name": "wet", "gaussian": {"mean": 90, "sd": 20}}
+    assert flagred.loads(json.dumps(document, sort_keys=True)) == model
 
 
 def test_every_conformance_model_round_trips():

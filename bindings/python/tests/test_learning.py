@@ -272,6 +272,8 @@ def test_tuned_numbers_are_short_and_rows_must_count():
     assert all(value <= 7 for value in fast)
     beyond = flagred.tune(fan, rows, only=["speed"], beyond_range=True)
     assert max(one.after for one in beyond.moved) > 7
+    far = flagred.tune(fan, {**rows, "speed": 1000 + heat}, only=["speed"])
+    assert [one.after for one in far.moved] == [7, 7] and far.at_bounds == ["speed.slow", "speed.fast"]
     for weight, told in [("none", "the weights of all rows are 0"), ("heat", None)]:
         if told is None:
             flagred.tune(fan, rows, weight=weight, folds=10)

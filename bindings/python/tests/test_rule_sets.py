@@ -16,6 +16,13 @@ from hypothesis import strategies as st
 import flagred
 
 
+def test_built_in_rule_sets_are_loaded_by_their_names():
+    for name in ("flagred", "flagred-battery", "flagred-paper"):
+        assert flagred.load(name).text == (ROOT / "rules" / f"{name}.yaml").read_text(encoding="utf-8")
+    with pytest.raises(OSError):
+        flagred.load("./flagred")
+
+
 def test_numbers_by_place_and_by_name(tip):
     value = tip(8, 9)
     assert type(value) is float

@@ -66,7 +66,7 @@ def test_partitions_are_made_from_the_data(spacing):
     x = np.concatenate((np.linspace(0, 1, 90), np.linspace(2, 10, 10)))[:, None]
     x = np.column_stack((x, np.arange(100) % 2, np.full(100, 7.0)))
     model = FuzzyRegressor(n_terms=4, spacing=spacing, tune=False).fit(x, x[:, 0]).rule_set_.to_dict()
-    peaks = [[*variable["partition"].values()] for variable in model["inputs"].values()]
+    peaks = [[*variable["partition"].values()] for variable in model["inputs"]]
     if spacing == "uniform":
         assert np.allclose(peaks[0], [0, 10 / 3, 20 / 3, 10])
     else:

@@ -12,7 +12,7 @@ use flagred::{
 use fuzzy::{
     Engine, Model,
     check::{self, Counterexample},
-    learn::{Direction, LearnError, Learned, Learner, Resolution, Settings},
+    learn::{Direction, Learned, Learner, Resolution, Settings},
     map::{DecisionMap, Grid},
     model::{Aggregation, Conjunction, Implication},
 };
@@ -85,15 +85,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         model.rules.clear();
     }
     let settings = settings(arguments);
-    let mut learner = Learner::new(&model, settings.clone()).map_err(|error| {
-        let help = match error {
-            LearnError::Outputs { .. } => {
-                "learn from a rule set with this output alone; outputs that chain are learned one by one"
-            }
-            _ => "name inputs and terms as the rule set does",
-        };
-        Failure::usage(format!("`{name}`: {error}")).help(help)
-    })?;
+    let mut learner = Learner::new(&model, settings.clone())
+        .map_err(|error| Failure::usage(format!("`{name}`: {error}")).help(error.help()))?;
     let data = rows::read(&arguments.rows, &model)?;
     let mut rows = Vec::with_capacity(data.rows.len());
     let mut refused = data.refused;

@@ -297,10 +297,11 @@ fn write_whole(
             arguments.model.display()
         ))
     };
-    let grid = Grid::new(&evaluated.engine, points)
-        .map_err(|error| no_map(&error).help("use fewer `--points`"))?;
-    let map = DecisionMap::new(&evaluated.engine, grid, evaluated.output)
-        .map_err(|error| no_map(&error))?;
+    let grid = Grid::new(&evaluated.engine, points).map_err(|error| no_map(&error))?;
+    let map = DecisionMap::new(&evaluated.engine, grid, evaluated.output).map_err(|error| {
+        let help = "use fewer `--points`, or `flagred eval` at the points of a table";
+        no_map(&error).help(help)
+    })?;
     let filling = evaluated.filling.map(|(filling, _)| filling);
     let axes = map.grid().axes().iter().map(|axis| &*axis.name);
     write_head(out, axes, map.output())?;

@@ -10,6 +10,7 @@ use authoring::provenance::digits;
 use sha2::{Digest, Sha256};
 
 use crate::{
+    built_in,
     diagnostics::{is_utf16, read_bytes, text},
     failure::Failure,
     output::{Files, Replace, can_replace},
@@ -47,10 +48,13 @@ impl EditedFile {
         }
         let found = fs::metadata(path).map_err(|error| {
             let failure = Failure::unreadable(format!("`{shown}` cannot be read: {error}"));
-            failure.help(match error.kind() {
-                ErrorKind::NotFound => "`flagred new NAME` writes a rule set to start from",
-                _ => "check the path",
-            })
+            failure.help(built_in::help_to_edit(path).unwrap_or_else(|| {
+                let help = match error.kind() {
+                    ErrorKind::NotFound => "`flagred new NAME` writes a rule set to start from",
+                    _ => "check the path",
+                };
+                help.into()
+            }))
         })?;
         if !found.is_file() {
             return Err(Failure::unreadable(format!("`{shown}` is not a file"))

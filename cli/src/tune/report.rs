@@ -161,7 +161,27 @@ pub(super) fn words(
         )?;
     }
     if tuned.moved.is_empty() {
-        writeln!(out, "moved       nothing: no step makes the loss smaller")?;
+        let within = match tuned.at_bounds.is_empty() {
+            true => "",
+            false => " within the range",
+        };
+        writeln!(
+            out,
+            "moved       nothing: no step{within} makes the loss smaller"
+        )?;
+    }
+    if !tuned.at_bounds.is_empty() {
+        let names = tuned.at_bounds.iter().map(|name| visible(name));
+        let names: Vec<String> = names.map(|name| name.into_owned()).collect();
+        let remedy = match arguments.beyond_range {
+            true => "check the units of the column, or widen `range`",
+            false => "check the units of the column, widen `range`, or use `--beyond-range`",
+        };
+        writeln!(
+            out,
+            "at bounds   {}: the rows ask for values beyond the range; {remedy}",
+            names.join(", ")
+        )?;
     }
     Ok(())
 }
@@ -181,6 +201,8 @@ pub(super) struct Document<'a> {
     /// `None` where it was not wanted.
     learning_curve: Option<Vec<OfPoint>>,
     moved: Vec<OfNumber<'a>>,
+    /// Constants at the end of the range whose loss would be smaller beyond it.
+    at_bounds: &'a [String],
 }
 
 #[derive(Serialize)]
@@ -263,6 +285,7 @@ impl<'a> Document<'a> {
                 points.collect()
             }),
             moved: moved.collect(),
+            at_bounds: &tuned.at_bounds,
         }
     }
 }

@@ -53,6 +53,19 @@ pub(super) fn changes(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
     found
 }
 
+/// The values at which alone `holds` is true, and not beside them.
+pub(super) fn points(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
+    let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
+        return Vec::new();
+    };
+    let is_alone = |x: &f64| {
+        let beside = [x.next_down(), x.next_up()];
+        let mut beside = beside.into_iter().filter(|x| (low..=high).contains(x));
+        holds(*x) && !beside.any(&holds)
+    };
+    values.iter().copied().filter(is_alone).collect()
+}
+
 /// The smallest number after `from` where `same` no longer holds. It holds at `from` and not at `to`.
 pub(super) fn bisect(mut from: f64, mut to: f64, same: impl Fn(f64) -> bool) -> f64 {
     loop {

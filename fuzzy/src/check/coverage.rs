@@ -2,7 +2,7 @@
 
 use alloc::{string::String, vec::Vec};
 
-use super::logic::{Cells, Level, Logic, halves};
+use super::logic::{Cells, Extent, Level, Logic, halves};
 use crate::model::{Model, Variable};
 
 /// A box of the input space in which no rule of an output reaches a degree.
@@ -78,7 +78,8 @@ pub(super) fn uncovered(model: &Model, output: &str, coverage: Option<f64>) -> B
                 .any(|c| c.output.text == output)
     };
     let conditions = model.rules.iter().filter(concludes);
-    let logic = Logic::new(model, conditions.map(|rule| &rule.rule.condition), level);
+    let conditions = conditions.map(|rule| &rule.rule.condition);
+    let logic = Logic::new(model, conditions, level, Extent::Intervals);
     let (boxes, complete) = search(&logic);
     let boxes = merged(boxes);
     let mut found: Vec<Uncovered> = boxes

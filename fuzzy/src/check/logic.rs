@@ -41,6 +41,15 @@ impl Level {
     }
 }
 
+/// Which values an analysis looks at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Extent {
+    /// Intervals alone: single values have no share of a range.
+    Intervals,
+    /// Single values, too.
+    Points,
+}
+
 /// The formulas of some conditions, and the cells they are evaluated on.
 pub(super) struct Logic {
     /// The cuts of each input, rising, both ends of the range included.
@@ -84,6 +93,7 @@ impl Logic {
         model: &'m Model,
         conditions: impl Iterator<Item = &'m Condition>,
         level: Level,
+        extent: Extent,
     ) -> Self {
         let mut reader = Reader {
             model,
@@ -94,23 +104,34 @@ impl Logic {
         let formulas = conditions.map(|c| reader.formula(c, level)).collect();
         let found = reader.found;
         let mut cuts: Vec<Vec<f64>> = Vec::with_capacity(model.inputs.len());
+        // Where a literal is true at a single value, such as that of a singleton, this value is a cell of its own.
+        let mut points: Vec<Vec<f64>> = vec![Vec::new(); model.inputs.len()];
         let values: Vec<Vec<f64>> = model.inputs.iter().map(axis::values).collect();
         for variable in &model.inputs {
             cuts.push(vec![variable.low, variable.high]);
         }
         for key in &found {
-            if let (Some(input), Some(values), Some(cuts)) = (
+            if let (Some(input), Some(values), Some(cuts), Some(points)) = (
                 model.inputs.get(key.input),
                 values.get(key.input),
                 cuts.get_mut(key.input),
+                points.get_mut(key.input),
             ) {
                 cuts.extend(axis::changes(values, |x| key.holds(input, x)));
+                if extent == Extent::Points {
+                    points.extend(axis::points(values, |x| key.holds(input, x)));
+                }
             }
         }
-        for (cuts, variable) in cuts.iter_mut().zip(&model.inputs) {
+        for ((cuts, mut points), variable) in cuts.iter_mut().zip(points).zip(&model.inputs) {
             cuts.retain(|cut| (variable.low..=variable.high).contains(cut));
+            points.sort_by(f64::total_cmp);
+            points.dedup();
+            cuts.retain(|cut| points.binary_search_by(|x| x.total_cmp(cut)).is_err());
             cuts.sort_by(f64::total_cmp);
             cuts.dedup();
+            cuts.extend(points.iter().flat_map(|x| [*x, *x]));
+            cuts.sort_by(f64::total_cmp);
         }
         let literal = |key: &Key| {
             let mut holds_before = vec![0];

@@ -205,7 +205,7 @@ pub fn counterexamples(
     Ok(found.collect())
 }
 
-/// Checks a rule set that was read: its errors, or else the analysis, as located findings.
+/// Checks a rule set that was read: its errors, or else the warnings of reading and the analysis, as located findings.
 ///
 /// A rule set without rules is read with a warning, because rules are learned into it; here it is an error.
 ///
@@ -224,7 +224,8 @@ pub fn document(
         Err(findings) => return Ok((findings, None)),
     };
     let report = check(&engine, options)?;
-    let findings = report.findings(&document.model, &document.spans);
+    let mut findings = document.warnings.0.clone();
+    findings.extend(report.findings(&document.model, &document.spans));
     Ok((Findings::locate(findings, text), Some(report)))
 }
 

@@ -194,7 +194,9 @@ pub(super) fn holes(input: &Variable) -> Vec<Hole> {
         match (covered(x), start, before) {
             (false, None, None) => start = Some(x),
             (false, None, Some(last)) => {
-                start = Some(axis::rounded(axis::bisect(last, x, covered)))
+                let low = axis::rounded(axis::bisect(last, x, covered));
+                let is_thin = low - last <= THIN * (input.high - input.low);
+                start = Some(if is_thin { last } else { low });
             }
             (true, Some(low), Some(last)) => {
                 let high = axis::rounded(axis::bisect(last, x, |x| !covered(x)));

@@ -29,6 +29,50 @@ fn paper() -> &'static str {
 }
 
 #[test]
+fn terms_at_a_single_value_fire_there() {
+    let text = |rules: &str| {
+        format!(
+            "fuzzy: 1\nname: a\ninputs:\n  x: {{range: [0, 1], partition: [low, high]}}\n  \
+             mode: {{range: [0, 2], terms: {{off: {{singleton: 0}}, on: {{singleton: 0.12345678901234}}, \
+             far: {{singleton: 2}}, wide: {{trapezoid: [0.5, 1, 2, 2]}}}}}}\n{OUTPUTS}\nrules:\n{rules}"
+        )
+    };
+    let all = "  - IF x IS low AND mode IS on THEN z IS low\n  - IF mode IS off AND NOT x IS low THEN z IS medium\n  \
+               - IF mode IS far AND mode IS wide THEN z IS high\n";
+    let (report, findings) = report_of(&text(all), &Options::default());
+    assert!(report.never_firing.is_empty());
+    assert!(report.unreachable.is_empty());
+    assert_eq!(report.holes[0].low, 0.0);
+    assert!(findings.iter().all(|f| f.code != "never-fires"));
+    // Two single values exclude each other.
+    let both = format!(
+        "{all}  - IF mode IS on AND mode IS far THEN z IS high\n  - IF mode IS on AND mode IS wide THEN z IS low\n"
+    );
+    let (report, _) = report_of(&text(&both), &Options::default());
+    assert_eq!(report.never_firing, [3, 4]);
+}
+
+#[test]
+fn warnings_of_reading_are_findings() {
+    let text = "fuzzy: 1
+name: fan
+inputs: {heat: {range: [0, 40], partition: {hot: 35, cool: 5}}}
+outputs: {speed: {range: [0, 10], partition: [slow, fast]}}
+rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
+";
+    let document = crate::yaml::parse(text).unwrap();
+    let (findings, report) = super::document(&document, text, &Options::default()).unwrap();
+    assert!(report.is_some());
+    let found = findings
+        .0
+        .iter()
+        .find(|one| one.code == "inverted-parameters");
+    let found = found.unwrap();
+    assert_eq!(found.severity, crate::diagnostic::Severity::Warning);
+    assert_eq!(found.position.map(|place| place.line), Some(3));
+}
+
+#[test]
 fn the_papers_rules_are_seen_through() {
     let (report, findings) = report_of(paper(), &Options::default());
     let boxes: Vec<&Uncovered> = report.uncovered.iter().filter(|one| !one.silent).collect();

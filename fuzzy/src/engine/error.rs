@@ -55,6 +55,13 @@ pub enum EvaluateError {
         /// The output's name.
         output: Arc<str>,
     },
+    /// A grid has more cells than a decision map takes.
+    TooManyCells {
+        /// How many; `usize::MAX` where there are more than fit.
+        cells: usize,
+        /// The most cells of a decision map.
+        most: usize,
+    },
 }
 
 impl fmt::Display for EvaluateError {
@@ -80,6 +87,10 @@ impl fmt::Display for EvaluateError {
             EvaluateError::RepeatedInput { name } => write!(f, "input `{name}` has two values"),
             EvaluateError::NoFields { message } => f.write_str(message),
             EvaluateError::InputNotFinite => f.write_str("an input is not a finite number"),
+            EvaluateError::TooManyCells { cells, most } => match *cells {
+                usize::MAX => write!(f, "the grid has more than {most} cells, the most of a map"),
+                cells => write!(f, "the grid has {cells} cells; a map has at most {most}"),
+            },
             EvaluateError::NoRuleFired { output } => {
                 write!(f, "no rule fired for output `{output}`")
             }

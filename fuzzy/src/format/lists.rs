@@ -3,22 +3,25 @@
 //! Some formats sort the keys of a mapping, and the order of these parts has a meaning: inputs are evaluated by position. So serde
 //! writes lists, and lists are read wherever mappings are.
 
-use alloc::{borrow::Cow, vec::Vec};
+use alloc::{borrow::Cow, format, string::String, vec::Vec};
 
-use crate::tree::{Node, Value};
+use crate::{
+    diagnostic::Diagnostic,
+    tree::{Node, Value},
+};
 
 const NAME: &str = "name";
 
-/// Replaces the lists of named entries by mappings, which the reader knows.
-pub(super) fn to_mappings(tree: &Node) -> Cow<'_, Node> {
+/// Replaces the lists of named entries by mappings, which the reader knows. An entry without a name is a finding and left out.
+pub(super) fn to_mappings<'t>(tree: &'t Node, findings: &mut Vec<Diagnostic>) -> Cow<'t, Node> {
     let has_lists = ["inputs", "outputs", "blocks"]
         .into_iter()
         .any(|key| child(tree, key).is_some_and(|part| has_list(key, part)));
     if !has_lists {
         return Cow::Borrowed(tree);
     }
-    Cow::Owned(changed(tree.clone(), &mut |part| {
-        if let Some(mapping) = mapping(part) {
+    Cow::Owned(changed(tree.clone(), &mut |what, part| {
+        if let Some(mapping) = mapping(what, part, findings) {
             *part = mapping;
         }
     }))
@@ -27,7 +30,7 @@ pub(super) fn to_mappings(tree: &Node) -> Cow<'_, Node> {
 /// Replaces the mappings by lists of named entries.
 #[cfg(feature = "serde")]
 pub(super) fn from_mappings(tree: Node) -> Node {
-    changed(tree, &mut |part| {
+    changed(tree, &mut |_, part| {
         if let Value::Mapping(entries) = &part.value {
             let items = entries.iter().map(|(name, entry)| {
                 let mut fields = Vec::from([(Node::text(NAME), name.clone())]);
@@ -52,47 +55,91 @@ fn has_list(key: &str, part: &Node) -> bool {
     }
 }
 
-/// Changes the terms of each variable, and then the inputs, the outputs and the blocks.
-fn changed(mut tree: Node, change: &mut impl FnMut(&mut Node)) -> Node {
+/// Changes the terms of each variable, and then the inputs, the outputs and the blocks. `change` gets the name of each for
+/// messages, such as ``the terms of `heat` ``.
+fn changed(mut tree: Node, change: &mut impl FnMut(&str, &mut Node)) -> Node {
     for (key, part) in entries_mut(&mut tree) {
         let Some(key) = key else { continue };
         if key == "inputs" || key == "outputs" {
-            let variables: Vec<&mut Node> = match &mut part.value {
-                Value::Mapping(entries) => entries.iter_mut().map(|(_, one)| one).collect(),
-                Value::List(items) => items.iter_mut().collect(),
+            let named = |name: Option<&str>| match name {
+                Some(name) => format!("the terms of `{name}`"),
+                None => format!("the terms of one of `{key}`"),
+            };
+            let variables: Vec<(String, &mut Node)> = match &mut part.value {
+                Value::Mapping(entries) => {
+                    let entries = entries.iter_mut();
+                    entries
+                        .map(|(name, one)| (named(text(name)), one))
+                        .collect()
+                }
+                Value::List(items) => {
+                    let items = items.iter_mut();
+                    items
+                        .map(|one| (named(child(one, NAME).and_then(text)), one))
+                        .collect()
+                }
                 Value::Scalar(_) => Vec::new(),
             };
-            for variable in variables {
+            for (what, variable) in variables {
                 for (key, terms) in entries_mut(variable) {
                     if key == Some("terms") {
-                        change(terms);
+                        change(&what, terms);
                     }
                 }
             }
         }
         if key == "inputs" || key == "outputs" || key == "blocks" {
-            change(part);
+            change(&format!("`{key}`"), part);
         }
     }
     tree
 }
 
-/// A list of named entries as a mapping; `None` of what is not one.
-fn mapping(list: &Node) -> Option<Node> {
+/// A list of named entries as a mapping; `None` of a list without mappings, which is not meant as one, and of what is not a list.
+fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<Node> {
     let Value::List(items) = &list.value else {
         return None;
     };
-    let entry = |item: &Node| {
+    let is_mapping = |item: &Node| matches!(item.value, Value::Mapping(_));
+    if !items.is_empty() && !items.iter().any(is_mapping) {
+        return None;
+    }
+    let mut entries = Vec::with_capacity(items.len());
+    for (i, item) in items.iter().enumerate() {
+        let entry = format!("entry {} of {what}", i + 1);
+        let help = "write the entries as `{name: NAME, ...}`";
         let Value::Mapping(fields) = &item.value else {
-            return None;
+            let finding = item.unexpected(&format!("a mapping with a `name` for {entry}"));
+            findings.push(finding.help(help));
+            continue;
         };
-        let is_name = |key: &Node| text(key) == Some(NAME);
-        let name = fields.iter().find(|(key, _)| is_name(key))?.1.clone();
-        let own = fields.iter().filter(|(key, _)| !is_name(key));
-        Some((name, with(item, Value::Mapping(own.cloned().collect()))))
-    };
-    let entries: Option<Vec<_>> = items.iter().map(entry).collect();
-    Some(with(list, Value::Mapping(entries?)))
+        let mut own = fields.clone();
+        match own.iter().position(|(key, _)| text(key) == Some(NAME)) {
+            Some(name) => {
+                let (_, name) = own.remove(name);
+                entries.push((name, with(item, Value::Mapping(own))));
+            }
+            None => {
+                let message = format!("{entry} has no `name`");
+                let finding = Diagnostic::error("missing-key", item.span.clone(), message);
+                // `- heat: {range: [0, 40]}` is a mapping of one entry.
+                let only = match own.as_slice() {
+                    [(key, value)] if is_mapping(value) => text(key).map(|key| (key, value)),
+                    _ => None,
+                };
+                findings.push(match only {
+                    Some((name, _)) => finding.help(format!(
+                        "write `{name}: {{...}}` without the `-`, or `- {{name: {name}, ...}}`"
+                    )),
+                    None => finding.help(help),
+                });
+                if only.is_some() {
+                    entries.extend(own);
+                }
+            }
+        }
+    }
+    Some(with(list, Value::Mapping(entries)))
 }
 
 /// Another value at the same place.

@@ -70,7 +70,8 @@ fn read_lacking(
 ) -> Result<Document, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let mut spans = Spans::default();
-    let model = model(&lists::to_mappings(tree), &mut spans, &mut findings);
+    let tree = lists::to_mappings(tree, &mut findings);
+    let model = model(&tree, &mut spans, &mut findings);
     if let Some(model) = &model {
         let mut invalid = validate(model, &spans);
         for finding in invalid.iter_mut().filter(|f| may_lack(model, f)) {
@@ -105,7 +106,9 @@ pub struct Partial {
 #[doc(hidden)]
 pub fn read_partly(tree: &Node) -> Option<Partial> {
     let mut spans = Spans::default();
-    let model = model(&lists::to_mappings(tree), &mut spans, &mut Vec::new())?;
+    let mut findings = Vec::new();
+    let tree = lists::to_mappings(tree, &mut findings);
+    let model = model(&tree, &mut spans, &mut findings)?;
     let mut variables = spans.inputs.iter().chain(&spans.outputs);
     let has_unread = |variable: &VariableSpans| {
         variable.partition.is_empty() && variable.terms.iter().any(|term| term.unread)

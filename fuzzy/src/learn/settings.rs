@@ -133,6 +133,24 @@ impl core::fmt::Display for LearnError {
 
 impl core::error::Error for LearnError {}
 
+impl LearnError {
+    /// What to do about it.
+    #[must_use]
+    pub fn help(&self) -> &'static str {
+        match self {
+            LearnError::Outputs { .. } => {
+                "learn from a rule set with this output alone; outputs that chain are learned one by one"
+            }
+            LearnError::Blocks => "remove `blocks` and its rules; add blocks again after learning",
+            LearnError::ReadsInputs { .. } => {
+                "replace it by a number, such as `{constant: 5}`; `tune` fits functions of inputs to rows, for rules that you write"
+            }
+            LearnError::NoTerms { .. } => "add terms, such as `partition: [low, medium, high]`",
+            LearnError::NoInput { .. } => "name inputs of the rule set",
+        }
+    }
+}
+
 /// Why a sample is invalid.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]

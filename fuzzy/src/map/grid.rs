@@ -70,11 +70,6 @@ pub enum GridError {
         /// The number of points.
         points: usize,
     },
-    /// The grid has too many cells.
-    TooManyCells {
-        /// The most cells of a grid.
-        most: usize,
-    },
     /// No axis has this name: it is no input, or it is fixed.
     NoAxis {
         /// The name.
@@ -95,7 +90,6 @@ impl core::fmt::Display for GridError {
             GridError::TooFewPoints { points } => {
                 write!(f, "an axis needs at least 2 points, not {points}")
             }
-            GridError::TooManyCells { most } => write!(f, "the grid has more than {most} cells"),
             GridError::NoAxis { name } => write!(f, "the grid has no axis `{name}`"),
             GridError::NotFinite { name, value } => {
                 write!(f, "the value {value} of `{name}` is not finite")
@@ -106,8 +100,8 @@ impl core::fmt::Display for GridError {
 
 impl core::error::Error for GridError {}
 
-/// The index of a cell fits 32 bits.
-const MOST_CELLS: usize = u32::MAX as usize;
+/// The most cells of a decision map: 240 MB.
+pub(super) const MOST_CELLS: usize = 10_000_000;
 
 impl Axis {
     /// The coordinate of a point: `low + i (high - low) / (points - 1)`, and exactly `high` for the last.
@@ -137,7 +131,7 @@ impl Grid {
     /// A grid over every input's range, with the same number of points on each axis.
     ///
     /// # Errors
-    /// Fewer than 2 points, or too many cells.
+    /// Fewer than 2 points.
     pub fn new(engine: &Engine, points: usize) -> Result<Self, GridError> {
         let axes = engine
             .ranges()
@@ -160,7 +154,7 @@ impl Grid {
     /// Sets the number of points of one axis.
     ///
     /// # Errors
-    /// No such axis, fewer than 2 points, or too many cells.
+    /// No such axis, or fewer than 2 points.
     pub fn points(mut self, name: &str, points: usize) -> Result<Self, GridError> {
         let axis = self.axes.iter_mut().find(|axis| &*axis.name == name);
         let axis = axis.ok_or_else(|| GridError::NoAxis { name: name.into() })?;
@@ -197,10 +191,7 @@ impl Grid {
                 let points = axis.points;
                 return Err(GridError::TooFewPoints { points });
             }
-            let cells = self.cells.checked_mul(axis.points);
-            self.cells = cells
-                .filter(|cells| u32::try_from(*cells).is_ok())
-                .ok_or(GridError::TooManyCells { most: MOST_CELLS })?;
+            self.cells = self.cells.saturating_mul(axis.points);
         }
         Ok(self)
     }
@@ -215,7 +206,7 @@ impl Grid {
         &self.fixed
     }
 
-    /// The number of cells.
+    /// The number of cells; `usize::MAX` where there are more. A decision map takes at most 10,000,000.
     pub fn cells(&self) -> usize {
         self.cells
     }

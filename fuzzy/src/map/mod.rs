@@ -13,6 +13,7 @@ mod peaks;
 #[cfg(test)]
 mod tests;
 
+use grid::MOST_CELLS;
 pub use grid::{Axis, Fixed, Grid, GridError};
 pub use peaks::{changing, peaks};
 
@@ -147,7 +148,7 @@ impl DecisionMap {
     /// none where the model makes that an error.
     ///
     /// # Errors
-    /// The grid belongs to another engine, or there is no such output.
+    /// The grid belongs to another engine or has too many cells, or there is no such output.
     pub fn new(engine: &Engine, grid: Grid, output: usize) -> Result<Self, EvaluateError> {
         let inputs = engine.input_names().len();
         let named = grid.axes().len() + grid.fixed().len();
@@ -163,6 +164,12 @@ impl DecisionMap {
                 got: output,
             });
         };
+        if grid.cells() > MOST_CELLS {
+            return Err(EvaluateError::TooManyCells {
+                cells: grid.cells(),
+                most: MOST_CELLS,
+            });
+        }
         let none = Cell {
             value: f64::NAN,
             coverage: 0.0,

@@ -75,7 +75,26 @@ fn cells_points_and_slices() {
     );
     assert!(grid.fix("margin", f64::NAN).is_err());
     assert!(Grid::new(&engine, 1).is_err());
-    assert!(Grid::new(&engine, 1 << 20).is_err());
+}
+
+/// The bound counts what is left to evaluate: an axis that is fixed takes no cells.
+#[test]
+fn a_map_of_too_many_cells_is_refused_with_their_number() {
+    let engine = Engine::new(&published()).unwrap();
+    let grid = Grid::new(&engine, 4_000).unwrap();
+    let refused = DecisionMap::new(&engine, grid.clone(), 0).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the grid has 16000000 cells; a map has at most 10000000"
+    );
+    let slice = grid.fix("margin", 0.07).unwrap();
+    assert!(DecisionMap::new(&engine, slice, 0).is_ok());
+    let endless = Grid::new(&engine, usize::MAX).unwrap();
+    let refused = DecisionMap::new(&engine, endless, 0).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the grid has more than 10000000 cells, the most of a map"
+    );
 }
 
 #[test]

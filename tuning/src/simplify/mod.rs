@@ -22,6 +22,9 @@ use judge::Judge;
 /// Values that differ by at most this share of the output's range are equal.
 pub const EQUAL: f64 = 1e-12;
 
+/// The most rules of a rule set that is simplified: the time grows with more than the square of their number.
+pub const MOST_RULES: usize = 1_000;
+
 /// When a rule set says the same as another one.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SimplifySettings {
@@ -79,6 +82,12 @@ pub enum SimplifyError {
     /// There is not a column of one length for each input.
     #[error("there must be a column for each input of the model, all of one length")]
     Columns,
+    /// More rules than [`MOST_RULES`].
+    #[error("the rule set has {rules} rules; at most {MOST_RULES} are simplified")]
+    TooManyRules {
+        /// How many.
+        rules: usize,
+    },
     /// The model cannot be used.
     #[error(transparent)]
     Compile(#[from] Findings),
@@ -132,6 +141,11 @@ pub fn simplify(
         && !(tolerance >= 0.0 && tolerance.is_finite())
     {
         return Err(SimplifyError::Tolerance { tolerance });
+    }
+    if model.rules.len() > MOST_RULES {
+        return Err(SimplifyError::TooManyRules {
+            rules: model.rules.len(),
+        });
     }
     // That it can be used is known before points are looked for.
     Engine::new(model)?;

@@ -97,6 +97,8 @@ class Tuned(NamedTuple):
     without_value: int
     """Rows without a value of the tuned model; they count as the middle of the range."""
     moved: list[Moved]
+    at_bounds: list[str]
+    """Constants, as ``variable.term``, at the end of the range whose loss would be smaller beyond it."""
     validation: TuneValidation | None
     """None where ``folds`` was not given."""
 
@@ -295,9 +297,9 @@ def tune(
         "iterations": iterations,
         "seed": seed,
         "folds": folds,
-        "threads": threads,
     }
-    found, was_interrupted = _tune(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), options)
+    rows = _rows(model, data, columns, weight, group_by, skip_bad_rows)
+    found, was_interrupted = _tune(model, rows, options, threads)
     moved = [Moved(*one) for one in found.pop("moved")]
     worth = found.pop("validation")
     if worth is not None:

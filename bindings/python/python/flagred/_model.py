@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._core import RuleSet
+from ._core import RuleSet, _built_in
 from ._edit import Document, Operators, Output, Rules, Variable, Variables, edit, plain, rule_lists
 from ._errors import DataError, RuleSetError
 from ._picture import Picture
@@ -208,8 +208,12 @@ class Model(RuleSet):
         edit(self, change)
 
     def to_dict(self) -> dict[str, Any]:
-        """The rule set as a document, with the keys of the rule-set format."""
-        found: dict[str, Any] = json.loads(self._json())
+        """The rule set as a document, with the keys of the rule-set format.
+
+        Inputs, outputs, terms and blocks are lists of entries with a ``name``: their order has a meaning, also after
+        ``json.dumps(..., sort_keys=True)``. :func:`loads` reads the JSON of the document.
+        """
+        found: dict[str, Any] = json.loads(self._json_lists())
         return found
 
     @property
@@ -310,7 +314,8 @@ def load(path: str | os.PathLike[str]) -> Model:
     Parameters
     ----------
     path
-        The file: YAML, FIS, FLL, FCL or FML, whatever its name.
+        The file: YAML, FIS, FLL, FCL or FML, whatever its name. Or a built-in rule set: ``flagred``,
+        ``flagred-battery`` or ``flagred-paper``. Such a name wins over a file that is called so.
 
     Raises
     ------
@@ -319,6 +324,9 @@ def load(path: str | os.PathLike[str]) -> Model:
     OSError
         The file cannot be read.
     """
+    built_in = _built_in(path) if isinstance(path, str) else None
+    if built_in is not None:
+        return _read(built_in, str(path))
     with open(path, "rb") as file:
         data = file.read()
     name = os.fspath(path)
