@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Parameters by name, each with the FIRST value in the log: failure tests and learning change
-/// parameters in flight.
+/// Parameters by name; of a log each with its FIRST value: failure tests and learning change parameters in flight.
 #[derive(Debug, Default)]
 pub(crate) struct Parameters {
     values: BTreeMap<String, f64>,
@@ -25,6 +24,13 @@ impl Parameters {
         match self.values.len() < MOST && name.len() <= LONGEST_NAME {
             true => _ = self.values.insert(name.to_owned(), value),
             false => self.left_out += 1,
+        }
+    }
+
+    /// Sets a parameter that is known anew.
+    pub(crate) fn set(&mut self, name: &str, value: f64) {
+        if let Some(known) = self.values.get_mut(name) {
+            *known = value;
         }
     }
 

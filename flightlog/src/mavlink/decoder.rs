@@ -1,7 +1,7 @@
 //! The state of one vehicle by its messages: armed, in the air, parameters, outputs. Telemetry logs
 //! and live links use the same decoder.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::field::{Kind, NumericField};
 use crate::mav_type::{MavType, mav_type};
@@ -85,6 +85,10 @@ pub(crate) struct Decoder {
     version: Option<u32>,
     id: Option<(String, &'static str)>,
     pub(crate) parameters: Parameters,
+    /// Whether a parameter that is set anew counts, as on a live link; of a log, its first value does.
+    takes_changes: bool,
+    /// What parameters were set to in the air: that counts from the landing on.
+    changed: BTreeMap<String, f64>,
     /// Parameters that the vehicle reported not to have, or not to give away.
     absent: BTreeSet<String>,
     /// PARAM_VALUE messages that came before the autopilot was known: name, value, type.
@@ -98,6 +102,15 @@ pub(crate) struct Decoder {
 }
 
 impl Decoder {
+    /// That of a live link: parameters may be set anew between flights.
+    #[cfg(feature = "mavlink")]
+    pub(crate) fn live() -> Decoder {
+        Decoder {
+            takes_changes: true,
+            ..Decoder::default()
+        }
+    }
+
     pub(crate) fn is_px4(&self) -> bool {
         self.autopilot == Some(PX4)
     }
@@ -238,13 +251,32 @@ impl Decoder {
             _ => Kind::F32,
         };
         let value = NumericField { offset: 0, kind }.number(&value);
-        match value.filter(|value| is_plausible(&name, *value)) {
-            Some(value) if self.parameters.get(&name).is_none() => {
-                self.parameters.insert(&name, value);
-                Told::Parameter
+        let Some(value) = value.filter(|value| is_plausible(&name, *value)) else {
+            return Told::Nothing;
+        };
+        match self.parameters.get(&name) {
+            None => self.parameters.insert(&name, value),
+            Some(_) if !self.takes_changes => return Told::Nothing,
+            Some(_) if self.is_in_air().unwrap_or(self.is_armed) => {
+                self.changed.insert(name, value);
+                return Told::Nothing;
             }
-            _ => Told::Nothing,
+            Some(known) if known == value => return Told::Nothing,
+            Some(_) => self.parameters.set(&name, value),
         }
+        Told::Parameter
+    }
+
+    /// Takes in the parameters that were set in the air, on the ground; says whether any changed.
+    #[cfg(feature = "mavlink")]
+    pub(crate) fn take_changed(&mut self) -> bool {
+        if self.changed.is_empty() || self.is_in_air().unwrap_or(self.is_armed) {
+            return false;
+        }
+        for (name, value) in std::mem::take(&mut self.changed) {
+            self.parameters.set(&name, value);
+        }
+        true
     }
 
     /// Takes in the parameters that wait for a heartbeat, of a vehicle that never sent one.
@@ -261,6 +293,7 @@ impl Decoder {
             autopilot: self.autopilot,
             mav_type: self.mav_type,
             id: self.id.take(),
+            takes_changes: self.takes_changes,
             ..Self::default()
         };
     }

@@ -124,7 +124,7 @@ pub struct Telemetry {
 impl Telemetry {
     /// Starts from the heartbeat that [`vehicle_of`](super::vehicle_of) identified the vehicle by.
     pub fn new(heartbeat: &Packet<'_>, vehicle: Vehicle) -> Telemetry {
-        let mut decoder = Decoder::default();
+        let mut decoder = Decoder::live();
         decoder.message(heartbeat.component, heartbeat.id, &filled(heartbeat));
         Telemetry {
             system: heartbeat.system,
@@ -196,7 +196,7 @@ impl Telemetry {
         self.interval_refused
     }
 
-    /// The value of a parameter, the first that came; `None` while it is not known.
+    /// The value of a parameter; `None` while it is not known. What it is set to in the air counts from the landing on.
     pub fn parameter(&self, name: &str) -> Option<f64> {
         self.decoder.parameters.get(name)
     }
@@ -227,12 +227,13 @@ impl Telemetry {
         if packet.component == AUTOPILOT {
             self.count(packet.id, &payload);
         }
-        match self.decoder.message(packet.component, packet.id, &payload) {
-            Told::Parameter => {
-                self.parameters_changed = true;
-                self.last_port = self.setup().last_port().min(PORTS - 1);
-                return News::Parameter;
-            }
+        let told = self.decoder.message(packet.component, packet.id, &payload);
+        if told == Told::Parameter || self.decoder.take_changed() {
+            self.parameters_changed = true;
+            self.last_port = self.setup().last_port().min(PORTS - 1);
+        }
+        match told {
+            Told::Parameter => return News::Parameter,
             Told::Outputs(outputs) => return self.command(&outputs, now_s),
             Told::State if packet.id == 0 => self.version = packet.version,
             Told::Nothing if packet.component == AUTOPILOT => {

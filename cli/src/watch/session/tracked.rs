@@ -205,6 +205,10 @@ impl Tracked {
         };
         let hurries =
             !done && self.watch.is_none() && !self.history.is_empty() && waited_s >= HURRY_S;
+        // What was set anew on the ground does not concern the flight that its next commands end.
+        if self.watch.as_ref().is_some_and(|watch| watch.is_flying) && !self.telemetry.is_in_air() {
+            return None;
+        }
         // Parameters that came late are not waited for, but looked at.
         let is_due = done && (self.telemetry.take_parameters_changed() || !self.set_up_tried);
         if !is_due && !hurries {

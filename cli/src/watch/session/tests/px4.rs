@@ -222,6 +222,40 @@ fn limits_that_come_in_the_air_apply_to_the_flight_from_its_beginning() {
     assert_ne!(bench.session.finish(&mut out), Verdict::Known(Level::Good));
 }
 
+/// Between two flights the range of the motors is set anew; what is set in the air counts from the landing on.
+#[test]
+fn limits_that_are_set_anew_count_from_the_next_flight_on() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.px4_beat();
+    bench.px4_motors();
+    bench.px4_lacks(&coefficients());
+    for (name, value) in [("PWM_MAIN_MIN1", 1000), ("PWM_MAIN_MAX1", 2000)] {
+        bench.px4_integer(name, value);
+    }
+    let range = |bench: &Bench<'_>| {
+        let range = &bench.session.view().unwrap().setup.unwrap().range;
+        (range.low, range.high)
+    };
+    bench.wait_beating_px4(3);
+    bench.px4_fly(100.0, 15.0, [1400; 4]);
+    bench.px4_integer("PWM_MAIN_MAX1", 1402);
+    bench.px4_fly(115.0, 5.0, [1400; 4]);
+    assert_eq!(range(&bench), (1000.0, 2000.0));
+    assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
+    bench.wait_beating_px4(1);
+    assert_eq!(range(&bench), (1000.0, 2000.0), "the flight is not over");
+    bench.hear(&servo(120.0, [1000; 4]));
+    bench.wait_beating_px4(1);
+    assert_eq!(range(&bench), (1000.0, 1402.0));
+    bench.px4_integer("PWM_MAIN_MIN1", 900);
+    bench.wait_beating_px4(1);
+    assert_eq!(range(&bench), (900.0, 1402.0));
+    bench.px4_fly(130.0, 15.0, [1400; 4]);
+    assert!(bench.count(|event| matches!(event, Event::Level { .. })) > 0);
+    assert_eq!(bench.flights(), (2, 1));
+}
+
 /// PX4 refused these parameters; then a ground station loads all of them.
 #[test]
 fn a_refused_parameter_that_comes_in_the_air_takes_no_alarm_back() {
