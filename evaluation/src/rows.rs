@@ -40,6 +40,8 @@ enum Column {
     Own(usize),
     /// In columns that it can be computed from.
     Of(Recipe),
+    /// Nowhere: the rules do not read it.
+    Unread,
 }
 
 impl Column {
@@ -59,6 +61,7 @@ impl Column {
         match self {
             Column::Own(column) => (table.number)(row, *column),
             Column::Of(recipe) => recipe.value(|name| table.named_number(row, name)),
+            Column::Unread => Ok(f64::NAN),
         }
     }
 }
@@ -84,7 +87,14 @@ pub fn cases<E>(
         .map(|named| {
             let inputs = named.estimator.profile().inputs.iter();
             let columns = inputs.map(|input| {
-                let column = Column::of(table, &[&input.name], &input.source);
+                let mut known = named.estimator.engine().input_names();
+                let column = if known.all(|name| name != input.name) {
+                    Some(Column::Unread)
+                } else if input.ratio.is_some() {
+                    table.column(&input.name).map(Column::Own)
+                } else {
+                    Column::of(table, &[&input.name], &input.source)
+                };
                 if column.is_none() {
                     notes.push(format!(
                         "profile `{}` has no risk: the table has no column for its input `{}`",

@@ -192,7 +192,7 @@ pub enum Threshold {
 /// use flagred::channel::{Channel, Input, Motors, Observed, Statistic};
 ///
 /// let plan = estimator.plan()?;
-/// assert_eq!(plan.inputs[1], Input { channel: 1, statistic: Statistic::Std });
+/// assert_eq!(plan.inputs[1], Input { channel: 1, statistic: Statistic::Std, ratio: None });
 /// let spread = Channel { observed: Observed::Command, motors: Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false };
 /// assert_eq!(plan.channels[1], spread);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -238,4 +238,26 @@ pub struct Input {
     pub channel: usize,
     /// The statistic.
     pub statistic: Statistic,
+    /// What it is divided by.
+    pub ratio: Option<Ratio>,
+}
+
+impl Input {
+    /// The other inputs that its value is made of.
+    pub(crate) fn others(&self) -> impl Iterator<Item = usize> {
+        let ratio = self.ratio.into_iter();
+        ratio.flat_map(|ratio| [ratio.plus, Some(ratio.per)].into_iter().flatten())
+    }
+}
+
+/// What makes an input `(x + plus) / max(per, at_least)` of its statistic `x` and of other inputs, by their places. These are
+/// statistics alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ratio {
+    /// What is added to the statistic.
+    pub plus: Option<usize>,
+    /// What the sum is divided by.
+    pub per: usize,
+    /// The least that it is divided by, above 0.
+    pub at_least: f64,
 }

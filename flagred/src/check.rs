@@ -373,6 +373,9 @@ fn signal(
             return Some(Diagnostic::warning("unit", place, message).help(help));
         }
     }
+    if input.ratio.is_some() {
+        return None;
+    }
     let (low, high) = range(&input.source)?;
     let shared = high.min(variable.high) - low.max(variable.low);
     if shared >= LEAST_SHARE * (variable.high - variable.low) {

@@ -17,7 +17,6 @@ use crate::{
     plan::{NoPlan, rules_for},
     profile::Profile,
     sample::Estimate,
-    source::channels,
 };
 
 /// A profile and its rule set, compiled. A clone shares what was compiled, so it costs next to nothing.
@@ -144,7 +143,7 @@ impl Estimator {
         if let Some(stray) = profile
             .inputs
             .iter()
-            .find(|i| engine.input(&i.name).is_none())
+            .find(|i| engine.input(&i.name).is_none() && !profile.is_part(&i.name))
         {
             return Err(EstimatorError::NoSuchInput {
                 input: stray.name.clone(),
@@ -169,8 +168,8 @@ impl Estimator {
             }
         });
         let order = order.collect();
-        let sources = profile.inputs.iter().map(|input| &input.source);
-        let (channels, inputs) = channels(sources, &profile.signals())
+        let (channels, inputs) = profile
+            .channels(&[], &profile.signals())
             .map_err(|input| EstimatorError::NoSource { input })?;
         let said = engine.propositions();
         let propositions = said.iter().map(|said| Proposition {

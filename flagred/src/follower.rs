@@ -414,8 +414,24 @@ fn unknown_motor(motors: &[Motor], commands: &[f64]) -> Option<Unknown> {
     })
 }
 
-/// The value of an input, where enough is known of its window.
+/// The value of an input, where enough is known of its windows.
 pub(crate) fn reading(
+    plan: (&[Channel], &[Input]),
+    seen: &[Seen],
+    sampling: &Sampling,
+    input: usize,
+) -> Result<f64, Unknown> {
+    let statistic = |input: usize| statistic(plan, seen, sampling, input);
+    let value = statistic(input)?;
+    let Some(ratio) = plan.1.get(input).and_then(|input| input.ratio) else {
+        return Ok(value);
+    };
+    let plus = ratio.plus.map_or(Ok(0.0), statistic)?;
+    Ok((value + plus) / statistic(ratio.per)?.max(ratio.at_least))
+}
+
+/// The statistic of an input, where enough is known of its window.
+fn statistic(
     plan: (&[Channel], &[Input]),
     seen: &[Seen],
     sampling: &Sampling,

@@ -8,7 +8,7 @@ use crate::{
     follower::{Feed, Follower, Room, reading},
     motor::{Motor, set_geometry},
     profile::Profile,
-    source::{Motors, Signal, Source, Statistic, channels},
+    source::{Motors, Signal, Source, Statistic},
     verdict::{Ended, Finding, Level},
     window::Window,
 };
@@ -163,8 +163,8 @@ impl Monitor {
             window_s: profile.window_s,
             exponential: false,
         });
-        let sources = profile.inputs.iter().map(|input| &input.source);
-        let (channels, inputs) = channels(sources.chain(&always), craft.signals)
+        let (channels, inputs) = profile
+            .channels(&always, craft.signals)
             .map_err(|signal| MonitorError::NoSignal { signal })?;
         let motor = motors_needed(&channels);
         if motor > craft.motors {

@@ -272,6 +272,7 @@ pub(crate) fn channels<'a>(
         inputs.push(Input {
             channel: same.unwrap_or(channels.len()),
             statistic: source.statistic,
+            ratio: None,
         });
         if same.is_none() {
             channels.push(channel);

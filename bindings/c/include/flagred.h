@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_FORMAT 7
+#define FLAGRED_FORMAT 8
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -369,8 +369,9 @@ typedef struct flagred_stage {
 } flagred_stage;
 
 typedef struct flagred_source {
-    double number;
+    double number, at_least;
     uint32_t channel, statistic;
+    uint32_t plus, per; /* sources; UINT32_MAX: none */
 } flagred_source;
 
 typedef struct flagred_threshold {

@@ -32,9 +32,15 @@ struct CChannel {
 #[repr(C)]
 struct CSource {
     number: f64,
+    at_least: f64,
     channel: u32,
     statistic: u32,
+    plus: u32,
+    per: u32,
 }
+
+/// A source that there is not.
+const NONE: u32 = u32::MAX;
 
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
@@ -193,6 +199,11 @@ impl CSource {
         Ok(channel::Input {
             channel: self.channel as usize,
             statistic: statistic.ok_or(Status::DamagedPlan)?,
+            ratio: (self.per != NONE).then_some(channel::Ratio {
+                plus: (self.plus != NONE).then_some(self.plus as usize),
+                per: self.per as usize,
+                at_least: self.at_least,
+            }),
         })
     }
 }

@@ -169,7 +169,11 @@ fn with_margin_and_spread(mut profile: Profile) -> Profile {
                 exponential: false,
             };
             let name = name.to_owned();
-            let input = flagred::profile::ProfileInput { name, source };
+            let input = flagred::profile::ProfileInput {
+                name,
+                source,
+                ratio: None,
+            };
             profile
                 .inputs
                 .insert(place.min(profile.inputs.len()), input);

@@ -252,7 +252,20 @@ fn channel(channel: &Channel) -> String {
 
 fn source(input: &Input) -> String {
     let (statistic, parameter) = input.statistic.code();
-    format!("{{{}, {}, {statistic}}}", number(parameter), input.channel)
+    // A ratio of nothing is none.
+    let (at_least, plus, per) = input.ratio.map_or((0.0, None, None), |ratio| {
+        (ratio.at_least, ratio.plus, Some(ratio.per))
+    });
+    let place =
+        |place: Option<usize>| place.map_or("UINT32_MAX".to_owned(), |place| place.to_string());
+    format!(
+        "{{{}, {}, {}, {statistic}, {}, {}}}",
+        number(parameter),
+        number(at_least),
+        input.channel,
+        place(plus),
+        place(per)
+    )
 }
 
 fn settings(settings: &Settings) -> String {

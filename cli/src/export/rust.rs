@@ -225,9 +225,19 @@ fn channel(channel: &Channel) -> String {
 }
 
 fn input(input: &Input) -> String {
-    let Input { channel, statistic } = input;
+    let Input {
+        channel,
+        statistic,
+        ratio,
+    } = input;
     let statistic: &Statistic = statistic;
-    format!("channel::Input {{ channel: {channel}, statistic: channel::Statistic::{statistic:?} }}")
+    let ratio = match ratio {
+        Some(ratio) => format!("Some(channel::{ratio:?})"),
+        None => "None".to_owned(),
+    };
+    format!(
+        "channel::Input {{ channel: {channel}, statistic: channel::Statistic::{statistic:?}, ratio: {ratio} }}"
+    )
 }
 
 /// An array, on one line where it fits.

@@ -140,7 +140,10 @@ impl Plan<'_> {
                 channel.is_some_and(|channel| {
                     channel.in_bins == input.statistic.is_of_bins()
                         && (!channel.exponential || input.statistic.is_of_weights())
-                })
+                }) && input.others().all(|other| {
+                    let other = self.inputs.get(other);
+                    other.is_some_and(|other| other.ratio.is_none())
+                }) && input.ratio.is_none_or(|ratio| is_length(ratio.at_least))
             }),
             "inputs of the profile",
         )?;
@@ -415,7 +418,7 @@ impl<'a> Monitor<'a> {
     }
 }
 
-/// Whether a window can have this length in seconds.
-fn is_length(window_s: f64) -> bool {
-    window_s.is_finite() && window_s > 0.0
+/// Whether a window can have this length in seconds, and whether something can be divided by this.
+fn is_length(number: f64) -> bool {
+    number.is_finite() && number > 0.0
 }

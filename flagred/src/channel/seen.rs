@@ -178,13 +178,15 @@ pub(crate) fn push(
     }
 }
 
-/// The value of an input, and how much of its window is behind it; `None` where nothing is known.
+/// The statistic of an input, and how much of its window is behind it; `None` where nothing is known.
 pub(crate) fn value(
     (channels, inputs): (&[Channel], &[Input]),
     seen: &[Seen],
     input: usize,
 ) -> Option<Observation> {
-    let Input { channel, statistic } = *inputs.get(input)?;
+    let Input {
+        channel, statistic, ..
+    } = *inputs.get(input)?;
     let Seen {
         window,
         exponential,

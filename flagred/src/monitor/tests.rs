@@ -76,6 +76,7 @@ fn profile() -> Profile {
         inputs: vec![ProfileInput {
             name: "margin".into(),
             source: source("motor_margin"),
+            ratio: None,
         }],
         output: "risk".into(),
         other_risks: Vec::new(),
@@ -107,6 +108,48 @@ fn fly(monitor: &mut Monitor, rate_hz: f64, phases: &[(f64, f64, bool)]) -> Vec<
 fn risk_at(assessments: &[Update], t_s: f64) -> Result<f64, Unknown> {
     let at = assessments.iter().rfind(|a| a.t_s <= t_s + 1e-9).unwrap();
     at.risk.map(|estimate| estimate.risk_pct)
+}
+
+/// `(x + plus) / max(per, at_least)`, with inputs that the rules do not have; unknown where one of them is.
+#[test]
+fn a_ratio_is_of_other_inputs() {
+    let text = "flagred: 1
+name: ratio
+rules: test
+window_s: 2
+inputs:
+  per: {last: battery_v}
+  margin: {mean: motor_margin, plus: lift, per: per, at_least: 0.5}
+  lift: {mean: motor_command}
+";
+    let profile: Profile = text.parse().unwrap();
+    let estimator = Estimator::new(&profile, &rules(false)).unwrap();
+    let craft = Craft::new(2).with_signals(&["battery_v"]);
+    let plan = estimator.plan().unwrap();
+    let mut memory = OwnedMemory::new(&plan, 2);
+    for (per, expected) in [
+        (2.0, Some((0.2 + 0.2) / 2.0)),
+        (0.1, Some((0.2 + 0.2) / 0.5)),
+        (0.0, Some((0.2 + 0.2) / 0.5)),
+        (f64::NAN, None),
+    ] {
+        let mut monitor = Monitor::new(&estimator, craft).unwrap();
+        let mut board = memory.monitor(&plan).unwrap();
+        for i in 0..100 {
+            let sample = Sample {
+                t_s: f64::from(i) * 0.04,
+                motors: &[0.2, 0.2],
+                in_air: true,
+                signals: &[per],
+            };
+            let (update, on_board) = (monitor.push(&sample), board.push(&sample));
+            assert_eq!(update, on_board);
+        }
+        let margin = Some(monitor.inputs()[1]).filter(|value| value.is_finite());
+        assert_eq!(margin.is_some(), expected.is_some(), "{per}");
+        let off = margin.zip(expected).map_or(0.0, |(a, b)| a - b);
+        assert!(off.abs() < 1e-12, "{per}: {margin:?}");
+    }
 }
 
 #[test]

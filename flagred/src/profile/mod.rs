@@ -4,9 +4,10 @@ use alloc::{string::String, vec::Vec};
 
 use crate::{
     accumulator::AccumulatorSettings,
+    channel::{self, Channel, Input},
     follower::Settings,
     gap::GapSettings,
-    source::Source,
+    source::{Source, channels},
     verdict::{LevelSettings, NoticeSettings, VerdictSettings},
 };
 
@@ -91,7 +92,7 @@ pub struct OtherRisk {
 ///
 /// let text = "flagred: 1\nname: windy\nrules: my.yaml\ninputs: {wind: {last: wind_m_s}}";
 /// let source = Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 2.0, exponential: false };
-/// assert_eq!(text.parse::<Profile>()?.inputs, [ProfileInput { name: "wind".into(), source }]);
+/// assert_eq!(text.parse::<Profile>()?.inputs, [ProfileInput { name: "wind".into(), source, ratio: None }]);
 /// # Ok::<(), fuzzy::diagnostic::Findings>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -100,9 +101,55 @@ pub struct ProfileInput {
     pub name: String,
     /// Where its value comes from.
     pub source: Source,
+    /// What that is divided by.
+    pub ratio: Option<Ratio>,
+}
+
+/// What makes an input a ratio: `(x + plus) / max(per, at_least)` of what its source gives and of other inputs of the profile.
+/// These are no ratios themselves, and the rule set need not have them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ratio {
+    /// The input that is added.
+    pub plus: Option<String>,
+    /// The input to divide by.
+    pub per: String,
+    /// The least to divide by, above 0.
+    pub at_least: f64,
 }
 
 impl Profile {
+    /// What is observed where samples carry these signals, in their order, and the inputs of the profile, then those of `more`.
+    /// The error is the name of a signal that is not among them.
+    pub(crate) fn channels<'a>(
+        &'a self,
+        more: &'a [Source],
+        signals: &[&str],
+    ) -> Result<(Vec<Channel>, Vec<Input>), String> {
+        let sources = self.inputs.iter().map(|input| &input.source);
+        let (channels, mut inputs) = channels(sources.chain(more), signals)?;
+        let place = |name: &String| {
+            let place = self.inputs.iter().position(|input| input.name == *name);
+            place.ok_or_else(|| name.clone())
+        };
+        for (input, of) in inputs.iter_mut().zip(&self.inputs) {
+            let Some(ratio) = &of.ratio else { continue };
+            input.ratio = Some(channel::Ratio {
+                plus: ratio.plus.as_ref().map(place).transpose()?,
+                per: place(&ratio.per)?,
+                at_least: ratio.at_least,
+            });
+        }
+        Ok((channels, inputs))
+    }
+
+    /// Whether another input is made of one.
+    pub(crate) fn is_part(&self, name: &str) -> bool {
+        let ratios = self.inputs.iter().filter_map(|input| input.ratio.as_ref());
+        ratios
+            .into_iter()
+            .any(|ratio| ratio.per == name || ratio.plus.as_deref() == Some(name))
+    }
+
     /// The names of the signals beside the motors that it needs, each once.
     pub fn signals(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();

@@ -1,7 +1,7 @@
 //! The inputs of a profile, from all samples of a flight.
 
 use flagred::{
-    profile::Profile,
+    profile::{Profile, Ratio},
     source::{Motors, Signal, Source, Statistic},
 };
 
@@ -107,7 +107,29 @@ pub fn values(
             false => value(profile, &source.statistic, &window, observed),
         }
     });
-    values.collect()
+    let values: Vec<Option<f64>> = values.collect();
+    let of = |name: &str| {
+        let place = profile.inputs.iter().position(|input| input.name == name);
+        place.and_then(|place| values[place])
+    };
+    let with_ratio = profile.inputs.iter().map(|input| {
+        let value = of(&input.name)?;
+        Some(match &input.ratio {
+            None => value,
+            Some(Ratio {
+                plus,
+                per,
+                at_least,
+            }) => {
+                let plus = match plus {
+                    Some(name) => of(name)?,
+                    None => 0.0,
+                };
+                (value + plus) / of(per)?.max(*at_least)
+            }
+        })
+    });
+    with_ratio.collect()
 }
 
 /// All values so far, with the weight `exp(-age / T)` integrated over their times.

@@ -205,10 +205,14 @@ fn channel(channel: &Channel) -> CChannel {
 
 fn source(input: &channel::Input) -> CSource {
     let (statistic, number) = input.statistic.code();
+    let place = |place: Option<usize>| place.map_or(NONE, |place| place as u32);
     CSource {
         number,
+        at_least: input.ratio.map_or(0.0, |ratio| ratio.at_least),
         channel: input.channel as u32,
         statistic,
+        plus: place(input.ratio.and_then(|ratio| ratio.plus)),
+        per: place(input.ratio.map(|ratio| ratio.per)),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use flagred::{
     board::Plan,
-    channel::{Channel, Observed, Statistic},
+    channel::{Channel, Observed, Ratio, Statistic},
     estimator::Estimator,
 };
 
@@ -53,7 +53,10 @@ pub(super) fn fill(
     filling.set("needs_motors", plan.needs_motors());
     let mut windows: Vec<Window> = Vec::new();
     let mut script = Script::default();
-    for (input, flagred::channel::Input { channel, statistic }) in plan.inputs.iter().enumerate() {
+    for (input, of) in plan.inputs.iter().enumerate() {
+        let flagred::channel::Input {
+            channel, statistic, ..
+        } = of;
         let Some(channel) = plan.channels.get(*channel) else {
             continue;
         };
@@ -65,11 +68,6 @@ pub(super) fn fill(
             script
                 .observe
                 .push(format!("  value[{index}] = {x} -- {name}"));
-            if plan.needs(input) {
-                script
-                    .read_last
-                    .push(format!("  all = all and value[{index}]"));
-            }
             continue;
         }
         let window = Window::of(channel);
@@ -125,11 +123,6 @@ pub(super) fn fill(
                 "  value[{}] = total and {read} -- {name}",
                 input + 1
             ));
-            if plan.needs(*input) {
-                script
-                    .read
-                    .push(format!("  all = all and value[{}]", input + 1));
-            }
         }
     }
     let extremes = made.iter().any(|line| line.contains("est\")"));
@@ -140,10 +133,31 @@ pub(super) fn fill(
     size.rows += 1;
     size.numbers += 4 * elevated_capacity(plan) as usize;
     size.locals = script.locals();
-    script.read.append(&mut script.read_last);
+    for (input, of) in plan.inputs.iter().enumerate() {
+        let value = format!("value[{}]", input + 1);
+        if let Some(ratio) = of.ratio {
+            script.read.push(quotient(&value, &ratio));
+        }
+        if plan.needs(input) {
+            script.read.push(format!("  all = all and {value}"));
+        }
+    }
     script.finish(plan, filling);
     filling.put("inputs", made);
     Ok(())
+}
+
+/// Makes a value a ratio.
+fn quotient(value: &str, ratio: &Ratio) -> String {
+    let (plus, sum) = match ratio.plus {
+        Some(plus) => {
+            let plus = format!("value[{}]", plus + 1);
+            (format!(" and {plus}"), format!("({value} + {plus})"))
+        }
+        None => (String::new(), value.to_owned()),
+    };
+    let (per, least) = (format!("value[{}]", ratio.per + 1), number(ratio.at_least));
+    format!("  {value} = {value}{plus} and {per} and {sum} / max({per}, {least})")
 }
 
 /// The kind of a row, and how its value is read.

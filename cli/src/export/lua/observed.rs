@@ -21,7 +21,6 @@ pub(super) struct Script {
     values: Vec<(String, String)>,
     pub(super) observe: Vec<String>,
     pub(super) read: Vec<String>,
-    pub(super) read_last: Vec<String>,
     /// The functions over lists of motors that are used.
     functions: Vec<&'static str>,
     lists: Vec<&'static str>,

@@ -9,7 +9,7 @@ use fuzzy::{
 
 use super::{Found, Least, number};
 use crate::{
-    profile::ProfileInput,
+    profile::{ProfileInput, Ratio},
     source::{Motors, Signal, Source, Statistic},
 };
 
@@ -25,6 +25,9 @@ const STATISTICS: [(&str, Statistic); 10] = [
     ("rate", Statistic::Rate),
     ("median", Statistic::Percentile(50.0)),
 ];
+
+/// The keys of a ratio.
+const RATIO: [&str; 3] = ["plus", "per", "at_least"];
 
 type OfNumber = fn(f64) -> Statistic;
 
@@ -49,18 +52,16 @@ pub(super) fn inputs(fields: &Fields, window_s: f64, found: &mut Found) -> Vec<P
         return Vec::new();
     };
     let entries = node.entries("`inputs`", "input", found).unwrap_or_default();
-    entries
-        .iter()
-        .filter_map(|entry| {
-            Some(ProfileInput {
-                name: entry.key.into(),
-                source: source(entry, window_s, found)?,
-            })
-        })
-        .collect()
+    let read = |entry| input(entry, &entries, window_s, found);
+    entries.iter().filter_map(read).collect()
 }
 
-fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
+fn input(
+    entry: &Entry,
+    entries: &[Entry],
+    window_s: f64,
+    found: &mut Found,
+) -> Option<ProfileInput> {
     let what = format!("input `{}`", entry.key);
     let statistics = STATISTICS.iter().map(|(name, _)| *name);
     let with_number = WITH_NUMBER.iter().map(|(name, _)| *name);
@@ -68,6 +69,7 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
         .clone()
         .chain(with_number.clone())
         .chain(["of", "window_s", "time_constant_s"])
+        .chain(RATIO)
         .collect();
     let before = found.len();
     let fields = entry.value.fields(&what, &keys, found)?;
@@ -151,13 +153,58 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
         );
         return None;
     }
-    Some(Source {
-        statistic,
-        motors,
-        signal,
-        window_s: number(&fields, "time_constant_s", window_s, Least::Above0, found),
-        exponential: exponential.is_some(),
+    Some(ProfileInput {
+        name: entry.key.into(),
+        source: Source {
+            statistic,
+            motors,
+            signal,
+            window_s: number(&fields, "time_constant_s", window_s, Least::Above0, found),
+            exponential: exponential.is_some(),
+        },
+        ratio: match RATIO.iter().any(|key| fields.get(key).is_some()) {
+            true => Some(ratio(&fields, entry, entries, found)?),
+            false => None,
+        },
     })
+}
+
+/// `plus: OTHER, per: OTHER, at_least: NUMBER`.
+fn ratio(fields: &Fields, entry: &Entry, entries: &[Entry], found: &mut Found) -> Option<Ratio> {
+    let plus = fields
+        .get("plus")
+        .map(|node| other(node, entry, entries, found));
+    let help = "write for example `per: room, at_least: 0.02`, with an input `room` beside it";
+    let per = fields.require("per", help, found);
+    let least = fields.require("at_least", help, found);
+    let ratio = Ratio {
+        plus: match plus {
+            Some(plus) => Some(plus?),
+            None => None,
+        },
+        per: other(per?, entry, entries, found)?,
+        at_least: number(fields, "at_least", 1.0, Least::Above0, found),
+    };
+    least.map(|_| ratio)
+}
+
+/// The name of another input that a ratio is made of.
+fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Option<String> {
+    let name = &node.words("an input of a ratio", found)?.text;
+    let is_ratio = |other: &Entry| match &other.value.value {
+        Value::Mapping(pairs) => pairs
+            .iter()
+            .any(|(key, _)| matches!(&key.value, Value::Scalar(key) if key.text == "per")),
+        _ => false,
+    };
+    let message = match entries.iter().find(|other| other.key == *name) {
+        Some(other) if other.key != entry.key && !is_ratio(other) => return Some(name.clone()),
+        Some(_) => format!("`{name}` is a ratio itself"),
+        None => format!("`{name}` is no input of this profile"),
+    };
+    let help = "name another input, which is a statistic alone; the rule set need not have it";
+    found.push(Diagnostic::error("ratio", node.span.clone(), message).help(help));
+    None
 }
 
 /// `motor_margin`, `{min: motor_margin}`, `{motor: 3, of: motor_margin}` or `{difference: [yaw_des_deg, yaw_deg]}`.

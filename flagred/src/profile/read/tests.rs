@@ -268,6 +268,25 @@ other_risks:
 }
 
 #[test]
+fn mistakes_in_ratios_are_told() {
+    let text = "flagred: 1
+name: wrong
+rules: flagred
+inputs:
+  room: {mean: {min: motor_margin_high_side}}
+  good: {std: motor_command, plus: room, per: room, at_least: 0.02}
+  nobody: {std: motor_command, per: rom, at_least: 0.02}
+  itself: {std: motor_command, per: itself, at_least: 0.02}
+  again: {std: motor_command, plus: good, per: room, at_least: 0.02}
+  bottomless: {std: motor_command, per: room}
+  undivided: {std: motor_command, plus: room}
+  flat: {std: motor_command, per: room, at_least: 0}
+";
+    let findings = text.parse::<Profile>().unwrap_err();
+    insta::assert_snapshot!(findings);
+}
+
+#[test]
 fn what_is_no_profile_says_so() {
     for (text, expected) in [
         ("", "the file is empty"),
