@@ -881,20 +881,20 @@ return load_all, 1000
 --   window = windows[1]
 --   total, out = enough(window)
 --   value[1] = total and deviation(window, inputs[1], total, out) -- unsteady_now
---   all = all and value[1]
 --   value[3] = total and deviation(window, inputs[3], total, out) -- throttle_activity
---   all = all and value[3]
 --   window = windows[2]
 --   total, out = enough(window)
 --   value[2] = total and deviation(window, inputs[2], total, out) -- unsteady_lately
---   all = all and value[2]
 --   window = windows[3]
 --   total, out = enough(window)
 --   value[4] = total and read_row(window, inputs[4], total, out) -- load
---   all = all and value[4]
 --   value[5] = total and read_row(window, inputs[5], total, out) -- spread
---   all = all and value[5]
 --   value[6] = total and read_row(window, inputs[6], total, out) -- at_limit
+--   all = all and value[1]
+--   all = all and value[2]
+--   all = all and value[3]
+--   all = all and value[4]
+--   all = all and value[5]
 --   all = all and value[6]
 --   return all
 -- end

@@ -726,8 +726,8 @@ return load_all, 1000
 --   window = windows[1]
 --   total, out = enough(window)
 --   value[1] = total and read_row(window, inputs[1], total, out) -- margin
---   all = all and value[1]
 --   value[2] = total and deviation(window, inputs[2], total, out) -- spread
+--   all = all and value[1]
 --   all = all and value[2]
 --   all = all and value[3]
 --   return all

@@ -211,7 +211,7 @@ fn an_action_on_a_strength_of_no_output_raises_nothing() {
 /// A profile with every signal of motors, every statistic that a script has, and every notice, and the file of it.
 pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
     const SOURCES: [&str; 13] = [
-        "{std_less_noise: {std: motor_command_less_yaw}}",
+        "{std_less_noise: {std: motor_command_less_yaw}, plus: x6, per: x9, at_least: 0.02}",
         "{std_less_noise: {mean: motor_command_less_yaw}, window_s: 9}",
         "{noise: {max: motor_command}}",
         "{noise: yaw_effort}",
@@ -230,7 +230,7 @@ pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
 
 /// A profile with every statistic that only plans have.
 fn profile_of_every_statistic(folder: &Folder) -> (Estimator, String) {
-    const SOURCES: [&str; 12] = [
+    const SOURCES: [&str; 13] = [
         "{rate: {max: motor_command}}",
         "{rate: {difference: [yaw_des_deg, yaw_deg]}, window_s: 9}",
         "{rms: {difference: [yaw_des_deg, yaw_deg]}}",
@@ -243,6 +243,7 @@ fn profile_of_every_statistic(folder: &Folder) -> (Estimator, String) {
         "{mean: motor_command, time_constant_s: 3}",
         "{std: {motor: 1, of: motor_command}, time_constant_s: 8}",
         "{share_above: 5, of: {difference: [ground_speed_m_s, ekf_wind_m_s]}, time_constant_s: 0.5}",
+        "{std: {difference: [ground_speed_m_s, ekf_wind_m_s]}, per: x9, at_least: 0.3}",
     ];
     profile_of(folder, &SOURCES)
 }
