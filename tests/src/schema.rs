@@ -105,6 +105,16 @@ fn check(schema: &Value, value: &Value, path: &str, found: &mut Vec<String>) {
                     }
                 }
             }
+            "dependentRequired" => {
+                for (key, needed) in rule.as_object().unwrap() {
+                    for name in needed.as_array().unwrap() {
+                        let name = name.as_str().unwrap();
+                        if value.get(key).is_some() && value.get(name).is_none() {
+                            wrong(format!("{key} without {name}"));
+                        }
+                    }
+                }
+            }
             "anyOf" | "oneOf" => {
                 let all = rule.as_array().unwrap();
                 let valid = all.iter().filter(|one| errors(one, value).is_empty());

@@ -151,11 +151,10 @@ fn ardupilot() -> Vehicle {
         ("SERVO4_FUNCTION", 36.0),
         ("MOT_PWM_MIN", 1100.0),
         ("MOT_PWM_MAX", 1900.0),
-        // Damaged limits are not believed, the first value that is counts.
+        // Damaged limits are not believed.
         ("MOT_SPIN_MIN", 65_535.0),
         ("MOT_SPIN_MIN", 0.125),
         ("MOT_SPIN_MAX", 0.875),
-        ("MOT_SPIN_MAX", 0.5),
         ("FRAME_CLASS", 1.0),
         ("FRAME_TYPE", 0.0),
     ] {
@@ -194,6 +193,10 @@ fn an_ardupilot_vehicle_by_its_heartbeats() {
     assert_eq!(spans(&flight), [(2.0, 6.0)]);
     // From the first row of commands on.
     assert!((flight.armed.unwrap().duration_s() - 5.95).abs() < 1e-6);
+    // Of a recording the first value counts, of a link the latest one.
+    vehicle.parameter("MOT_SPIN_MAX", 0.5_f32.to_le_bytes(), 2);
+    assert_eq!(vehicle.recorded().effective.high, 0.875);
+    assert_eq!(vehicle.live().0.parameter("MOT_SPIN_MAX"), Some(0.5));
 }
 
 /// The id of the board is that which PX4 writes into its own logs.
