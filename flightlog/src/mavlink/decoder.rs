@@ -146,6 +146,11 @@ impl Decoder {
             .map(|flying| flying && self.is_armed)
     }
 
+    /// The same; a vehicle that does not tell is in the air while it is armed.
+    pub(crate) fn is_in_air_or_armed(&self) -> bool {
+        self.is_in_air().unwrap_or(self.is_armed)
+    }
+
     /// The type in its heartbeats, if it is that of a vehicle.
     pub(crate) fn mav_type(&self) -> Option<(u8, MavType)> {
         let number = self.mav_type?;
@@ -257,7 +262,7 @@ impl Decoder {
         match self.parameters.get(&name) {
             None => self.parameters.insert(&name, value),
             Some(_) if !self.takes_changes => return Told::Nothing,
-            Some(_) if self.is_in_air().unwrap_or(self.is_armed) => {
+            Some(_) if self.is_in_air_or_armed() => {
                 self.changed.insert(name, value);
                 return Told::Nothing;
             }
@@ -270,7 +275,7 @@ impl Decoder {
     /// Takes in the parameters that were set in the air, on the ground; says whether any changed.
     #[cfg(feature = "mavlink")]
     pub(crate) fn take_changed(&mut self) -> bool {
-        if self.changed.is_empty() || self.is_in_air().unwrap_or(self.is_armed) {
+        if self.changed.is_empty() || self.is_in_air_or_armed() {
             return false;
         }
         for (name, value) in std::mem::take(&mut self.changed) {

@@ -120,7 +120,8 @@ fn same_factors(one: Option<&Geometry>, other: Option<&Geometry>) -> bool {
 
 /// Whether numbers are the same but for rounding: a parameter has single precision.
 fn are_alike(one: &[f64], other: &[f64]) -> bool {
-    one.len() == other.len() && one.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-6)
+    let alike = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-6 * a.abs().max(1.0);
+    one.len() == other.len() && one.iter().zip(other).all(alike)
 }
 
 /// The parameters that motors and their range depend on, and that are not known yet.

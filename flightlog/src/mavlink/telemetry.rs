@@ -180,7 +180,7 @@ impl Telemetry {
     /// Whether it is in the air: by EXTENDED_SYS_STATE, without it by the state in the heartbeats of ArduPilot (active
     /// in the air, on standby while landed). A vehicle that does not tell is in the air while it is armed.
     pub fn is_in_air(&self) -> bool {
-        self.decoder.is_in_air().unwrap_or(self.is_armed())
+        self.decoder.is_in_air_or_armed()
     }
 
     /// Whether it ever sent motor outputs (SERVO_OUTPUT_RAW).
