@@ -245,12 +245,8 @@ fn at_bounds(objective: &Objective<'_>, parameters: &Parameters, at: &Point) -> 
     let mut names = Vec::new();
     for (index, (low, high)) in parameters.bounded() {
         let mut model = at.model.clone();
-        let terms = model
-            .outputs
-            .iter_mut()
-            .next()
-            .map(|o| &mut o.variable.terms);
-        let Some(term) = terms.and_then(|terms| terms.get_mut(index)) else {
+        let output = model.outputs.first_mut();
+        let Some(term) = output.and_then(|output| output.variable.terms.get_mut(index)) else {
             continue;
         };
         let MembershipFunction::Constant { value } = &mut term.membership_function else {
