@@ -261,3 +261,21 @@ pub struct Ratio {
     /// The least that it is divided by, above 0.
     pub at_least: f64,
 }
+
+impl Ratio {
+    /// The value of an input, from the statistics of all of them; NaN where one is unknown. `None` where there is no such input.
+    pub(crate) fn of(&self, statistics: &[f64], input: usize) -> Option<f64> {
+        let plus = match self.plus {
+            Some(plus) => *statistics.get(plus)?,
+            None => 0.0,
+        };
+        let per = *statistics.get(self.per)?;
+        // The larger of a number and NaN would be the number.
+        let per = if per < self.at_least {
+            self.at_least
+        } else {
+            per
+        };
+        Some((statistics.get(input)? + plus) / per)
+    }
+}

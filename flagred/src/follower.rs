@@ -86,9 +86,12 @@ pub(crate) struct Feed<'a> {
 }
 
 impl Feed<'_> {
-    /// Whether the risk depends on an input.
+    /// Whether the risk depends on an input, or on a ratio of it.
     pub(crate) fn needs(&self, input: usize) -> bool {
-        self.order.iter().any(|from| *from as usize == input)
+        self.order.iter().any(|from| {
+            let read = self.inputs.get(*from as usize);
+            *from as usize == input || read.is_some_and(|read| read.others().any(|of| of == input))
+        })
     }
 
     /// Whether the risk depends on an input that reads the commands of the motors.
@@ -353,6 +356,14 @@ impl Follower {
                 f64::NAN
             });
         }
+        for (input, of) in feed.inputs.iter().enumerate() {
+            if let Some(ratio) = of.ratio
+                && let Some(value) = ratio.of(room.inputs, input)
+                && let Some(kept) = room.inputs.get_mut(input)
+            {
+                *kept = value;
+            }
+        }
         match reason {
             Some(reason) => Err(reason),
             None => estimate(room.inputs).ok_or(Unknown::NoRule),
@@ -414,24 +425,8 @@ fn unknown_motor(motors: &[Motor], commands: &[f64]) -> Option<Unknown> {
     })
 }
 
-/// The value of an input, where enough is known of its windows.
-pub(crate) fn reading(
-    plan: (&[Channel], &[Input]),
-    seen: &[Seen],
-    sampling: &Sampling,
-    input: usize,
-) -> Result<f64, Unknown> {
-    let statistic = |input: usize| statistic(plan, seen, sampling, input);
-    let value = statistic(input)?;
-    let Some(ratio) = plan.1.get(input).and_then(|input| input.ratio) else {
-        return Ok(value);
-    };
-    let plus = ratio.plus.map_or(Ok(0.0), statistic)?;
-    Ok((value + plus) / statistic(ratio.per)?.max(ratio.at_least))
-}
-
 /// The statistic of an input, where enough is known of its window.
-fn statistic(
+pub(crate) fn reading(
     plan: (&[Channel], &[Input]),
     seen: &[Seen],
     sampling: &Sampling,

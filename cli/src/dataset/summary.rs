@@ -40,8 +40,8 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
     let kind = table.header.column("kind");
     let mut recipes = Vec::new();
     for input in &plan.profile.inputs {
-        let told = recipe(&input.source).filter(|_| input.ratio.is_none());
-        let recipe = told.ok_or_else(|| {
+        let of_source = recipe(&input.source).filter(|_| input.ratio.is_none());
+        let recipe = of_source.ok_or_else(|| {
             Failure::unreadable(format!(
                 "input `{}` cannot be told from a table of flights",
                 input.name

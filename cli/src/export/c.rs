@@ -252,7 +252,7 @@ fn channel(channel: &Channel) -> String {
 
 fn source(input: &Input) -> String {
     let (statistic, parameter) = input.statistic.code();
-    // A ratio of nothing is none.
+    // Without a ratio, nothing is added and nothing divided by.
     let (at_least, plus, per) = input.ratio.map_or((0.0, None, None), |ratio| {
         (ratio.at_least, ratio.plus, Some(ratio.per))
     });

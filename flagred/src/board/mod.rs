@@ -143,7 +143,7 @@ impl Plan<'_> {
                 }) && input.others().all(|other| {
                     let other = self.inputs.get(other);
                     other.is_some_and(|other| other.ratio.is_none())
-                }) && input.ratio.is_none_or(|ratio| is_length(ratio.at_least))
+                }) && input.ratio.is_none_or(|ratio| is_above_0(ratio.at_least))
             }),
             "inputs of the profile",
         )?;
@@ -156,11 +156,11 @@ impl Plan<'_> {
                     Observed::Effort(axis) => axis < ROLL_PITCH_YAW_THRUST,
                     _ => true,
                 };
-                is_known && is_length(channel.window_s)
+                is_known && is_above_0(channel.window_s)
             }),
             "channels",
         )?;
-        require(is_length(self.settings.elevated_risk.window_s), "settings")?;
+        require(is_above_0(self.settings.elevated_risk.window_s), "settings")?;
         require(
             self.propositions
                 .iter()
@@ -418,7 +418,7 @@ impl<'a> Monitor<'a> {
     }
 }
 
-/// Whether a window can have this length in seconds, and whether something can be divided by this.
-fn is_length(number: f64) -> bool {
+/// Whether a window can have this length, and a ratio this least divisor.
+fn is_above_0(number: f64) -> bool {
     number.is_finite() && number > 0.0
 }

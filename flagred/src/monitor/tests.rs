@@ -152,6 +152,36 @@ inputs:
     }
 }
 
+/// A motor that is unknown is unknown to a ratio by it, though the window still knows what it was.
+#[test]
+fn a_ratio_by_motors_needs_them() {
+    let text = "flagred: 1
+name: ratio
+rules: test
+inputs:
+  margin: {last: battery_v, per: load, at_least: 0.5}
+  load: {mean: motor_command}
+";
+    let profile: Profile = text.parse().unwrap();
+    let estimator = Estimator::new(&profile, &rules(false)).unwrap();
+    assert!(estimator.plan().unwrap().needs_motors());
+    let craft = Craft::new(2).with_signals(&["battery_v"]);
+    let mut monitor = Monitor::new(&estimator, craft).unwrap();
+    for i in 0..100 {
+        let lost = i == 99;
+        let update = monitor.push(&Sample {
+            t_s: f64::from(i) * 0.04,
+            motors: &[0.5, if lost { f64::NAN } else { 0.5 }],
+            in_air: true,
+            signals: &[0.1],
+        });
+        match lost {
+            true => assert_eq!(update.risk, Err(Unknown::NoCommand { motor: 1 })),
+            false => assert!(update.risk.is_ok() || i < 50, "{i}: {update:?}"),
+        }
+    }
+}
+
 #[test]
 fn risk_follows_the_motors_within_the_window_and_is_unknown_on_the_ground() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();

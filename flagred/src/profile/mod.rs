@@ -119,7 +119,7 @@ pub struct Ratio {
 
 impl Profile {
     /// What is observed where samples carry these signals, in their order, and the inputs of the profile, then those of `more`.
-    /// The error is the name of a signal that is not among them.
+    /// The error is the name of a signal, or of an input of a ratio, that there is not.
     pub(crate) fn channels<'a>(
         &'a self,
         more: &'a [Source],
@@ -142,12 +142,10 @@ impl Profile {
         Ok((channels, inputs))
     }
 
-    /// Whether another input is made of one.
+    /// Whether a ratio is made of the input of this name.
     pub(crate) fn is_part(&self, name: &str) -> bool {
-        let ratios = self.inputs.iter().filter_map(|input| input.ratio.as_ref());
-        ratios
-            .into_iter()
-            .any(|ratio| ratio.per == name || ratio.plus.as_deref() == Some(name))
+        let mut ratios = self.inputs.iter().filter_map(|input| input.ratio.as_ref());
+        ratios.any(|ratio| ratio.per == name || ratio.plus.as_deref() == Some(name))
     }
 
     /// The names of the signals beside the motors that it needs, each once.

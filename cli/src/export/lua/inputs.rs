@@ -53,10 +53,13 @@ pub(super) fn fill(
     filling.set("needs_motors", plan.needs_motors());
     let mut windows: Vec<Window> = Vec::new();
     let mut script = Script::default();
-    for (input, of) in plan.inputs.iter().enumerate() {
-        let flagred::channel::Input {
+    for (
+        input,
+        flagred::channel::Input {
             channel, statistic, ..
-        } = of;
+        },
+    ) in plan.inputs.iter().enumerate()
+    {
         let Some(channel) = plan.channels.get(*channel) else {
             continue;
         };

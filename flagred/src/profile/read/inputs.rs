@@ -171,21 +171,20 @@ fn input(
 
 /// `plus: OTHER, per: OTHER, at_least: NUMBER`.
 fn ratio(fields: &Fields, entry: &Entry, entries: &[Entry], found: &mut Found) -> Option<Ratio> {
-    let plus = fields
-        .get("plus")
-        .map(|node| other(node, entry, entries, found));
+    let plus = match fields.get("plus") {
+        Some(node) => other(node, entry, entries, found).map(Some),
+        None => Some(None),
+    };
     let help = "write for example `per: room, at_least: 0.02`, with an input `room` beside it";
     let per = fields.require("per", help, found);
     let least = fields.require("at_least", help, found);
-    let ratio = Ratio {
-        plus: match plus {
-            Some(plus) => Some(plus?),
-            None => None,
-        },
-        per: other(per?, entry, entries, found)?,
-        at_least: number(fields, "at_least", 1.0, Least::Above0, found),
-    };
-    least.map(|_| ratio)
+    let per = per.and_then(|node| other(node, entry, entries, found));
+    let at_least = least.map(|_| number(fields, "at_least", 1.0, Least::Above0, found));
+    Some(Ratio {
+        plus: plus?,
+        per: per?,
+        at_least: at_least?,
+    })
 }
 
 /// The name of another input that a ratio is made of.
