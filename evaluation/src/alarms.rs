@@ -1,6 +1,8 @@
-//! Alarms in flights where nothing happens, and before upsets.
+//! Alarms where nothing happens, and before upsets.
 //!
 //! An alarm is a WARN or a FAIL, from when it is raised until its level is last reached; one that turns into the other is one.
+
+use std::collections::BTreeMap;
 
 use flagred::{
     evaluation::{Interval, Span, UpsetAlarm, bootstrap},
@@ -16,13 +18,14 @@ use crate::{
 
 /// The alarms of a profile over all flights but the kind apart, and over each kind.
 pub(crate) struct Alarms {
-    pub(crate) ordinary: SmallErrors,
-    pub(crate) mild: SmallErrors,
+    /// In calm stretches, and in flights whose error never passes [`ORDINARY_DEG`].
+    pub(crate) calm: Needless,
+    pub(crate) ordinary: Needless,
     /// Found by any alarm, and by FAIL alone.
     pub(crate) upsets: Upsets,
     pub(crate) upsets_by_fail: Upsets,
-    /// Ordinary flights and upsets of each kind.
-    pub(crate) by_kind: Vec<(String, SmallErrors, Upsets)>,
+    /// Calm stretches and upsets of each kind.
+    pub(crate) by_kind: Vec<(String, Needless, Upsets)>,
 }
 
 impl Alarms {
@@ -33,13 +36,13 @@ impl Alarms {
             let records = || records.iter().filter(|record| record.kind == kind);
             (
                 kind.to_owned(),
-                SmallErrors::of(profile, ORDINARY_DEG, records()),
+                Needless::of(profile, calm, records()),
                 Upsets::of(profile, |said| &said.alarms, records()),
             )
         };
         Alarms {
-            ordinary: SmallErrors::of(profile, ORDINARY_DEG, main()),
-            mild: SmallErrors::of(profile, MILD_DEG, main()),
+            calm: Needless::of(profile, calm, main()),
+            ordinary: Needless::of(profile, ordinary, main()),
             upsets: Upsets::of(profile, |said| &said.alarms, main()),
             upsets_by_fail: Upsets::of(profile, |said| &said.fails, main()),
             by_kind: kinds(records).into_iter().map(of_kind).collect(),
@@ -55,24 +58,34 @@ pub(crate) fn kinds(records: &[Record]) -> Vec<&str> {
     kinds
 }
 
-/// A flight without an upset whose error over a second never passes this is ordinary ...
+/// A flight without an upset is ordinary if its error over a second never passes this ...
 const ORDINARY_DEG: f64 = 5.0;
 
-/// ... and mild up to this, if it tilts by less than [`STEEP_DEG`].
-const MILD_DEG: f64 = 10.0;
-
+/// ... and it tilts by less than this.
 const STEEP_DEG: f64 = 45.0;
 
-/// A figure with its interval over flights.
+/// The time in the air of an ordinary flight.
+fn ordinary(record: &Record) -> &[Span] {
+    let is_ordinary = record.upsets.is_empty()
+        && record.largest_error_deg.is_some_and(|e| e <= ORDINARY_DEG)
+        && record.largest_tilt_deg.is_some_and(|t| t < STEEP_DEG);
+    if is_ordinary { &record.air } else { &[] }
+}
+
+fn calm(record: &Record) -> &[Span] {
+    &record.calm
+}
+
+/// A figure with its interval over vehicles.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Figure {
     pub(crate) value: f64,
     pub(crate) interval: Option<Interval>,
 }
 
-/// The alarms of a profile in flights with small errors.
-pub(crate) struct SmallErrors {
-    /// The flights with a verdict, and those without.
+/// The alarms of a profile in times that need none.
+pub(crate) struct Needless {
+    /// The flights with such times and a verdict, and those without a verdict.
     pub(crate) flights: usize,
     pub(crate) not_assessed: usize,
     pub(crate) hours: f64,
@@ -83,13 +96,14 @@ pub(crate) struct SmallErrors {
     /// `None` without a flight.
     pub(crate) alarms_per_hour: Option<Figure>,
     pub(crate) fails_per_hour: Option<Figure>,
-    /// The share of the time in the air with an alarm on.
+    /// The share of the times with an alarm on.
     pub(crate) share_on: Option<Figure>,
 }
 
-/// What a flight adds.
+/// What a vehicle adds.
+#[derive(Default)]
 struct Counted {
-    air_s: f64,
+    length_s: f64,
     alarms: f64,
     fails: f64,
     on_s: f64,
@@ -104,51 +118,50 @@ fn column(level: Level) -> usize {
     }
 }
 
-impl SmallErrors {
-    /// Of a profile over the flights whose error never passes `limit_deg`.
+impl Needless {
+    /// Of a profile over such times of flights.
     pub(crate) fn of<'a>(
         profile: usize,
-        limit_deg: f64,
+        times: fn(&Record) -> &[Span],
         records: impl Iterator<Item = &'a Record>,
-    ) -> SmallErrors {
-        let small = |record: &&Record| {
-            record.upsets.is_empty()
-                && record.largest_error_deg.is_some_and(|e| e <= limit_deg)
-                && record.largest_tilt_deg.is_some_and(|t| t < STEEP_DEG)
-        };
-        let (mut not_assessed, mut verdicts) = (0, [0; 3]);
-        let mut counted = Vec::new();
-        for record in records.filter(small) {
+    ) -> Needless {
+        let (mut flights, mut not_assessed, mut verdicts) = (0, 0, [0; 3]);
+        let mut vehicles: BTreeMap<&str, Counted> = BTreeMap::new();
+        for record in records.filter(|record| !times(record).is_empty()) {
             let said = record.said.get(profile);
             let Some((said, verdict)) = said.and_then(|said| Some((said, said.verdict?))) else {
                 not_assessed += 1;
                 continue;
             };
+            flights += 1;
             verdicts[column(verdict)] += 1;
-            let on_s = record.air.iter().flat_map(|air| {
-                let alarms = said.alarms.iter();
-                alarms.map(|alarm| alarm.shared_s(air))
-            });
-            counted.push(Counted {
-                air_s: record.air_s(),
-                alarms: said.alarms.len() as f64,
-                fails: said.fails.len() as f64,
-                // The sum of nothing would be -0.
-                on_s: on_s.fold(0.0, |sum, shared_s| sum + shared_s),
-            });
+            let vehicle = record.vehicle.as_ref().unwrap_or(&record.file);
+            let counted = vehicles.entry(vehicle).or_default();
+            for time in times(record) {
+                let raised = |alarms: &[Span]| {
+                    let inside = alarms.iter().filter(|alarm| time.contains(alarm.from_s));
+                    inside.count() as f64
+                };
+                counted.length_s += time.length_s();
+                counted.alarms += raised(&said.alarms);
+                counted.fails += raised(&said.fails);
+                let on_s = said.alarms.iter().map(|alarm| alarm.shared_s(time));
+                counted.on_s += on_s.sum::<f64>().max(0.0);
+            }
         }
+        let counted: Vec<Counted> = vehicles.into_values().collect();
         let figures = |weights: &[u32]| {
             let sum = |of: fn(&Counted) -> f64| -> f64 {
                 let all = counted.iter().zip(weights);
-                all.map(|(flight, weight)| of(flight) * f64::from(*weight))
+                all.map(|(vehicle, weight)| of(vehicle) * f64::from(*weight))
                     .sum()
             };
-            let air_s = sum(|flight| flight.air_s);
-            (air_s > 0.0).then(|| {
+            let length_s = sum(|vehicle| vehicle.length_s);
+            (length_s > 0.0).then(|| {
                 [
-                    sum(|flight| flight.alarms) / (air_s / 3600.0),
-                    sum(|flight| flight.fails) / (air_s / 3600.0),
-                    sum(|flight| flight.on_s) / air_s,
+                    sum(|vehicle| vehicle.alarms) / (length_s / 3600.0),
+                    sum(|vehicle| vehicle.fails) / (length_s / 3600.0),
+                    sum(|vehicle| vehicle.on_s) / length_s,
                 ]
             })
         };
@@ -160,13 +173,13 @@ impl SmallErrors {
             Some(Figure { value, interval })
         };
         let count = |of: fn(&Counted) -> f64| counted.iter().map(of).fold(0.0, |a, b| a + b);
-        SmallErrors {
-            flights: counted.len(),
+        Needless {
+            flights,
             not_assessed,
-            hours: count(|flight| flight.air_s) / 3600.0,
+            hours: count(|vehicle| vehicle.length_s) / 3600.0,
             verdicts,
-            alarms: count(|flight| flight.alarms) as usize,
-            fails: count(|flight| flight.fails) as usize,
+            alarms: count(|vehicle| vehicle.alarms) as usize,
+            fails: count(|vehicle| vehicle.fails) as usize,
             alarms_per_hour: figure(0),
             fails_per_hour: figure(1),
             share_on: figure(2),

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::{
     Evaluation, LeftOut,
-    alarms::{Alarms, Figure, SmallErrors, Upsets},
+    alarms::{Alarms, Figure, Needless, Upsets},
     flight::{Record, Said},
     scores::{Evaluated, Scores},
     warnings::Warnings,
@@ -108,8 +108,8 @@ struct WarningsDocument<'a> {
 
 #[derive(Serialize)]
 struct AlarmsDocument<'a> {
-    ordinary_flights: SmallErrorsDocument,
-    mild_flights: SmallErrorsDocument,
+    calm_stretches: NeedlessDocument,
+    ordinary_flights: NeedlessDocument,
     upsets: UpsetsDocument<'a>,
     upsets_by_fail: UpsetsDocument<'a>,
     by_kind: Vec<OfKind<'a, AlarmsOfKind<'a>>>,
@@ -117,12 +117,12 @@ struct AlarmsDocument<'a> {
 
 #[derive(Serialize)]
 struct AlarmsOfKind<'a> {
-    ordinary_flights: SmallErrorsDocument,
+    calm_stretches: NeedlessDocument,
     upsets: UpsetsDocument<'a>,
 }
 
 #[derive(Serialize)]
-struct SmallErrorsDocument {
+struct NeedlessDocument {
     flights: usize,
     not_assessed: usize,
     hours: f64,
@@ -311,16 +311,16 @@ impl<'a> WarningsDocument<'a> {
 
 impl<'a> AlarmsDocument<'a> {
     fn new(alarms: &'a Alarms) -> Self {
-        let by_kind = alarms.by_kind.iter().map(|(kind, ordinary, upsets)| {
+        let by_kind = alarms.by_kind.iter().map(|(kind, calm, upsets)| {
             let of = AlarmsOfKind {
-                ordinary_flights: SmallErrorsDocument::new(ordinary),
+                calm_stretches: NeedlessDocument::new(calm),
                 upsets: UpsetsDocument::new(upsets),
             };
             OfKind { kind, of }
         });
         AlarmsDocument {
-            ordinary_flights: SmallErrorsDocument::new(&alarms.ordinary),
-            mild_flights: SmallErrorsDocument::new(&alarms.mild),
+            calm_stretches: NeedlessDocument::new(&alarms.calm),
+            ordinary_flights: NeedlessDocument::new(&alarms.ordinary),
             upsets: UpsetsDocument::new(&alarms.upsets),
             upsets_by_fail: UpsetsDocument::new(&alarms.upsets_by_fail),
             by_kind: by_kind.collect(),
@@ -328,12 +328,12 @@ impl<'a> AlarmsDocument<'a> {
     }
 }
 
-impl SmallErrorsDocument {
-    fn new(of: &SmallErrors) -> Self {
+impl NeedlessDocument {
+    fn new(of: &Needless) -> Self {
         let value = |figure: Option<Figure>| figure.map(|figure| figure.value);
         let interval = |figure: Option<Figure>| figure.and_then(|f| f.interval).map(ends);
         let [good, warn, fail] = of.verdicts;
-        SmallErrorsDocument {
+        NeedlessDocument {
             flights: of.flights,
             not_assessed: of.not_assessed,
             hours: of.hours,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use flagred::{
     attitude::Attitude,
-    evaluation::{BaselineObserver, ErrorRecord, Judged, Span, judge, upset_s},
+    evaluation::{BaselineObserver, ErrorRecord, Judged, Span, calm_stretches, judge, upset_s},
     flight::Finding,
     flight::{Assessor, Verdict},
     log::{self, Incomplete},
@@ -39,6 +39,8 @@ pub struct Record {
     pub(crate) kind: String,
     pub(crate) judged_s: f64,
     pub(crate) air: Vec<Span>,
+    /// The stretches in which nothing happens.
+    pub(crate) calm: Vec<Span>,
     /// The largest attitude error over a second, and the largest tilt, in the air.
     pub(crate) largest_error_deg: Option<f64>,
     pub(crate) largest_tilt_deg: Option<f64>,
@@ -183,6 +185,10 @@ impl Record {
                 .iter()
                 .map(|(_, attitude)| attitude.tilt_deg())
                 .reduce(f64::max),
+            calm: air
+                .iter()
+                .flat_map(|air| calm_stretches(&errors, &attitudes, *air))
+                .collect(),
             said: said.collect(),
             steps,
             upsets,

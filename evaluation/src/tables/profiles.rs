@@ -2,16 +2,16 @@
 
 use super::{Table, column, number, percent, seen};
 use crate::{
-    alarms::{Alarms, Figure, SmallErrors, Upsets},
+    alarms::{Alarms, Figure, Needless, Upsets},
     scores::Evaluated,
     warnings::Warnings,
 };
 
-/// The alarms of a profile on flights with small errors, and before upsets.
+/// The alarms of a profile where nothing happens, and before upsets.
 pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
     let mut rows = vec![
-        small_errors("ordinary (up to 5 deg)".to_owned(), &alarms.ordinary),
-        small_errors("mild (up to 10 deg)".to_owned(), &alarms.mild),
+        needless("calm stretches".to_owned(), &alarms.calm),
+        needless("ordinary flights".to_owned(), &alarms.ordinary),
     ];
     let by_kind = match alarms.by_kind.as_slice() {
         [_] => &[],
@@ -20,7 +20,7 @@ pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
     rows.extend(
         by_kind
             .iter()
-            .map(|(kind, ordinary, _)| small_errors(format!("ordinary, {}", seen(kind)), ordinary)),
+            .map(|(kind, calm, _)| needless(format!("calm, {}", seen(kind)), calm)),
     );
     let upsets = |of: &Upsets| {
         let lead = of
@@ -49,11 +49,11 @@ pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
     notes.extend(by_kind.map(|(kind, _, of)| format!("upsets, {}: {}", seen(kind), upsets(of))));
     Table {
         title: format!(
-            "alarms of {name} (WARN or FAIL; a WARN that turns FAIL is one) on flights whose error stays small"
+            "alarms of {name} where nothing happens (WARN or FAIL; a WARN that turns FAIL is one)"
         ),
         columns: vec![
-            column("flights", 22),
-            number("number", 7),
+            column("", 22),
+            number("flights", 7),
             number("hours", 5),
             column("GOOD/WARN/FAIL", 14),
             number("alarms", 6),
@@ -67,7 +67,7 @@ pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
     }
 }
 
-fn small_errors(name: String, of: &SmallErrors) -> Vec<String> {
+fn needless(name: String, of: &Needless) -> Vec<String> {
     let figure = |figure: Option<Figure>, scale: f64| {
         let Some(Figure { value, interval }) = figure else {
             return "-".to_owned();

@@ -8,6 +8,7 @@
 mod announced;
 mod baseline;
 mod bootstrap;
+mod calm;
 mod critical;
 mod random;
 mod ranking;
@@ -16,6 +17,7 @@ mod upset;
 pub use announced::{Answer, Judged, Warning, judge};
 pub use baseline::{Baseline, BaselineObserver, PerMotor};
 pub use bootstrap::{Interval, bootstrap};
+pub use calm::calm_stretches;
 pub use critical::ErrorRecord;
 pub use ranking::{
     Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,

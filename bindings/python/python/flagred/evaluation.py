@@ -30,7 +30,7 @@ __all__ = [
     "EvaluatedFlight",
     "Evaluation",
     "LeftOutFile",
-    "OrdinaryFlights",
+    "NeedlessAlarms",
     "Said",
     "Span",
     "Upsets",
@@ -103,15 +103,15 @@ class Warnings(NamedTuple):
     false_per_hour: float | None
 
 
-class OrdinaryFlights(NamedTuple):
-    """The alarms of a profile in flights whose error stays small."""
+class NeedlessAlarms(NamedTuple):
+    """The alarms of a profile in times that need none."""
 
     flights: int
-    """The flights with a verdict."""
+    """The flights with such times and a verdict."""
     not_assessed: int
-    """The flights whose verdict is NA."""
+    """The flights with such times whose verdict is NA."""
     hours: float
-    """The time in the air."""
+    """The length of these times."""
     verdicts: dict[str, int]
     """How many flights were GOOD, WARN and FAIL."""
     alarms: int
@@ -142,17 +142,17 @@ class Upsets(NamedTuple):
 class AlarmsOfKind(NamedTuple):
     """The alarms of a profile in flights of a kind."""
 
-    ordinary_flights: OrdinaryFlights
+    calm_stretches: NeedlessAlarms
     upsets: Upsets
 
 
 class Alarms(NamedTuple):
     """The alarms of a profile."""
 
-    ordinary_flights: OrdinaryFlights
+    calm_stretches: NeedlessAlarms
+    """At least 20 s, from 5 s after take-off, 10 s away from any error over 5 degrees and any tilt over 45 degrees."""
+    ordinary_flights: NeedlessAlarms
     """Flights whose error over a second stays within 5 degrees, whose tilt stays under 45 degrees, and without an upset."""
-    mild_flights: OrdinaryFlights
-    """The same up to 10 degrees."""
     upsets: Upsets
     upsets_by_fail: Upsets
     """As found by FAIL alone."""
@@ -251,8 +251,8 @@ def _interval(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else value
 
 
-def _ordinary(data: dict[str, Any]) -> OrdinaryFlights:
-    return OrdinaryFlights(**{name: _interval(value) for name, value in data.items()})
+def _needless(data: dict[str, Any]) -> NeedlessAlarms:
+    return NeedlessAlarms(**{name: _interval(value) for name, value in data.items()})
 
 
 def _warnings(data: dict[str, Any]) -> Warnings:
@@ -261,12 +261,12 @@ def _warnings(data: dict[str, Any]) -> Warnings:
 
 def _alarms(data: dict[str, Any]) -> Alarms:
     return Alarms(
-        _ordinary(data["ordinary_flights"]),
-        _ordinary(data["mild_flights"]),
+        _needless(data["calm_stretches"]),
+        _needless(data["ordinary_flights"]),
         Upsets(**data["upsets"]),
         Upsets(**data["upsets_by_fail"]),
         {
-            of["kind"]: AlarmsOfKind(_ordinary(of["ordinary_flights"]), Upsets(**of["upsets"]))
+            of["kind"]: AlarmsOfKind(_needless(of["calm_stretches"]), Upsets(**of["upsets"]))
             for of in data["by_kind"]
         },
     )
