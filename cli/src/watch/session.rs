@@ -243,8 +243,14 @@ impl<'e> Session<'e> {
         add(&mut self.worst, verdict);
         let is_mute =
             (self.tracked.as_ref()).is_some_and(|tracked| !tracked.telemetry.has_commands());
-        if is_mute && self.worst == Verdict::NotAvailable(Reason::NoFlight) {
-            return Verdict::NotAvailable(Reason::NoMotorOutputs);
+        if self.worst == Verdict::NotAvailable(Reason::NoFlight) {
+            if is_mute {
+                return Verdict::NotAvailable(Reason::NoMotorOutputs);
+            }
+            let refused = self.tracked.as_mut().and_then(|t| t.refused.take());
+            if let Some(reason) = refused {
+                return Verdict::NotAvailable(reason);
+            }
         }
         match (&self.worst, self.unknown_part.take()) {
             // A flight is not GOOD where a part of it is not known.
