@@ -114,6 +114,24 @@ fn a_cell_that_is_not_a_number_is_unknown_and_its_row_counts() {
 }
 
 #[test]
+fn a_row_with_too_few_cells_is_refused() {
+    let short = |row: usize| {
+        flight("", move |i, t_s| {
+            (i == row).then(|| format!("{t_s},1500,1500"))
+        })
+    };
+    refused(
+        &short(10),
+        "line 14: 3 of 6 columns",
+        "give every row a cell",
+    );
+    // The last row is that of a file that is cut off.
+    let flight = read(&short(1499)).unwrap();
+    assert!(flight.report.truncated);
+    assert_eq!(flight.report.bad_messages, 1);
+}
+
+#[test]
 fn a_vehicle_is_in_the_air_or_not() {
     for state in ["2", "0.5", "-1", "True", "inf"] {
         let csv = flight("", |i, t_s| {
