@@ -1,5 +1,5 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4516 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123208 bytes of memory.
+// 4516 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123224 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]

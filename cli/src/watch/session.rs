@@ -378,9 +378,10 @@ impl<'e> Session<'e> {
         };
         let to = tracked.address();
         let in_air = tracked.telemetry.is_in_air();
+        let reported = tracked.telemetry.reported_in_air(now_s);
         let pulses = tracked.telemetry.pulses();
         if in_air {
-            tracked.history.push(t_s, pulses);
+            tracked.history.push(t_s, reported, pulses);
         } else {
             tracked.history.clear();
         }
@@ -395,7 +396,7 @@ impl<'e> Session<'e> {
             });
         }
         watch.commands_s = now_s;
-        let update = watch.push(t_s, in_air, &pulses);
+        let update = watch.push(t_s, reported, &pulses);
         if update.risk == Err(Unknown::OutOfOrder) {
             return;
         }

@@ -371,13 +371,11 @@ impl Rows {
             .map_or(self.first_s, |(t_s, _)| *t_s);
         let end_s = end_s.filter(|end_s| *end_s >= last_change_s);
         let (first_s, last_s) = (self.first_s, end_s.unwrap_or(self.last_s));
-        Some(Intervals::from_changes(
-            &self.air_changes,
-            before,
-            first_s,
-            last_s,
-            rule,
-        ))
+        let air = Intervals::from_changes(&self.air_changes, before, first_s, last_s, rule);
+        Some(match self.has_air {
+            true => air,
+            false => air.assumed(),
+        })
     }
 }
 

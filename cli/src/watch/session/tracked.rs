@@ -267,7 +267,7 @@ impl Tracked {
         match before {
             Some(before) => watch.risk_sent_s = before.risk_sent_s,
             None => {
-                let first = flown.first().map(|(t_s, _)| Event::TookOff { t_s: *t_s });
+                let first = flown.first().map(|(t_s, ..)| Event::TookOff { t_s: *t_s });
                 out.events.extend(first);
             }
         }
@@ -352,7 +352,7 @@ impl Watch {
     }
 
     /// Takes in a sample.
-    pub(super) fn push(&mut self, t_s: f64, in_air: bool, pulses: &Pulses) -> Update {
+    pub(super) fn push(&mut self, t_s: f64, in_air: Option<bool>, pulses: &Pulses) -> Update {
         self.setup.effective_commands(pulses, &mut self.motors);
         self.assessor.push(&Sample {
             t_s,
@@ -363,9 +363,9 @@ impl Watch {
     }
 
     /// Takes in a flight up to now; its findings are told anew, its levels are not.
-    fn replay(&mut self, flown: &[(f64, Pulses)], out: &mut Out) {
-        for (t_s, pulses) in flown {
-            let update = self.push(*t_s, true, pulses);
+    fn replay(&mut self, flown: &[(f64, Option<bool>, Pulses)], out: &mut Out) {
+        for (t_s, in_air, pulses) in flown {
+            let update = self.push(*t_s, *in_air, pulses);
             self.level = update.level;
             self.latest = Some(update);
             tell(self.assessor.ended(), out);
