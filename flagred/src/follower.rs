@@ -55,7 +55,7 @@ const TROUBLE_S: f64 = 2.0;
 
 /// Motors that idle for this long, in seconds, while the autopilot reports that the vehicle is in the air, are a fall. A land
 /// detector reports a landing up to 1.5 s after the motors begin to idle, and in bounces motors idle for up to 2.3 s
-/// (docs/validation.md).
+/// (docs/profiles.md).
 const FALL_S: f64 = 3.0;
 
 /// How a flight, or what is known of it, ends.
