@@ -45,7 +45,7 @@ fn run(bencher: Bencher<'_, '_>, mut push: impl FnMut(&Sample<'_>)) {
             push(black_box(&Sample {
                 t_s: f64::from(i) * 0.02,
                 motors,
-                in_air: true,
+                in_air: Some(true),
                 signals: &[],
             }));
         }

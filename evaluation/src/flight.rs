@@ -286,7 +286,7 @@ fn follow(
         }
         let held_s = last_s.map_or(0.0, |last_s| sample.t_s - last_s);
         last_s = Some(sample.t_s);
-        if !sample.in_air || !(0.0..=LONGEST_GAP_S).contains(&held_s) {
+        if sample.is_on_ground() || !(0.0..=LONGEST_GAP_S).contains(&held_s) {
             baselines.clear();
         } else if held_s > 0.0 {
             baselines.push(sample.t_s, held_s, sample.motors, sample.signals);

@@ -75,7 +75,7 @@ fn is_same(a: &Unknown, b: &Unknown) -> bool {
 /// for i in 0..1500 {
 ///     let t_s = f64::from(i) * 0.02;
 ///     let motors = if t_s < 20.0 { [0.5; 4] } else { [1.0, 0.0, 1.0, 0.0] };
-///     assessor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
+///     assessor.push(&Sample { t_s, motors: &motors, in_air: Some(true), signals: &[] });
 /// }
 /// let assessment = assessor.finish();
 /// assert_eq!(assessment.verdict.to_string(), "FAIL");
@@ -192,7 +192,7 @@ impl Assessor {
             let elsewhere = self.monitor.unknown_elsewhere();
             let unknown = update.risk.err().into_iter().chain(elsewhere);
             self.flight.add(&update, sample, profile, unknown);
-            if sample.in_air {
+            if !sample.is_on_ground() {
                 self.keep_step(&update);
             }
         }
@@ -314,19 +314,19 @@ impl Flight {
         let t_s = sample.t_s;
         let last = self.last.replace(Last {
             t_s,
-            in_air: sample.in_air,
+            in_air: !sample.is_on_ground(),
         });
         let flown_s = last.filter(|last| last.in_air).map_or(0.0, |last| {
             let held_s = (t_s - last.t_s).max(0.0);
             // It may have landed at any time of a gap.
-            match sample.in_air || held_s <= profile.sampling.longest_gap_s {
+            match !sample.is_on_ground() || held_s <= profile.sampling.longest_gap_s {
                 true => held_s,
                 false => 0.0,
             }
         });
         self.summary.in_air_s += flown_s;
         let quiet_s = profile.verdict.quiet_before_landing_s;
-        if !sample.in_air {
+        if sample.is_on_ground() {
             if last.is_some_and(|last| last.in_air) {
                 self.take_back(t_s - quiet_s);
             }

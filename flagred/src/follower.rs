@@ -37,6 +37,10 @@ pub(crate) struct Follower {
     down_since_s: Option<f64>,
     /// Whether the motors idle, and whether a high risk came before.
     idle: Option<Idle>,
+    /// When the motors last did not idle, since the autopilot last reported that the vehicle is on the ground.
+    lifted_s: Option<f64>,
+    /// Whether the motors idle in the air.
+    falls: bool,
     last_high_s: Option<f64>,
     last_known_s: Option<f64>,
     /// Since an alarm: when it was last unknown whether the motors work as before.
@@ -48,6 +52,11 @@ const TOUCH_S: f64 = 1.0;
 
 /// Motors that idle within this time after a high risk, in seconds, are no landing.
 const TROUBLE_S: f64 = 2.0;
+
+/// Motors that idle for this long, in seconds, while the autopilot reports that the vehicle is in the air, are a fall. A land
+/// detector reports a landing up to 1.5 s after the motors begin to idle, and in bounces motors idle for up to 2.3 s
+/// (docs/profiles.md).
+const FALL_S: f64 = 3.0;
 
 /// How a flight, or what is known of it, ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,6 +123,8 @@ impl Follower {
             settled: false,
             down_since_s: None,
             idle: None,
+            lifted_s: None,
+            falls: false,
             last_high_s: None,
             last_known_s: None,
             in_doubt_s: None,
@@ -166,7 +177,10 @@ impl Follower {
         };
         self.last_s = Some(t_s);
         let together = motor::take(room.motors, &mut self.bin, t_s, sample.motors);
-        if !sample.in_air || self.rests(t_s, room.motors) {
+        let rests = self.rests(sample, room.motors);
+        // A risk that does not read the motors is estimated in a fall, too.
+        self.falls = self.falls && feed.needs_motors();
+        if rests {
             room.inputs.fill(f64::NAN);
             if self.in_air_since_s.is_some() {
                 let down_since_s = *self.down_since_s.get_or_insert(t_s);
@@ -197,6 +211,7 @@ impl Follower {
         }
         let unknown = unknown.filter(|_| feed.needs_motors());
         let said = match self.estimate(feed, room, unknown, estimate) {
+            _ if self.falls => Estimate::FALL,
             Ok(said) => said,
             Err(reason) => {
                 let known_s = self.last_known_s.unwrap_or(t_s);
@@ -217,13 +232,14 @@ impl Follower {
             self.last_high_s = Some(t_s);
         }
         let elevated = self.sum.push(room.risks, (t_s, held_s), said.risk_pct);
-        let takes_off = t_s - in_air_since_s < verdict.quiet_after_take_off_s;
+        let takes_off = !self.falls && t_s - in_air_since_s < verdict.quiet_after_take_off_s;
         let now = verdict::Now {
             t_s,
             risk_pct: said.risk_pct,
             elevated_pct: elevated,
             takes_off,
-            sinks: self.notices.sinks(),
+            sinks: !self.falls && self.notices.sinks(),
+            falls: self.falls,
         };
         let step = self.alert.push(now, room.motors);
         self.doubt(t_s);
@@ -262,6 +278,7 @@ impl Follower {
             return;
         }
         let by_rules = update.risk.ok().filter(|said| said.filled_from.is_none());
+        let by_rules = by_rules.filter(|_| !self.falls);
         let cause = by_rules.and_then(|said| cause(said.risk_pct));
         self.alert.explain(cause, |motor| {
             cause
@@ -274,10 +291,12 @@ impl Follower {
         let Some(last_s) = self.last_s else {
             return Ended::default();
         };
-        match self.down_since_s {
+        let ended = match self.down_since_s {
             Some(down_s) => self.forget(down_s, End::Landing, room),
             None => self.forget(last_s, End::Restart, room),
-        }
+        };
+        self.lifted_s = None;
+        ended
     }
 
     /// The level of the risk, and of the findings beside it. After an alarm it is WARN until the motors work as before.
@@ -299,17 +318,29 @@ impl Follower {
         }
     }
 
-    /// Whether the motors idle as they do on the ground: before take-off, and after a flight that was calm to its end. With an
-    /// unknown motor that cannot be known, and the vehicle counts as in the air.
-    fn rests(&mut self, t_s: f64, motors: &[Motor]) -> bool {
+    /// Whether the vehicle is on the ground: as the autopilot reports, or because the motors idle, before take-off and after a
+    /// flight that was calm to its end. With an unknown motor that cannot be known, and the vehicle counts as in the air.
+    fn rests(&mut self, sample: &Sample<'_>, motors: &[Motor]) -> bool {
+        let t_s = sample.t_s;
+        let fell = core::mem::replace(&mut self.falls, false);
+        if sample.is_on_ground() {
+            self.lifted_s = None;
+            return true;
+        }
         let sum: f64 = motors.iter().map(|motor| motor.command).sum();
         if sum.is_nan() {
             return false;
         }
         if sum >= self.settings.verdict.idle_below * motors.len() as f64 {
             self.idle = None;
+            self.lifted_s = Some(t_s);
             return false;
         }
+        let is_long = |lifted_s: f64| t_s - lifted_s >= FALL_S;
+        // An alarm that stands is judged by the rules.
+        self.falls = (fell || self.alert.level() == Level::Good)
+            && sample.in_air == Some(true)
+            && self.lifted_s.is_some_and(is_long);
         let was_high = |high_s: f64| t_s - high_s <= TROUBLE_S;
         let in_trouble =
             self.last_high_s.is_some_and(was_high) || !self.notices.is_together(motors);
@@ -317,7 +348,7 @@ impl Follower {
             true => Idle::InTrouble,
             false => Idle::Landing,
         });
-        idle == Idle::Landing
+        idle == Idle::Landing && !self.falls
     }
 
     /// Some time after take-off, drops it from the long windows and from the elevated risk.
@@ -399,6 +430,9 @@ impl Follower {
         self.settled = false;
         self.down_since_s = None;
         self.idle = None;
+        if end != End::Landing {
+            self.lifted_s = None;
+        }
         self.last_high_s = None;
         let [risk, ..] = self.stop_judging(t_s, end, room);
         let [noise, reserve, balance] = self.notices.end();

@@ -14,7 +14,7 @@
 //! let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None)?;
 //! for i in 0..1000 {
 //!     let motors = [0.45, 0.5, 0.55, 0.5]; // of the effective range: 0 and 1 are the limits
-//!     assessor.push(&Sample { t_s: f64::from(i) * 0.02, motors: &motors, in_air: true, signals: &[] });
+//!     assessor.push(&Sample { t_s: f64::from(i) * 0.02, motors: &motors, in_air: Some(true), signals: &[] });
 //! }
 //! assert_eq!(assessor.finish().verdict, Verdict::Known(Level::Good));
 //! # Ok::<(), flagred::monitor::MonitorError>(())

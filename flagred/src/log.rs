@@ -133,9 +133,18 @@ pub fn for_each_sample(flight: &Flight, signals: &[&str], mut take: impl FnMut(&
         take(&Sample {
             t_s,
             motors: &motors,
-            in_air: flight.is_in_air(t_s) == Some(true),
+            in_air: in_air(flight, t_s),
             signals: &signals,
         });
+    }
+}
+
+/// Whether the autopilot reports at a time that the vehicle is in the air; `None` where that is assumed.
+pub fn in_air(flight: &Flight, t_s: f64) -> Option<bool> {
+    let is_assumed = flight.in_air.as_ref().is_some_and(|air| air.is_assumed);
+    match flight.is_in_air(t_s) == Some(true) {
+        true => (!is_assumed).then_some(true),
+        false => Some(false),
     }
 }
 

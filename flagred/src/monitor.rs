@@ -102,7 +102,7 @@ pub enum MonitorError {
 /// for i in 0..500 {
 ///     let t_s = f64::from(i) * 0.04;
 ///     let motors = if t_s < 10.0 { [0.4, 0.4, 0.41, 0.41] } else { [0.0, 1.0, 0.05, 1.0] };
-///     let update = monitor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
+///     let update = monitor.push(&Sample { t_s, motors: &motors, in_air: Some(true), signals: &[] });
 ///     level = update.level.max(level);
 /// }
 /// assert_eq!(level, Some(Level::Fail));

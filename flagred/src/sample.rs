@@ -10,10 +10,18 @@ pub struct Sample<'a> {
     /// The effective command of each motor, from 0 to 1; NaN is unknown. Values from -0.5 to 1.5 are clamped to [0, 1], all
     /// others count as unknown. While a motor is unknown, so is the risk of a profile that reads motors.
     pub motors: &'a [f64],
-    /// Whether the vehicle is in the air.
-    pub in_air: bool,
+    /// Whether the autopilot reports that the vehicle is in the air; `None` where it does not report it. Motors that idle mean
+    /// that the vehicle is on the ground, unless the autopilot reports `true` for 3 s: then the vehicle falls.
+    pub in_air: Option<bool>,
     /// The values of the signals that the monitor was given the names of, in that order; NaN is unknown.
     pub signals: &'a [f64],
+}
+
+impl Sample<'_> {
+    /// Whether the autopilot reports that the vehicle is on the ground.
+    pub fn is_on_ground(&self) -> bool {
+        self.in_air == Some(false)
+    }
 }
 
 /// What a monitor knows after a sample.
@@ -50,6 +58,17 @@ pub struct Estimate {
     pub dominant_rule: Option<usize>,
     /// Whether an input was outside its range and was moved to the end of the range.
     pub clamped: bool,
+}
+
+impl Estimate {
+    /// Motors that idle in the air keep no vehicle up, whatever the rules say.
+    pub(crate) const FALL: Estimate = Estimate {
+        risk_pct: 100.0,
+        coverage: 1.0,
+        filled_from: None,
+        dominant_rule: None,
+        clamped: false,
+    };
 }
 
 /// Why a risk is unknown.

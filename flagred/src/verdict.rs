@@ -67,6 +67,8 @@ pub enum Measure {
     /// How far one motor alone is above its own part of the thrust earlier in the flight, in % of the range: it gives less
     /// thrust than it is commanded.
     WeakMotor,
+    /// The risk of motors that idle in the air, which is 100 %.
+    IdleInAir,
 }
 
 impl core::fmt::Display for Measure {
@@ -79,6 +81,7 @@ impl core::fmt::Display for Measure {
             Measure::Imbalance => "imbalance",
             Measure::PairImbalance => "pair imbalance",
             Measure::WeakMotor => "weak motor",
+            Measure::IdleInAir => "idle in the air",
         })
     }
 }
@@ -150,8 +153,9 @@ pub struct VerdictSettings {
     /// What is raised in the last seconds before touching down is taken back; a FAIL only in the last half of them.
     pub quiet_before_landing_s: f64,
     /// While their mean effective command is below this, the motors idle: before take-off and after landing the vehicle
-    /// is on the ground, whatever the land detector says. Motors that begin to idle within 2 s after a risk that reaches
-    /// WARN do not rest.
+    /// is on the ground, also where the land detector lags. Motors that begin to idle within 2 s after a risk that reaches
+    /// WARN do not rest. Motors that idle for 3 s while the autopilot reports that the vehicle is in the air are a fall, with a
+    /// risk of 100 %.
     pub idle_below: f64,
     /// What is told beside the risk.
     pub notices: NoticeSettings,

@@ -124,7 +124,7 @@ pub(crate) fn air_from_commands(
     };
     (
         Some(intervals(&running, "any motor above its lowest command")),
-        Some(intervals(&flying, "mean command above 0.2 of the range")),
+        Some(intervals(&flying, "mean command above 0.2 of the range").assumed()),
     )
 }
 

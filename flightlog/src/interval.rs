@@ -30,6 +30,8 @@ pub struct Intervals {
     pub spans: Vec<Interval>,
     /// How they were found, such as `EV 28 (not landed) to EV 18 (land complete)`.
     pub rule: String,
+    /// Whether they are derived or assumed because the log has no reports of the autopilot.
+    pub is_assumed: bool,
 }
 
 impl Intervals {
@@ -40,7 +42,7 @@ impl Intervals {
     /// use flightlog::{Interval, Intervals};
     ///
     /// let flown = Interval { start_s: 10.0, end_s: 60.0, ends_with_log: true };
-    /// let in_air = Intervals { spans: vec![flown], rule: "an example".into() };
+    /// let in_air = Intervals { spans: vec![flown], rule: "an example".into(), is_assumed: false };
     /// assert!(!in_air.contains(9.0) && in_air.contains(10.0));
     /// assert!(in_air.contains(60.0), "the log ended in the air");
     /// ```
@@ -135,6 +137,15 @@ impl Intervals {
         Self {
             spans,
             rule: rule.into(),
+            is_assumed: false,
+        }
+    }
+
+    /// The same, marked as not reported by the autopilot.
+    pub(crate) fn assumed(self) -> Self {
+        Self {
+            is_assumed: true,
+            ..self
         }
     }
 }

@@ -124,6 +124,7 @@ impl<'a> Teller<'a> {
     fn what(&self, finding: &Finding) -> String {
         let mut text = match finding.measure {
             Measure::WeakMotor => weak(finding, self.motors),
+            Measure::IdleInAir => "motors idle in the air".to_owned(),
             _ => format!("{} {:.0} %", quantity(finding), finding.peak_pct),
         };
         // Its numbers are small: without the threshold 3 % reads like nothing.
@@ -154,6 +155,9 @@ impl<'a> Teller<'a> {
                     .to_owned(),
             ),
             Measure::PairImbalance => Some(format!("{side} the motor opposite")),
+            Measure::IdleInAir => {
+                Some("the autopilot reported that the vehicle was in the air".to_owned())
+            }
         };
         let parts = [output.map(str::to_owned), behind];
         let parts: Vec<String> = parts.into_iter().flatten().collect();

@@ -917,7 +917,7 @@ return load_all, 1000
 -- risk_level = 0 -- of the risk alone
 -- local reached_at = {} -- since when the thresholds of each level are reached
 -- local held_at = 0 -- when something last held the level
--- is_open, by_elevated = false, false -- the time of trouble
+-- is_open, by_elevated, by_fall = false, false, false -- the time of trouble
 -- local open_level = 0
 -- local seen, mean_margin, least_margin = 0, {}, {} -- the motors while a level is being reached
 -- is_upper = {} -- whether the limit that each motor was nearest to is the upper one
@@ -963,10 +963,10 @@ return load_all, 1000
 -- local function raise(level, of_elevated, risk)
 --   risk_level = level
 --   if not is_open or open_level ~= level then
---     by_elevated = of_elevated
+--     by_elevated, by_fall = of_elevated, falls
 --   end
 --   if not is_open or level > open_level then
---     cause, open_level = find_cause(risk), level
+--     cause, open_level = not falls and find_cause(risk) or nil, level
 --     limit_motor = cause and CAUSES[cause][5] and weakest()
 --   end
 --   is_open = true
@@ -995,7 +995,7 @@ return load_all, 1000
 -- local function watch_motors(risk, takes_off)
 --   local warns = not takes_off and is_reached(risk, warn_risk, 40.0)
 --   local fails = is_reached(risk, fail_risk, nil)
---   fails = fails and not sinks
+--   fails = fails and (falls or not sinks)
 --   if not warns and not fails then
 --     return
 --   end
@@ -1035,7 +1035,7 @@ return load_all, 1000
 -- function judge(risk, takes_off)
 --   watch_motors(risk, takes_off)
 --   local held, can_fail = 0, true
---   can_fail = not sinks
+--   can_fail = falls or not sinks
 --   local warn_until, fail_until = lower(43.0, warn_risk), lower(65.0, fail_risk)
 --   held = follow(2, held, risk, not takes_off, warn_risk, 40.0, 200000, warn_until, 20.0)
 --   held = follow(3, held, risk, can_fail, fail_risk, nil, 300000, fail_until, nil)
@@ -1291,10 +1291,13 @@ return load_all, 1000
 -- down_us = nil -- for how long it seems to be on the ground
 -- local settled, settling = false, huge -- whether the take-off is dropped, and the window to drop it from next
 -- local idle -- "landing" or "trouble"
+-- local lifted_us -- since the motors last did not idle; nil since the land detector last reported the ground
+-- falls = false -- whether the motors idle in the air
 -- local since_high_us, unknown_us -- since a high risk, and since a risk was known
 -- 
 -- -- Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
 -- function forget(is_gap)
+--   lifted_us = not is_gap and lifted_us or nil
 --   local was_alarm = is_gap and level_now() > 0
 --   for _, window in ipairs(windows) do
 --     clear(window)
@@ -1309,22 +1312,30 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end. While the command of a
--- -- motor is unknown, the vehicle counts as in the air.
+-- -- Whether the vehicle is on the ground: by the land detector, or because the motors idle, before take-off and after a flight that
+-- -- was calm to its end. While the command of a motor is unknown, the vehicle counts as in the air.
 -- local function rests()
+--   local fell = falls
+--   falls = false
+--   if not vehicle:get_likely_flying() then
+--     lifted_us = nil
+--     return true
+--   end
 --   if not sum then
 --     return false
 --   end
 --   if sum >= 0.1 * motors then
---     idle = nil
+--     idle, lifted_us = nil, 0
 --     return false
 --   end
+--   -- An alarm that stands is judged by the rules.
+--   falls = (fell or risk_level == 0) and lifted_us ~= nil and lifted_us >= 3000000
 --   if not idle then
 --     local is_trouble = since_high_us and since_high_us <= 2000000
 --     is_trouble = is_trouble or not is_together()
 --     idle = is_trouble and "trouble" or "landing"
 --   end
---   return idle == "landing"
+--   return idle == "landing" and not falls
 -- end
 -- 
 -- -- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
@@ -1364,8 +1375,9 @@ return load_all, 1000
 --   unknown_us = unknown_us and later(unknown_us, held_us)
 --   doubt_us = doubt_us and later(doubt_us, held_us)
 --   flown_us = flown_us and later(flown_us, held_us)
+--   lifted_us = lifted_us and later(lifted_us, held_us)
 --   read_commands()
---   if not vehicle:get_likely_flying() or rests() then
+--   if rests() then
 --     value = {}
 --     if flown_us then
 --       down_us = down_us and later(down_us, held_us) or 0
@@ -1390,6 +1402,7 @@ return load_all, 1000
 --   -- While the command of a motor is unknown, so is the risk.
 --   is_known = is_known and sum
 --   local risk = is_known and estimate()
+--   risk = falls and 100.0 or risk
 --   if not risk then
 --     if unknown_us and unknown_us > 2000000 then
 --       doubt_us = level_now() > 0 and unknown_us or nil
@@ -1403,7 +1416,7 @@ return load_all, 1000
 --     since_high_us = 0
 --   end
 --   add_up(risk)
---   judge(risk, flown_us < 3000000)
+--   judge(risk, flown_us < 3000000 and not falls)
 --   return risk
 -- end
 -- 
@@ -1576,6 +1589,10 @@ return load_all, 1000
 --   end
 --   if (of_notice or not is_open) and little_reserve then
 --     gcs:send_text(severity, format("%s reserve %.0f %%", text, little_reserve))
+--     return
+--   end
+--   if is_open and by_fall then
+--     gcs:send_text(severity, text .. " motors idle in the air")
 --     return
 --   end
 --   if not is_open and level > 0 then

@@ -35,7 +35,7 @@ fn risks(flight: &Flight) -> Result<Vec<(f64, f64)>, Box<dyn Error>> {
         let assessment = monitor.push(&Sample {
             t_s,
             motors: &row.iter().map(effective).collect::<Vec<f64>>(),
-            in_air: flight.is_in_air(t_s) == Some(true),
+            in_air: flagred::log::in_air(flight, t_s),
             signals: &[],
         });
         risks.extend(assessment.risk.ok().map(|risk| (t_s, risk.risk_pct)));

@@ -69,7 +69,7 @@ impl Moment {
         Sample {
             t_s: self.t_s,
             motors: &self.motors,
-            in_air: self.in_air,
+            in_air: Some(self.in_air),
             signals: &self.signals,
         }
     }

@@ -207,7 +207,7 @@ impl Simulated {
             let assessment = monitor.push(&Sample {
                 t_s,
                 motors: &motors,
-                in_air: flight.is_in_air(t_s) == Some(true),
+                in_air: flagred::log::in_air(flight, t_s),
                 signals: &[],
             });
             let risk = assessment.risk.map_or(f64::NAN, |risk| risk.risk_pct);

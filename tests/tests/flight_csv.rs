@@ -114,6 +114,44 @@ fn a_cell_that_is_not_a_number_is_unknown_and_its_row_counts() {
 }
 
 #[test]
+fn a_row_with_too_few_cells_is_refused() {
+    let short = |row: usize| {
+        flight("", move |i, t_s| {
+            (i == row).then(|| format!("{t_s},1500,1500"))
+        })
+    };
+    refused(
+        &short(10),
+        "line 14: 3 of 6 columns",
+        "give every row a cell",
+    );
+    // The last row is that of a file that is cut off.
+    let flight = read(&short(1499)).unwrap();
+    assert!(flight.report.truncated);
+    assert_eq!(flight.report.bad_messages, 1);
+}
+
+/// Without the column, idle motors end a flight; with it, they are a fall. The flight says so when it is written again.
+#[test]
+fn a_time_in_the_air_that_is_assumed_is_not_believed_over_idle_motors() {
+    let idle = |i: usize, t_s: f64, air: &str| {
+        let pwm = if i > 1300 { 1030 } else { 1500 + i % 7 };
+        format!("{t_s},{pwm},{pwm},{pwm},{pwm}{air}")
+    };
+    let reported = flight("", |i, t_s| Some(idle(i, t_s, ",1")));
+    let assumed = flight("", |i, t_s| Some(idle(i, t_s, ""))).replace(",in_air", "");
+    assert_eq!(verdict(&reported), "FAIL");
+    assert_eq!(verdict(&assumed), "GOOD");
+    let mut written = Vec::new();
+    read(&assumed).unwrap().write_csv(&mut written).unwrap();
+    let written = String::from_utf8(written).unwrap();
+    assert!(written.contains("# in_air: assumed\n"), "{written:.200}");
+    assert_eq!(verdict(&written), "GOOD");
+    let unclear = written.replace("in_air: assumed", "in_air: perhaps");
+    refused(&unclear, "`in_air` is `perhaps`", "write `assumed`");
+}
+
+#[test]
 fn a_vehicle_is_in_the_air_or_not() {
     for state in ["2", "0.5", "-1", "True", "inf"] {
         let csv = flight("", |i, t_s| {

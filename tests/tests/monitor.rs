@@ -31,7 +31,7 @@ fn a_sample_allocates_nothing_whatever_happens() {
                 let assessment = monitor.push(&Sample {
                     t_s,
                     motors: &motors,
-                    in_air,
+                    in_air: Some(in_air),
                     signals: &[],
                 });
                 known += u32::from(assessment.risk.is_ok());

@@ -33,7 +33,7 @@ fn follow(path: &Path) -> Followed {
         let update = assessor.push(&Sample {
             t_s: sample.t_s,
             motors: &sample.commands,
-            in_air: sample.in_air,
+            in_air: Some(sample.in_air),
             signals: &[],
         });
         if update.risk.is_err() && update.level == Some(Level::Good) {
@@ -239,7 +239,7 @@ fn fly(
         let sample = Sample {
             t_s,
             motors: &motors,
-            in_air: t_s < to_s,
+            in_air: Some(t_s < to_s),
             signals: &[],
         };
         let update = assessor.push(&sample);
@@ -403,7 +403,7 @@ fn fly_clipped(factors: &[Factors], phases: &[Phase<'_>]) -> (Assessment, Vec<Up
         updates.push(assessor.push(&Sample {
             t_s,
             motors: &motors,
-            in_air: true,
+            in_air: Some(true),
             signals: &[],
         }));
     }
@@ -481,7 +481,7 @@ fn a_fall_is_not_the_ground() {
         let update = assessor.push(&Sample {
             t_s,
             motors: &motors,
-            in_air: true,
+            in_air: Some(true),
             signals: &[],
         });
         if t_s > 40.0 {

@@ -118,12 +118,44 @@ fn an_eventful_flight_is_what_the_documents_say() {
     }
 }
 
+/// The motors fall from a calm hover to 3 % in the air.
+#[test]
+fn a_fall_is_what_the_documents_say() {
+    let text = include_str!("../../rules/profiles/multirotor.yaml");
+    let samples: Vec<Sample> = (0..1300)
+        .map(|i| {
+            let t_s = f64::from(i) / 25.0;
+            let hover = 0.5 + 0.01 * (t_s * 7.0).sin();
+            Sample {
+                t_s,
+                commands: vec![
+                    if (40.0..48.0).contains(&t_s) {
+                        0.03
+                    } else {
+                        hover
+                    };
+                    8
+                ],
+                signals: vec![],
+                in_air: (2.0..46.0).contains(&t_s),
+            }
+        })
+        .collect();
+    let estimator = Estimator::new(&text.parse().unwrap(), shipped::flagred().model()).unwrap();
+    let craft = Craft::new(8);
+    let mut assessor = Assessor::new(&estimator, craft, Some(0.0)).unwrap();
+    push_all(&mut assessor, &samples);
+    let assessment = assessor.finish();
+    assert_eq!(assessment.verdict.to_string(), "FAIL");
+    assert_eq!(compare(&estimator, &assessment, &samples, &[]).len(), 1);
+}
+
 fn push_all(assessor: &mut Assessor, samples: &[Sample]) {
     for sample in samples {
         assessor.push(&sample::Sample {
             t_s: sample.t_s,
             motors: &sample.commands,
-            in_air: sample.in_air,
+            in_air: Some(sample.in_air),
             signals: &sample.signals,
         });
     }
@@ -346,10 +378,12 @@ fn of_balance(assessment: &Assessment) -> Vec<Unbalanced> {
 
 /// The findings of the risk, in order of time.
 fn found(assessment: &Assessment) -> Vec<Trouble> {
-    let of_risk = assessment
-        .findings
-        .iter()
-        .filter(|found| matches!(found.measure, Measure::Risk | Measure::ElevatedRisk));
+    let of_risk = assessment.findings.iter().filter(|found| {
+        matches!(
+            found.measure,
+            Measure::Risk | Measure::ElevatedRisk | Measure::IdleInAir
+        )
+    });
     let mut all: Vec<Trouble> = of_risk
         .map(|found| Trouble {
             level: found.level,

@@ -28,7 +28,7 @@ static const char *word(int32_t level) {
 }
 
 static const char *const measures[] = {"risk", "elevated risk", "command noise", "reserve", "imbalance", "pair imbalance",
-                                       "weak motor"};
+                                       "weak motor", "idle in the air"};
 
 int main(void) {
     /* MOT_PWM_MIN 1000, MOT_PWM_MAX 2000, MOT_SPIN_MIN 0.15, MOT_SPIN_MAX 0.95 */

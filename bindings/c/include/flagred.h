@@ -56,7 +56,8 @@ typedef enum flagred_measure {
     FLAGRED_RESERVE = 3,        /* what the mean command leaves below the upper limit, in % of the range */
     FLAGRED_IMBALANCE = 4,      /* how far motors are from their own part of the thrust earlier in the flight, in % */
     FLAGRED_PAIR_IMBALANCE = 5, /* how far a motor is from the one opposite, in % */
-    FLAGRED_WEAK_MOTOR = 6      /* how far one motor alone is above its own part of the thrust earlier in the flight, in % */
+    FLAGRED_WEAK_MOTOR = 6,     /* how far one motor alone is above its own part of the thrust earlier in the flight, in % */
+    FLAGRED_IDLE_IN_AIR = 7     /* the risk of motors that idle in the air, which is 100 % */
 } flagred_measure;
 
 /* Why a risk is unknown. */
@@ -94,7 +95,8 @@ typedef struct flagred_sample {
     size_t motors;              /* the number of commands; missing ones are unknown, and so is the risk then */
     const double *signals;      /* the signals of the profile, in its order; NAN where unknown; may be NULL */
     size_t signal_count;
-    int32_t in_air;             /* 0 on the ground */
+    int32_t in_air;             /* what the land detector reports: 0 on the ground, 1 in the air; -1 not known: motors that
+                                   idle mean on the ground. Reported in the air, motors that idle for 3 s are a fall */
 } flagred_sample;
 
 /* The number of findings that can end at one time: of the risk, the noise, the reserve and the balance. */

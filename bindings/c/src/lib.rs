@@ -238,7 +238,7 @@ pub unsafe extern "C" fn flagred_push(
     let result = monitor.monitor.push(&Sample {
         t_s: sample.t_s,
         motors: monitor.effective,
-        in_air: sample.in_air != 0,
+        in_air: (sample.in_air >= 0).then_some(sample.in_air != 0),
         signals,
     });
     // SAFETY: not null, and writable by the caller's promise.

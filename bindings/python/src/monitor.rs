@@ -116,7 +116,7 @@ impl MonitorData {
         &self,
         t_s: f64,
         commands: Vec<Option<f64>>,
-        in_air: bool,
+        in_air: Option<bool>,
         signals: Vec<Option<f64>>,
     ) -> PyResult<Update> {
         let commands = numbers(&commands);

@@ -243,8 +243,14 @@ impl<'e> Session<'e> {
         add(&mut self.worst, verdict);
         let is_mute =
             (self.tracked.as_ref()).is_some_and(|tracked| !tracked.telemetry.has_commands());
-        if is_mute && self.worst == Verdict::NotAvailable(Reason::NoFlight) {
-            return Verdict::NotAvailable(Reason::NoMotorOutputs);
+        if self.worst == Verdict::NotAvailable(Reason::NoFlight) {
+            if is_mute {
+                return Verdict::NotAvailable(Reason::NoMotorOutputs);
+            }
+            let refused = self.tracked.as_mut().and_then(|t| t.refused.take());
+            if let Some(reason) = refused {
+                return Verdict::NotAvailable(reason);
+            }
         }
         match (&self.worst, self.unknown_part.take()) {
             // A flight is not GOOD where a part of it is not known.
@@ -372,9 +378,10 @@ impl<'e> Session<'e> {
         };
         let to = tracked.address();
         let in_air = tracked.telemetry.is_in_air();
+        let reported = tracked.telemetry.reported_in_air(now_s);
         let pulses = tracked.telemetry.pulses();
         if in_air {
-            tracked.history.push(t_s, pulses);
+            tracked.history.push(t_s, reported, pulses);
         } else {
             tracked.history.clear();
         }
@@ -389,7 +396,7 @@ impl<'e> Session<'e> {
             });
         }
         watch.commands_s = now_s;
-        let update = watch.push(t_s, in_air, &pulses);
+        let update = watch.push(t_s, reported, &pulses);
         if update.risk == Err(Unknown::OutOfOrder) {
             return;
         }

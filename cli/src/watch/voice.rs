@@ -146,12 +146,17 @@ pub(crate) fn say(
     {
         return format!("{PREFIX}{level} {}", weak(finding, &setup.motors));
     }
+    if finding.is_some_and(|finding| finding.measure == Measure::IdleInAir) {
+        return format!("{PREFIX}{level} motors idle in the air");
+    }
     if level > Level::Good && finding.is_none() {
         return format!("{PREFIX}{level} stands: motors not as before");
     }
     let measure = finding.map_or(Measure::Risk, |finding| finding.measure);
     let (name, value) = match measure {
-        Measure::Risk => ("risk", update.risk.ok().map(|estimate| estimate.risk_pct)),
+        Measure::Risk | Measure::IdleInAir => {
+            ("risk", update.risk.ok().map(|estimate| estimate.risk_pct))
+        }
         Measure::ElevatedRisk => ("elevated", update.elevated_risk_pct),
         Measure::CommandNoise => ("noise", finding.map(|finding| finding.peak_pct)),
         Measure::Reserve => ("reserve", finding.map(|finding| finding.peak_pct)),

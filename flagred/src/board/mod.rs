@@ -18,7 +18,7 @@
 //! let mut risk_pct = None;
 //! for i in 0..2000 {
 //!     let t_s = f64::from(i) * 0.02;
-//!     let update = monitor.push(&Sample { t_s, motors: &[0.4, 0.5, 0.5, 0.4], in_air: true, signals: &[] });
+//!     let update = monitor.push(&Sample { t_s, motors: &[0.4, 0.5, 0.5, 0.4], in_air: Some(true), signals: &[] });
 //!     risk_pct = update.risk.ok().map(|estimate| estimate.risk_pct);
 //! }
 //! assert!(risk_pct < Some(25.0));

@@ -108,7 +108,7 @@ impl Plan<'_> {
 /// let plan = estimator.plan()?; // on board, the exported `PLAN`
 /// let mut storage: Storage<14, 12, 1, 2, 4> = Storage::new();
 /// let mut monitor = storage.monitor(&plan)?;
-/// let update = monitor.push(&Sample { t_s: 0.0, motors: &[0.0; 4], in_air: false, signals: &[] });
+/// let update = monitor.push(&Sample { t_s: 0.0, motors: &[0.0; 4], in_air: Some(false), signals: &[] });
 /// assert_eq!(update.risk, Err(Unknown::OnGround));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

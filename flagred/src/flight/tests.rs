@@ -13,7 +13,7 @@ fn fly(phases: &[(f64, bool, [f64; 4])]) -> Assessment {
             assessor.push(&Sample {
                 t_s: f64::from(i) * 0.02,
                 motors,
-                in_air: *in_air,
+                in_air: Some(*in_air),
                 signals: &[],
             });
             i += 1;
@@ -82,7 +82,7 @@ fn a_known_time_in_the_air_decides_what_is_enough() {
         assessor.push(&Sample {
             t_s,
             motors: &HOVER,
-            in_air: true,
+            in_air: Some(true),
             signals: &[],
         });
     }
@@ -105,7 +105,7 @@ fn a_second_flight_begins_anew() {
             assessor.push(&Sample {
                 t_s,
                 motors: &motors,
-                in_air: true,
+                in_air: Some(true),
                 signals: &[],
             });
         }
@@ -147,7 +147,7 @@ fn a_motor_is_named_only_where_motors_near_a_limit_are_the_cause() {
             assessor.push(&Sample {
                 t_s: f64::from(i) * 0.02,
                 motors: &motors,
-                in_air: true,
+                in_air: Some(true),
                 signals: &[slack],
             });
         }
@@ -201,13 +201,13 @@ fn with_a_dead_motor(from_s: f64) -> (super::Assessment, Vec<Level>) {
         let sample = Sample {
             t_s,
             motors: &motors,
-            in_air: i < 6000,
+            in_air: Some(i < 6000),
             signals: &[],
         };
         let update = assessor.push(&sample);
         assert_eq!(on_board.push(&sample), update);
         ended.extend(update.ended.into_iter().flatten());
-        if sample.in_air && t_s >= from_s + 30.0 {
+        if !sample.is_on_ground() && t_s >= from_s + 30.0 {
             levels.extend(update.level);
         }
     }
@@ -253,7 +253,7 @@ fn a_flight_with_information_alone_is_good() {
         assessor.push(&Sample {
             t_s: f64::from(i) * 0.1,
             motors: &[e; 4],
-            in_air: true,
+            in_air: Some(true),
             signals: &[],
         });
     }
@@ -333,7 +333,7 @@ fn fly_twice(estimator: &Estimator) -> (Assessment, Vec<(f64, Level)>, Vec<Optio
         let update = assessor.push(&Sample {
             t_s,
             motors: &motors,
-            in_air: true,
+            in_air: Some(true),
             signals: &[],
         });
         changes.extend(update.change.map(|level| (t_s, level)));
@@ -411,7 +411,7 @@ fn a_flight_is_good_where_every_risk_is_known() {
             assessor.push(&Sample {
                 t_s: f64::from(i) * 0.02,
                 motors: &HOVER[..2],
-                in_air: true,
+                in_air: Some(true),
                 signals: &[],
             });
         }
@@ -453,7 +453,7 @@ fn in_trouble(
         assessor.push(&Sample {
             t_s,
             motors: &motors,
-            in_air: true,
+            in_air: Some(true),
             signals: &[],
         });
     }

@@ -37,6 +37,15 @@ impl Flown {
         in_air: bool,
         motors: impl Fn(f64) -> [f64; 4],
     ) -> Vec<Update> {
+        self.fly_reporting(seconds, Some(in_air), motors)
+    }
+
+    fn fly_reporting(
+        &mut self,
+        seconds: f64,
+        in_air: Option<bool>,
+        motors: impl Fn(f64) -> [f64; 4],
+    ) -> Vec<Update> {
         let mut updates = Vec::new();
         for _ in 0..(seconds * 50.0).round() as u32 {
             let t_s = f64::from(self.samples) / 50.0;
@@ -119,6 +128,55 @@ fn motors_at_idle_after_a_high_risk_are_no_landing() {
     assert_eq!(ended(&falling), []);
     assert!(falling.iter().all(|update| update.risk.is_ok()));
     assert_eq!(last(&falling).level, Some(Level::Fail));
+}
+
+/// A fall at a command that no rule calls a limit.
+#[test]
+fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
+    for estimator in [shipped::flagred(), shipped::flagred_paper()] {
+        let mut flown = Flown::new(&estimator);
+        flown.fly(30.0, true, HOVER);
+        let falling = flown.fly(6.0, true, [0.03; 4]);
+        let is_alarm = |update: &&Update| update.level > Some(Level::Good);
+        let first_s = falling.iter().find(is_alarm).unwrap().t_s;
+        assert!((33.0..33.5).contains(&first_s), "{first_s}");
+        assert_eq!(last(&falling).level, Some(Level::Fail));
+        assert!(last(&falling).judged);
+        let [finding] = ended(&flown.fly(2.0, false, IDLE))[..] else {
+            panic!("one finding")
+        };
+        assert_eq!(
+            (finding.level, finding.measure, finding.peak_pct),
+            (Level::Fail, Measure::IdleInAir, 100.0)
+        );
+        assert_eq!((finding.cause, finding.motor), (None, None));
+        // On the ground, a fall is over.
+        let idle = flown.fly(10.0, true, IDLE);
+        assert!(idle.iter().all(|update| update.level.is_none()));
+    }
+}
+
+#[test]
+fn a_late_land_detector_and_one_that_does_not_report_raise_nothing() {
+    for (idle_s, in_air) in [(2.9, Some(true)), (20.0, None)] {
+        let mut flown = Flown::new(&shipped::flagred());
+        flown.fly(30.0, true, HOVER);
+        let mut updates = flown.fly_reporting(idle_s, in_air, |_| IDLE);
+        updates.extend(flown.fly(5.0, false, IDLE));
+        assert!(updates.iter().all(|u| u.risk == Err(Unknown::OnGround)));
+        assert_eq!(ended(&updates), []);
+    }
+}
+
+#[test]
+fn a_bounce_is_not_a_fall() {
+    let mut flown = Flown::new(&shipped::flagred());
+    flown.fly(30.0, true, HOVER);
+    for _ in 0..3 {
+        let mut updates = flown.fly(2.5, true, IDLE);
+        updates.extend(flown.fly(2.0, true, HOVER));
+        assert!(updates.iter().all(|u| u.level <= Some(Level::Good)));
+    }
 }
 
 #[test]
@@ -210,7 +268,7 @@ fn little_reserve_is_told_where_the_risk_is_unknown() {
             monitor.push(&Sample {
                 t_s: f64::from(t_s),
                 motors: &motors,
-                in_air: true,
+                in_air: Some(true),
                 signals: &[],
             })
         })

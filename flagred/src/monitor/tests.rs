@@ -96,7 +96,7 @@ fn fly(monitor: &mut Monitor, rate_hz: f64, phases: &[(f64, f64, bool)]) -> Vec<
             assessments.push(monitor.push(&Sample {
                 t_s: i / rate_hz,
                 motors: &[*e, *e],
-                in_air: *in_air,
+                in_air: Some(*in_air),
                 signals: &[],
             }));
             i += 1.0;
@@ -139,7 +139,7 @@ inputs:
             let sample = Sample {
                 t_s: f64::from(i) * 0.04,
                 motors: &[0.2, 0.2],
-                in_air: true,
+                in_air: Some(true),
                 signals: &[per],
             };
             let (update, on_board) = (monitor.push(&sample), board.push(&sample));
@@ -172,7 +172,7 @@ inputs:
         let update = monitor.push(&Sample {
             t_s: f64::from(i) * 0.04,
             motors: &[0.5, if lost { f64::NAN } else { 0.5 }],
-            in_air: true,
+            in_air: Some(true),
             signals: &[0.1],
         });
         match lost {
@@ -234,8 +234,8 @@ fn inputs_are_unknown_on_the_ground_at_once() {
         });
         monitor.inputs()[0]
     };
-    assert!(touch(5.0, false).is_nan());
-    assert_eq!(touch(5.04, true), 0.5);
+    assert!(touch(5.0, Some(false)).is_nan());
+    assert_eq!(touch(5.04, Some(true)), 0.5);
 }
 
 #[test]
@@ -315,7 +315,7 @@ fn after_a_lost_link_or_a_restart_nothing_old_is_carried_on() {
         let after = monitor.push(&Sample {
             t_s: 20.0 + jump_s,
             motors: &[0.5, 0.5],
-            in_air: true,
+            in_air: Some(true),
             signals: &[],
         });
         assert_eq!(after.ended, open);
@@ -336,7 +336,7 @@ fn repeated_late_and_damaged_samples_change_nothing() {
             monitor.push(&Sample {
                 t_s,
                 motors: &[e, 0.5],
-                in_air: true,
+                in_air: Some(true),
                 signals: &[],
             })
         };
@@ -358,7 +358,7 @@ fn an_unknown_motor_makes_the_risk_unknown_and_rounding_does_not() {
             monitor.push(&Sample {
                 t_s: f64::from(i) * 0.04,
                 motors,
-                in_air: true,
+                in_air: Some(true),
                 signals: &[],
             })
         };
@@ -411,7 +411,7 @@ fn an_unknown_motor_makes_the_risk_unknown_and_rounding_does_not() {
     let update = monitor.push(&Sample {
         t_s: 0.0,
         motors: &[0.5],
-        in_air: true,
+        in_air: Some(true),
         signals: &[],
     });
     assert_eq!(update.risk, Err(Unknown::NoCommand { motor: 1 }));
@@ -436,7 +436,7 @@ fn a_profile_that_reads_no_motor_needs_none() {
         monitor.push(&Sample {
             t_s: f64::from(i) * 0.04,
             motors: &[f64::NAN; 2],
-            in_air: true,
+            in_air: Some(true),
             signals: &[0.3],
         })
     };

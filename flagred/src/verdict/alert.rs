@@ -40,6 +40,8 @@ pub(crate) struct Now {
     pub(crate) takes_off: bool,
     /// The motors go down together, as at touch-down, when FAIL is not raised.
     pub(crate) sinks: bool,
+    /// The motors idle in the air.
+    pub(crate) falls: bool,
 }
 
 impl Alert {
@@ -84,6 +86,7 @@ impl Alert {
             elevated_pct,
             takes_off,
             sinks,
+            falls,
         } = now;
         let mut step = Step::default();
         let mut held = Level::Good;
@@ -110,6 +113,10 @@ impl Alert {
             let Some((measure, threshold_pct)) = reached[i] else {
                 self.reached_since_s[i] = None;
                 continue;
+            };
+            let measure = match falls {
+                true => Measure::IdleInAir,
+                false => measure,
             };
             if let Some(finding) = &mut self.finding {
                 finding.to_s = t_s;
@@ -300,6 +307,7 @@ mod tests {
                 elevated_pct,
                 takes_off: false,
                 sinks: false,
+                falls: false,
             };
             self.alert.push(now, &mut self.motors)
         }
@@ -410,6 +418,7 @@ mod tests {
                     elevated_pct,
                     takes_off: true,
                     sinks: false,
+                    falls: false,
                 };
                 flown.alert.push(now, &mut flown.motors);
             }

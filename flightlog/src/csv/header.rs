@@ -153,11 +153,20 @@ pub(super) fn apply_header(
                 flight.armed = Some(Intervals {
                     spans: Vec::new(),
                     rule: "header armed".into(),
+                    is_assumed: false,
                 });
             }
             "armed" => {
                 let text = format!("`armed` is `{}`", entry.value);
                 let help = "write `never`, or leave the line out";
+                return Err(problem(entry.line, text, help));
+            }
+            "in_air" if entry.value == "assumed" => {
+                flight.in_air = flight.in_air.take().map(Intervals::assumed);
+            }
+            "in_air" => {
+                let text = format!("`in_air` is `{}`", entry.value);
+                let help = "write `assumed`, or leave the line out";
                 return Err(problem(entry.line, text, help));
             }
             "rebooted_in_air_s" => {

@@ -97,7 +97,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
         }
         None => rows.add(&layout, &record, lines, &mut flight.report),
     }
-    flight.report.truncated |= rows.last_was_short;
+    flight.report.truncated |= rows.is_cut_off();
     if let Some(refused) = rows.refusal() {
         return Err(refused);
     }

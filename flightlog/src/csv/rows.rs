@@ -11,6 +11,7 @@ use crate::{Commands, Intervals, ReadError, Report, Series};
 const MOST_OUTSIDE: f64 = 0.5;
 const HELP_FRACTIONS: &str = "name pulse widths in us `pwm1`.. and add their limits; divide percent by 100; docs/flight-csv.md has DShot";
 const HELP_PULSES: &str = "name fractions from 0 to 1 `motor1`..; divide percent by 100 and name them so; docs/flight-csv.md has DShot";
+const HELP_SHORT: &str = "give every row a cell for each column, empty where the value is unknown";
 /// On either side of 0. Logs that count microseconds in 64 bits are within it, and so is what they are converted to. One damaged
 /// time beyond it would make all later ones go back.
 const FURTHEST_S: f64 = 1e14;
@@ -31,7 +32,7 @@ pub(super) struct Rows {
     has_air: bool,
     first_s: f64,
     last_s: f64,
-    pub(super) last_was_short: bool,
+    last_was_short: Option<(u64, String)>,
     /// What is added to the times since the clock started again.
     offset_s: f64,
     /// The time of the row before, where it went back.
@@ -75,7 +76,7 @@ impl Rows {
             has_air: layout.in_air.is_some(),
             first_s: f64::INFINITY,
             last_s: f64::NEG_INFINITY,
-            last_was_short: false,
+            last_was_short: None,
             offset_s: 0.0,
             back_s: None,
             boots_s: Vec::new(),
@@ -110,14 +111,23 @@ impl Rows {
             return;
         }
         let line = lines + position.line();
-        self.last_was_short = false;
+        if let Some((short, text)) = self.last_was_short.take() {
+            self.refuse(short, text, HELP_SHORT);
+        }
         match self.try_add(layout, record, line, report) {
             Ok(()) => report.messages += 1,
             Err(why) => {
                 report.bad(&format!("line {line}: {why}"));
-                self.last_was_short = record.len() < layout.columns;
+                let is_short = record.len() < layout.columns;
+                let has_values = record.iter().any(|bytes| !cell(bytes).is_empty());
+                self.last_was_short = (is_short && has_values).then_some((line, why));
             }
         }
+    }
+
+    /// Whether the last row has too few cells, as that of a file that is cut off.
+    pub(super) fn is_cut_off(&self) -> bool {
+        self.last_was_short.is_some()
     }
 
     fn try_add(
@@ -361,13 +371,11 @@ impl Rows {
             .map_or(self.first_s, |(t_s, _)| *t_s);
         let end_s = end_s.filter(|end_s| *end_s >= last_change_s);
         let (first_s, last_s) = (self.first_s, end_s.unwrap_or(self.last_s));
-        Some(Intervals::from_changes(
-            &self.air_changes,
-            before,
-            first_s,
-            last_s,
-            rule,
-        ))
+        let air = Intervals::from_changes(&self.air_changes, before, first_s, last_s, rule);
+        Some(match self.has_air {
+            true => air,
+            false => air.assumed(),
+        })
     }
 }
 

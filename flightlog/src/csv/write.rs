@@ -168,6 +168,9 @@ impl Flight {
         {
             line(out, "armed", "never")?;
         }
+        if self.in_air.as_ref().is_some_and(|in_air| in_air.is_assumed) {
+            line(out, "in_air", "assumed")?;
+        }
         let spans = self.in_air.iter().flat_map(|in_air| &in_air.spans);
         if let Some(span) = spans.last().filter(|span| span.ends_with_log) {
             line(out, "end_s", &span.end_s.to_string())?;

@@ -98,6 +98,10 @@ pub(crate) struct Decoder {
     is_active: Option<bool>,
     /// By EXTENDED_SYS_STATE.landed_state.
     is_flying: Option<bool>,
+    /// Whether EXTENDED_SYS_STATE ever had a landed state.
+    has_landed_state: bool,
+    /// Whether the motors are stopped on purpose (flight termination, kill switch).
+    is_terminating: bool,
     mode: Option<u32>,
 }
 
@@ -146,7 +150,19 @@ impl Decoder {
             .map(|flying| flying && self.is_armed)
     }
 
-    /// The same; a vehicle that does not tell is in the air while it is armed.
+    /// Whether the vehicle ever reported a landed state. A heartbeat does not: it is critical after a landing in a failsafe, too.
+    pub(crate) fn has_landed_state(&self) -> bool {
+        self.has_landed_state
+    }
+
+    /// Whether the landed state of the armed vehicle is in the air and nobody stopped its motors on purpose, as a pilot does who
+    /// lands and does not wait for the land detector.
+    #[cfg(feature = "mavlink")]
+    pub(crate) fn reports_flight(&self) -> bool {
+        self.is_flying == Some(true) && self.is_armed && !self.is_terminating
+    }
+
+    /// [`Decoder::is_in_air`]; a vehicle that does not tell is in the air while it is armed.
     pub(crate) fn is_in_air_or_armed(&self) -> bool {
         self.is_in_air().unwrap_or(self.is_armed)
     }
@@ -182,6 +198,7 @@ impl Decoder {
                     2..=4 => Some(true),
                     _ => None,
                 };
+                self.has_landed_state |= self.is_flying.is_some();
                 Told::State
             }
             STATUSTEXT => Told::Text(text(&payload[1..51])),
@@ -201,6 +218,7 @@ impl Decoder {
         self.mav_type = Some(mav_type);
         self.mode = Some(u32::from_le_bytes(mode));
         self.is_armed = base_mode & ARMED != 0;
+        self.is_terminating = status == 8;
         self.is_active = match status {
             // Active, critical (a failsafe) and emergency (going down).
             4..=6 => Some(true),

@@ -31,6 +31,9 @@ pub struct Pulses(pub(super) [[u16; OUTPUTS_A_PORT]; PORTS]);
 type Outputs = [([u16; OUTPUTS_A_PORT], bool); PORTS];
 const NO_OUTPUTS: Outputs = [([u16::MAX; OUTPUTS_A_PORT], false); PORTS];
 
+/// A landed state older than this, in seconds, is not believed over idle motors.
+const LANDED_FRESH_S: f64 = 1.5;
+
 /// A clock that jumps is believed only where the one before has been silent for so long, in seconds.
 const CLOCK_SILENT_S: f64 = 2.0;
 
@@ -111,6 +114,8 @@ pub struct Telemetry {
     clock: LiveClock,
     boot_clock: LiveClock,
     clock_jumps: u64,
+    /// When a landed state came.
+    landed_state_s: Option<f64>,
     outputs: Outputs,
     /// The port that completes the commands of all motors.
     last_port: usize,
@@ -136,6 +141,7 @@ impl Telemetry {
             clock: LiveClock::default(),
             boot_clock: LiveClock::default(),
             clock_jumps: 0,
+            landed_state_s: None,
             outputs: NO_OUTPUTS,
             last_port: 0,
             seen: [0; RATED.len()],
@@ -181,6 +187,17 @@ impl Telemetry {
     /// in the air, on standby while landed). A vehicle that does not tell is in the air while it is armed.
     pub fn is_in_air(&self) -> bool {
         self.decoder.is_in_air_or_armed()
+    }
+
+    /// Whether it reports at `now_s` of the receiver's clock that it is in the air; `None` where it only is armed, where its
+    /// landed state (EXTENDED_SYS_STATE) is older than 1.5 s, and while its motors are stopped on purpose.
+    pub fn reported_in_air(&self, now_s: f64) -> Option<bool> {
+        let is_fresh = |heard_s: f64| now_s - heard_s <= LANDED_FRESH_S;
+        match self.is_in_air() {
+            false => Some(false),
+            true => (self.decoder.reports_flight() && self.landed_state_s.is_some_and(is_fresh))
+                .then_some(true),
+        }
     }
 
     /// Whether it ever sent motor outputs (SERVO_OUTPUT_RAW).
@@ -232,7 +249,7 @@ impl Telemetry {
         }
         let payload = filled(packet);
         if packet.component == AUTOPILOT {
-            self.count(packet.id, &payload);
+            self.count(packet.id, &payload, now_s);
         }
         let told = self.decoder.message(packet.component, packet.id, &payload);
         if told == Told::Parameter || self.decoder.take_changed() {
@@ -251,7 +268,10 @@ impl Telemetry {
         News::Nothing
     }
 
-    fn count(&mut self, id: u32, payload: &Payload) {
+    fn count(&mut self, id: u32, payload: &Payload, now_s: f64) {
+        if id == RATED[2] {
+            self.landed_state_s = Some(now_s);
+        }
         self.has_commands |= id == RATED[0];
         // The two ports of one row of commands are one.
         let is_other_port = id == RATED[0] && usize::from(payload[20]) != self.last_port;
@@ -331,6 +351,7 @@ impl Telemetry {
         self.decoder.boot();
         self.clock = LiveClock::default();
         self.boot_clock = LiveClock::default();
+        self.landed_state_s = None;
         self.outputs = NO_OUTPUTS;
         self.interval_refused = false;
         self.rate_asker = None;

@@ -240,6 +240,9 @@ impl Heard {
             flight.armed = intervals(&self.armed, "HEARTBEAT.base_mode has its armed bit");
             let rule = "EXTENDED_SYS_STATE.landed_state, or HEARTBEAT.system_status, and armed";
             flight.in_air = intervals(&self.in_air, rule);
+            if !self.decoder.has_landed_state() {
+                flight.in_air = flight.in_air.take().map(Intervals::assumed);
+            }
             if let Some(in_air) = &flight.in_air {
                 flight.rebooted_in_air_s = in_air.within(&flight.boots_s);
             }

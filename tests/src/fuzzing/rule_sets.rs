@@ -122,7 +122,7 @@ pub fn profile(bytes: &[u8]) {
         let sample = Sample {
             t_s: 0.1 * f64::from(i),
             motors: &[motor(1), motor(3), motor(5), motor(7)],
-            in_air: i > 5,
+            in_air: Some(i > 5),
             signals: &vec![f64::from(i); signals.len()],
         };
         let update = monitor.push(&sample);

@@ -1,7 +1,7 @@
 //! A whole flight, sample by sample.
 
 use flagred::{
-    profile::{Profile, ProfileInput},
+    profile::Profile,
     source::Signal,
     verdict::{Level, VerdictSettings},
 };
@@ -20,6 +20,8 @@ use super::{
 const TOUCH_S: f64 = 1.0;
 /// Motors that begin to idle within this time after a high risk, in seconds, are no landing.
 const TROUBLE_S: f64 = 2.0;
+/// Motors that idle for this long in the air, in seconds, are a fall.
+const FALL_S: f64 = 3.0;
 
 /// The motor commands at one time.
 pub struct Sample {
@@ -91,6 +93,8 @@ pub fn follow(
     let mut kept: Option<Kept> = None;
     let mut down_since_s = None;
     let mut before_s: Option<f64> = None;
+    let mut lifted_s: Option<f64> = None;
+    let mut falls = false;
     for sample in samples {
         let t_s = sample.t_s;
         let since_s = before_s.map(|before_s| t_s - before_s);
@@ -112,9 +116,22 @@ pub fn follow(
             down_since_s = None;
         }
         before_s = Some(t_s);
-        if sample.in_air && !rests(&mut air, sample, profile) {
+        if held_s.is_none() || !sample.in_air {
+            lifted_s = None;
+        }
+        let idles = mean(sample) < profile.verdict.idle_below;
+        if sample.in_air && !idles && !sample.lacks_a_motor() {
+            lifted_s = Some(t_s);
+        }
+        let is_alarm = (air.as_ref()).is_some_and(|air| air.levels.level > Level::Good);
+        let is_long = lifted_s.is_some_and(|lifted_s| t_s - lifted_s >= FALL_S);
+        falls = sample.in_air && idles && is_long && (falls || !is_alarm);
+        let rests = sample.in_air && rests(&mut air, sample, profile);
+        if sample.in_air && (falls || !rests) {
+            falls &= reads_motors(profile);
             down_since_s = None;
             let air = air.get_or_insert_with(|| Air::new(t_s, profile, kept.take()));
+            air.falls = falls;
             rows.push(air.take_in(sample, held_s.unwrap_or(0.0), factors, (profile, model)));
             continue;
         }
@@ -150,13 +167,25 @@ pub fn follow(
     }
 }
 
+/// The mean command; NaN with an unknown motor.
+fn mean(sample: &Sample) -> f64 {
+    sample.commands.iter().sum::<f64>() / sample.commands.len() as f64
+}
+
+/// Whether an input reads the commands of the motors.
+fn reads_motors(profile: &Profile) -> bool {
+    profile.inputs.iter().any(|input| {
+        let signal = &input.source.signal;
+        !matches!(signal, Signal::Named(_) | Signal::Difference { .. })
+    })
+}
+
 /// Whether the motors idle on the ground: before take-off, and after a flight unless a high risk came just before.
 fn rests(air: &mut Option<Air>, sample: &Sample, profile: &Profile) -> bool {
     if sample.lacks_a_motor() {
         return false;
     }
-    let mean = sample.commands.iter().sum::<f64>() / sample.commands.len() as f64;
-    let idles = mean < profile.verdict.idle_below;
+    let idles = mean(sample) < profile.verdict.idle_below;
     let Some(air) = air else { return idles };
     if !idles {
         air.fell = None;
@@ -188,6 +217,8 @@ struct Air {
     in_doubt_s: Option<f64>,
     /// Whether the motors idle after a high risk, while they idle.
     fell: Option<bool>,
+    /// Whether the motors idle in the air.
+    falls: bool,
     last_high_s: f64,
 }
 
@@ -215,6 +246,7 @@ impl Air {
             moments: Vec::new(),
             troubles: Vec::new(),
             fell: None,
+            falls: false,
             last_high_s: f64::NEG_INFINITY,
         }
     }
@@ -280,12 +312,9 @@ impl Air {
             self.balance.push(time, commands, factors, limit, is_calm);
         }
         let inputs = inputs::values(profile, &self.observed, t_s, self.since_s);
-        let is_of_motors = |input: &ProfileInput| {
-            let signal = &input.source.signal;
-            !matches!(signal, Signal::Named(_) | Signal::Difference { .. })
-        };
-        let is_unknown = sample.lacks_a_motor() && profile.inputs.iter().any(is_of_motors);
+        let is_unknown = sample.lacks_a_motor() && reads_motors(profile);
         let risk = risk(profile, model, &inputs).filter(|_| !is_unknown);
+        let risk = if self.falls { Some(100.0) } else { risk };
         let elevated = risk.map(|risk| self.add(risk, span, profile));
         let known_s = self.moments.last().map_or(t_s, |moment| moment.t_s);
         if t_s - known_s > profile.sampling.longest_gap_s {
@@ -333,8 +362,8 @@ impl Air {
             t_s,
             risk,
             elevated,
-            takes_off: t_s - self.take_off_s < verdict.quiet_after_take_off_s,
-            sinks: self.balance.sinks,
+            takes_off: !self.falls && t_s - self.take_off_s < verdict.quiet_after_take_off_s,
+            sinks: !self.falls && self.balance.sinks,
         });
         self.levels.push(verdict, &self.moments);
         self.doubt(t_s, verdict);

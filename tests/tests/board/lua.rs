@@ -37,7 +37,7 @@ fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) 
         let update = monitor.push(&Sample {
             t_s: t_us as f64 / 1e6,
             motors: &motors,
-            in_air: record.flying,
+            in_air: Some(record.flying),
             signals: &battery,
         });
         if let (Ok(estimate), Some(elevated_pct)) = (update.risk, update.elevated_risk_pct)
@@ -121,7 +121,7 @@ fn the_script_says_what_the_monitor_says_of_every_flight() {
 }
 
 /// Three flights in which everything happens, 25 times a second: a turn, gusts, a motor that weakens and another that makes up
-/// for it; a heavy load; two motors that change their parts.
+/// for it; a heavy load; two motors that change their parts; a fall.
 fn eventful(vehicle: &Vehicle) -> Vec<Record> {
     let mut random = fastrand::Rng::with_seed(7);
     let mut records = Vec::new();
@@ -150,6 +150,8 @@ fn eventful(vehicle: &Vehicle) -> Vec<Record> {
                 _ => 0.0,
             };
             let e = hover + gust * (0.7 * roll + 0.5 * pitch + 0.3) + turn * yaw + noise + weak;
+            // A fall at the end.
+            let e = if between(393.0, 399.0) { 0.03 } else { e };
             let e = if flying { e.clamp(0.0, 1.0) } else { 0.0 };
             let command = vehicle.spin.0 + e * (vehicle.spin.1 - vehicle.spin.0);
             (vehicle.pwm.0 + command * (vehicle.pwm.1 - vehicle.pwm.0)).round()
@@ -180,7 +182,7 @@ fn told_by_the_assessor(
         let update = assessor.push(&Sample {
             t_s: (record.t_us - records[0].t_us) as f64 / 1e6,
             motors: &motors,
-            in_air: record.flying,
+            in_air: Some(record.flying),
             signals: &[],
         });
         if update.risk.is_err() {

@@ -67,7 +67,7 @@ class Monitor(MonitorData):
         t_s: float,
         commands: Sequence[float | None] | NDArray[np.float64],
         *,
-        in_air: bool = True,
+        in_air: bool | None = None,
         signals: Mapping[str, float | None] | None = None,
     ) -> Update:
         """Takes a sample.
@@ -81,7 +81,8 @@ class Monitor(MonitorData):
             so is the risk. Values from -0.5 to 1.5 are clamped to [0, 1]; others have another unit and raise a
             :class:`DataError`.
         in_air
-            Whether the vehicle is in the air.
+            Whether the autopilot reports that the vehicle is in the air. None is not known: then motors that idle mean that
+            the vehicle is on the ground. Motors that idle for 3 s while it is True are a fall, with a risk of 100 %.
         signals
             The values of the signals; one that is missing is unknown.
 

@@ -10,7 +10,7 @@ pub(super) const MOST: usize = 30_000;
 #[derive(Debug)]
 pub(super) struct History {
     most: usize,
-    samples: Vec<(f64, Pulses)>,
+    samples: Vec<(f64, Option<bool>, Pulses)>,
     is_cut: bool,
 }
 
@@ -24,12 +24,12 @@ impl History {
         }
     }
 
-    /// Adds a sample. Of a flight that is too long nothing is kept.
-    pub(super) fn push(&mut self, t_s: f64, pulses: Pulses) {
+    /// Adds a sample, with what the vehicle reports of being in the air. Of a flight that is too long nothing is kept.
+    pub(super) fn push(&mut self, t_s: f64, in_air: Option<bool>, pulses: Pulses) {
         self.is_cut |= self.samples.len() >= self.most;
         match self.is_cut {
             true => self.samples = Vec::new(),
-            false => self.samples.push((t_s, pulses)),
+            false => self.samples.push((t_s, in_air, pulses)),
         }
     }
 
@@ -46,7 +46,7 @@ impl History {
     }
 
     /// The samples since take-off; `None` where not all are kept.
-    pub(super) fn whole(&self) -> Option<&[(f64, Pulses)]> {
+    pub(super) fn whole(&self) -> Option<&[(f64, Option<bool>, Pulses)]> {
         (!self.is_cut).then_some(&self.samples[..])
     }
 }

@@ -446,3 +446,39 @@ fn a_clock_that_starts_over_goes_on() {
     let latest = bench.session.view().unwrap().latest.unwrap();
     assert!(latest.risk.is_ok() && latest.t_s > 4299.0, "{latest:?}");
 }
+
+/// Two motors of the hexacopter have no output with their function.
+#[test]
+fn a_vehicle_whose_motors_are_not_all_known_ends_with_that_reason() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.all_parameters();
+    bench.parameter("FRAME_CLASS", 2.0);
+    let MavMessage::HEARTBEAT(quadrotor) = quadrotor(true) else {
+        panic!("no heartbeat")
+    };
+    let hexarotor = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        mavtype: MavType::MAV_TYPE_HEXAROTOR,
+        ..quadrotor
+    });
+    for i in 0..500 {
+        if i % 25 == 0 {
+            bench.hear(&hexarotor);
+        }
+        if i == 50 {
+            bench.all_parameters();
+            bench.parameter("FRAME_CLASS", 2.0);
+        }
+        bench.hear(&servo(10.0 + f64::from(i) / 25.0, [1500; 4]));
+        bench.wait(0.03);
+    }
+    let verdict = bench.session.finish(&mut Out::default());
+    assert_eq!(verdict.to_string(), "NA");
+    let Verdict::NotAvailable(reason) = verdict else {
+        panic!("{verdict:?}")
+    };
+    assert_eq!(
+        reason.to_string(),
+        "outputs are known for 4 of the 6 motors only"
+    );
+}

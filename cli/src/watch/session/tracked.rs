@@ -2,12 +2,12 @@
 
 use flagred::{
     estimator::Estimator,
-    flight::{Assessor, Finding, Verdict},
+    flight::{Assessor, Finding, Reason, Verdict},
     monitor::{Craft, Sample, Update},
     verdict::{Level, Measure},
 };
 use flightlog::{
-    Vehicle,
+    Gap, Vehicle,
     mavlink::{Packet, Pulses, Requests, Setup, Telemetry, Version, parameters_known},
 };
 
@@ -36,6 +36,8 @@ pub(super) struct Tracked {
     pub(super) heard_s: f64,
     pub(super) link_lost: bool,
     pub(super) set_up_tried: bool,
+    /// Why its motors cannot be assessed.
+    pub(super) refused: Option<Reason>,
     /// The flight so far: a parameter that comes late may change motors or limits.
     pub(super) history: History,
     slowed_told_s: Option<f64>,
@@ -92,6 +94,7 @@ impl Tracked {
             heard_s: now_s,
             link_lost: false,
             set_up_tried: false,
+            refused: None,
             history: History::new(history),
             slowed_told_s: None,
             watch: None,
@@ -236,6 +239,7 @@ impl Tracked {
                 "the risk cannot be assessed: outputs are known for {found} of the {expected} motors only"
             );
             out.events.push(Event::Note { text });
+            self.refused = Some(Reason::Log(Gap::MotorsMissing { found, expected }));
             return None;
         }
         let geometry = setup.geometry.as_ref();
@@ -246,9 +250,11 @@ impl Tracked {
             Err(error) => {
                 let text = format!("the risk cannot be assessed: {error}");
                 out.events.push(Event::Note { text });
+                self.refused = Some(error.into());
                 return None;
             }
         };
+        self.refused = None;
         ready(&setup, &self.telemetry, out);
         let mut watch = Watch::new(setup, assessor, now_s);
         let Some(flown) = self.history.whole() else {
@@ -261,7 +267,7 @@ impl Tracked {
         match before {
             Some(before) => watch.risk_sent_s = before.risk_sent_s,
             None => {
-                let first = flown.first().map(|(t_s, _)| Event::TookOff { t_s: *t_s });
+                let first = flown.first().map(|(t_s, ..)| Event::TookOff { t_s: *t_s });
                 out.events.extend(first);
             }
         }
@@ -293,6 +299,7 @@ impl Tracked {
         self.watch = None;
         self.history.clear();
         self.set_up_tried = false;
+        self.refused = None;
         self.requests = Requests::new();
         self.found_s = now_s;
         verdict
@@ -345,7 +352,7 @@ impl Watch {
     }
 
     /// Takes in a sample.
-    pub(super) fn push(&mut self, t_s: f64, in_air: bool, pulses: &Pulses) -> Update {
+    pub(super) fn push(&mut self, t_s: f64, in_air: Option<bool>, pulses: &Pulses) -> Update {
         self.setup.effective_commands(pulses, &mut self.motors);
         self.assessor.push(&Sample {
             t_s,
@@ -356,9 +363,9 @@ impl Watch {
     }
 
     /// Takes in a flight up to now; its findings are told anew, its levels are not.
-    fn replay(&mut self, flown: &[(f64, Pulses)], out: &mut Out) {
-        for (t_s, pulses) in flown {
-            let update = self.push(*t_s, true, pulses);
+    fn replay(&mut self, flown: &[(f64, Option<bool>, Pulses)], out: &mut Out) {
+        for (t_s, in_air, pulses) in flown {
+            let update = self.push(*t_s, *in_air, pulses);
             self.level = update.level;
             self.latest = Some(update);
             tell(self.assessor.ended(), out);

@@ -4,10 +4,13 @@ flown_us = nil -- since take-off; nil on the ground
 down_us = nil -- for how long it seems to be on the ground
 local settled, settling = false, huge -- whether the take-off is dropped, and the window to drop it from next
 local idle -- "landing" or "trouble"
+local lifted_us -- since the motors last did not idle; nil since the land detector last reported the ground
+falls = false -- whether the motors idle in the air
 local since_high_us, unknown_us -- since a high risk, and since a risk was known
 
 -- Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
 function forget(is_gap)
+  lifted_us = not is_gap and lifted_us or nil
   local was_alarm = is_gap and level_now() > GOOD
   for _, window in ipairs(windows) do
     clear(window)
@@ -29,16 +32,24 @@ function forget(is_gap)
 -- @end
 end
 
--- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end. While the command of a
--- motor is unknown, the vehicle counts as in the air.
+-- Whether the vehicle is on the ground: by the land detector, or because the motors idle, before take-off and after a flight that
+-- was calm to its end. While the command of a motor is unknown, the vehicle counts as in the air.
 local function rests()
+  local fell = falls
+  falls = false
+  if not vehicle:get_likely_flying() then
+    lifted_us = nil
+    return true
+  end
   if not sum then
     return false
   end
   if sum >= IDLE_BELOW * motors then
-    idle = nil
+    idle, lifted_us = nil, 0
     return false
   end
+  -- An alarm that stands is judged by the rules.
+  falls = (fell or risk_level == GOOD) and lifted_us ~= nil and lifted_us >= 3000000
   if not idle then
     local is_trouble = since_high_us and since_high_us <= 2000000
 -- @if imbalance
@@ -46,7 +57,7 @@ local function rests()
 -- @end
     idle = is_trouble and "trouble" or "landing"
   end
-  return idle == "landing"
+  return idle == "landing" and not falls
 end
 
 -- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
@@ -86,11 +97,12 @@ function fly()
   unknown_us = unknown_us and later(unknown_us, held_us)
   doubt_us = doubt_us and later(doubt_us, held_us)
   flown_us = flown_us and later(flown_us, held_us)
+  lifted_us = lifted_us and later(lifted_us, held_us)
   read_commands()
 -- @if noise
   take_noise()
 -- @end
-  if not vehicle:get_likely_flying() or rests() then
+  if rests() then
     value = {}
     if flown_us then
       down_us = down_us and later(down_us, held_us) or 0
@@ -121,6 +133,11 @@ function fly()
   is_known = is_known and sum
 -- @end
   local risk = is_known and estimate()
+-- @if needs_motors
+  risk = falls and 100.0 or risk
+-- @else
+  falls = false
+-- @end
   if not risk then
     if unknown_us and unknown_us > LONGEST_GAP_US then
       doubt_us = level_now() > GOOD and unknown_us or nil
@@ -134,6 +151,6 @@ function fly()
     since_high_us = 0
   end
   add_up(risk)
-  judge(risk, flown_us < QUIET_US)
+  judge(risk, flown_us < QUIET_US and not falls)
   return risk
 end

@@ -8,7 +8,7 @@ warn_risk, fail_risk = WARN_RISK, FAIL_RISK -- parameters may change them
 risk_level = GOOD -- of the risk alone
 local reached_at = {} -- since when the thresholds of each level are reached
 local held_at = 0 -- when something last held the level
-is_open, by_elevated = false, false -- the time of trouble
+is_open, by_elevated, by_fall = false, false, false -- the time of trouble
 local open_level = GOOD
 -- @if motor_cause
 local seen, mean_margin, least_margin = 0, {}, {} -- the motors while a level is being reached
@@ -60,10 +60,10 @@ end
 local function raise(level, of_elevated, risk)
   risk_level = level
   if not is_open or open_level ~= level then
-    by_elevated = of_elevated
+    by_elevated, by_fall = of_elevated, falls
   end
   if not is_open or level > open_level then
-    cause, open_level = find_cause(risk), level
+    cause, open_level = not falls and find_cause(risk) or nil, level
 -- @if motor_cause
     limit_motor = cause and CAUSES[cause][5] and weakest()
 -- @end
@@ -96,7 +96,7 @@ local function watch_motors(risk, takes_off)
   local warns = not takes_off and is_reached(risk, warn_risk, WARN_ELEVATED)
   local fails = is_reached(risk, fail_risk, FAIL_ELEVATED)
 -- @if imbalance
-  fails = fails and not sinks
+  fails = fails and (falls or not sinks)
 -- @end
   if not warns and not fails then
     return
@@ -143,7 +143,7 @@ function judge(risk, takes_off)
 -- @end
   local held, can_fail = GOOD, true
 -- @if imbalance
-  can_fail = not sinks
+  can_fail = falls or not sinks
 -- @end
   local warn_until, fail_until = lower(WARN_UNTIL_RISK, warn_risk), lower(FAIL_UNTIL_RISK, fail_risk)
   held = follow(WARN, held, risk, not takes_off, warn_risk, WARN_ELEVATED, WARN_AFTER_US, warn_until, WARN_UNTIL_ELEVATED)

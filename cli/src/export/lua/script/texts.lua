@@ -22,6 +22,10 @@ function say(level, risk, of_notice)
     return
   end
 -- @end
+  if is_open and by_fall then
+    gcs:send_text(severity, text .. " motors idle in the air")
+    return
+  end
   if not is_open and level > GOOD then
     gcs:send_text(severity, text .. " stands: motors not as before")
     return

@@ -419,3 +419,58 @@ fn an_unknown_message_is_the_vehicles_and_tells_nothing() {
     bench.wait(2.5);
     assert!(bench.session.view().unwrap().link_lost);
 }
+
+/// The motors fall from a hover to 3 %; gives the level texts, the latest first, and the verdict after the landing.
+fn cut(in_the_air: impl Fn(&mut Bench<'_>)) -> (Vec<String>, Verdict) {
+    let estimator = shipped::flagred();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.px4_beat();
+    bench.px4_motors();
+    bench.px4_fly(100.0, 30.0, [1500; 4]);
+    for i in 0..150 {
+        if i % 25 == 0 {
+            in_the_air(&mut bench);
+        }
+        bench.hear(&servo(130.0 + f64::from(i) / 25.0, [1030; 4]));
+        bench.wait(0.03);
+    }
+    bench.px4_state(MavLandedState::MAV_LANDED_STATE_ON_GROUND);
+    bench.hear(&servo(136.0, [1030; 4]));
+    let texts = bench.events.iter().rev().filter_map(|event| match event {
+        Event::Level { text, .. } => Some(text.clone()),
+        _ => None,
+    });
+    let texts = texts.collect();
+    (texts, bench.session.finish(&mut Out::default()))
+}
+
+#[test]
+fn the_landed_state_is_believed_over_idle_motors() {
+    let (texts, verdict) = cut(|bench| {
+        bench.px4_beat();
+        bench.px4_state(MavLandedState::MAV_LANDED_STATE_IN_AIR);
+    });
+    assert_eq!(texts[0], "FLAGRED: FAIL motors idle in the air");
+    assert_eq!(verdict, Verdict::Known(Level::Fail));
+}
+
+/// It is not known any more, or a pilot stops the motors on purpose, who landed and does not wait for the land detector.
+#[test]
+fn an_old_landed_state_and_stopped_motors_are_no_fall() {
+    let silent = cut(|bench| bench.px4_beat());
+    let killed = cut(|bench| {
+        bench.hear(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+            custom_mode: 0,
+            mavtype: MavType::MAV_TYPE_QUADROTOR,
+            autopilot: MavAutopilot::MAV_AUTOPILOT_PX4,
+            base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+            system_status: MavState::MAV_STATE_FLIGHT_TERMINATION,
+            mavlink_version: 3,
+        }));
+        bench.px4_state(MavLandedState::MAV_LANDED_STATE_IN_AIR);
+    });
+    for (texts, verdict) in [silent, killed] {
+        assert_eq!(texts, [] as [&str; 0]);
+        assert_eq!(verdict, Verdict::Known(Level::Good));
+    }
+}
