@@ -44,6 +44,15 @@ pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64
     }
 }
 
+/// The value of `written_by` in the files that this crate writes.
+pub(super) const WRITER: &str = "flagred";
+
+/// Whether this crate wrote the file, so that its units are known, however odd the values of a damaged log are.
+pub(super) fn is_ours(header: &[HeaderLine]) -> bool {
+    let mut header = header.iter();
+    header.any(|entry| entry.key == "written_by" && entry.value == WRITER)
+}
+
 /// The end of the last time in the air, where the log ended in the air.
 pub(super) fn end_s(header: &[HeaderLine]) -> Result<Option<f64>, ReadError> {
     number_of(header, "end_s")

@@ -98,10 +98,11 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
         None => rows.add(&layout, &record, lines, &mut flight.report),
     }
     flight.report.truncated |= rows.is_cut_off();
-    if let Some(refused) = rows.refusal() {
+    let is_ours = header::is_ours(&header);
+    if let Some(refused) = rows.refusal(is_ours) {
         return Err(refused);
     }
-    let other_unit = rows.other_unit();
+    let other_unit = rows.other_unit().filter(|_| !is_ours);
     let (from_s, last_s) = rows.span_s();
     let end_s = header::end_s(&header)?;
     let span_s = from_s..=end_s.map_or(last_s, |end_s| end_s.max(last_s));

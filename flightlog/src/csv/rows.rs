@@ -291,12 +291,11 @@ impl Rows {
         (self.first_s, self.last_s)
     }
 
-    /// Why the file is refused.
-    pub(super) fn refusal(&mut self) -> Option<ReadError> {
+    /// Why the file is refused. The clock of a file that this crate wrote is in seconds.
+    pub(super) fn refusal(&mut self, is_ours: bool) -> Option<ReadError> {
         let refused = self.refused.take();
-        refused
-            .or_else(|| self.milliseconds())
-            .or_else(|| self.coarse())
+        let of_clock = || self.milliseconds().or_else(|| self.coarse());
+        refused.or_else(|| of_clock().filter(|_| !is_ours))
     }
 
     /// The time on the clock of the first row. A clock that goes back for two rows or more was started again, as after a

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::header::WRITER;
 use crate::{Basis, Flight, Hold, VehicleKind};
 
 impl Flight {
@@ -182,6 +183,7 @@ impl Flight {
         if let Some(utc_s) = self.utc_at_zero_s {
             line(out, "utc_at_zero_s", &utc_s.to_string())?;
         }
+        line(out, "written_by", WRITER)?;
         for (number, motor) in (1..).zip(&self.motors) {
             let output = format!("{} ({})", motor.output, motor.source);
             line(out, &format!("motor{number}_from"), &output)?;
