@@ -104,7 +104,6 @@ return load_all, 1000
 -- local low_us, scale = 1000.0, 0.001
 -- less_yaw = {} -- the commands without the part that turns the nose
 -- margin = {} -- how far each motor is from its nearer limit
--- high_side = {} -- how far each motor is from its upper limit
 -- yaw_factor, has_geometry = {}, false
 -- opposite = {} -- the motor on the other side; nil where there is none
 -- 
@@ -156,7 +155,6 @@ return load_all, 1000
 --     end
 --     command[i] = e
 --     margin[i] = e < 0.5 and e or 1 - e
---     high_side[i] = 1 - e
 --     total = total + e
 --     if has_geometry then
 --       yaw_effort = yaw_effort + yaw_share[i] * e
@@ -181,8 +179,8 @@ return load_all, 1000
 --   return sqrt(square / motors)
 -- end
 -- 
--- function lowest_of(list)
---   return min(unpack(list, 1, motors))
+-- function highest_of(list)
+--   return max(unpack(list, 1, motors))
 -- end
 -- 
 -- function mean_of(list)
@@ -847,12 +845,12 @@ return load_all, 1000
 --   local deviation_of_less_yaw = sum and deviation_of(less_yaw) or nil
 --   local mean_of_command = sum and mean_of(command) or nil
 --   local deviation_of_command = sum and deviation_of(command) or nil
---   local lowest_of_high_side = sum and lowest_of(high_side) or nil
+--   local least_room = sum and 1 - highest_of(command) or nil
 --   local share_of_below_margin_0_005999 = sum and share_of_below(margin, 0.005999) or nil
 --   inputs[1].x = deviation_of_less_yaw -- unsteady_lately
 --   inputs[2].x = mean_of_command -- throttle_activity
 --   inputs[3].x = deviation_of_command -- swing_per_room
---   inputs[4].x = lowest_of_high_side -- room
+--   inputs[4].x = least_room -- room
 --   inputs[5].x = share_of_below_margin_0_005999 -- at_limit
 --   take_bin(windows[1])
 --   take_bin(windows[2])

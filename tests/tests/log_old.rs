@@ -151,7 +151,7 @@ fn the_report_is_the_same_whatever_is_kept() {
             std::iter::once(Value::Number(time_us)).chain([Value::Number(0.0); 4]),
         );
     }
-    let csv = "t_s,motor1,roll_deg,note\n0,0.5,1,2\n1,0.5,x,2\n2,0.5,1\n3,0.5,1,y\n";
+    let csv = "t_s,motor1,roll_deg,note\n0,0.5,1,2\n1,0.5,x,2\n2,0.5,z,2\n3,0.5,1,y\n";
     for bytes in [&log.bytes[..], log.text.as_bytes(), csv.as_bytes()] {
         let all = read(bytes);
         let none = Options {
