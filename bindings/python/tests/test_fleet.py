@@ -113,7 +113,7 @@ def test_only_what_is_missing_or_changed(logs, tmp_path, here):
     assert fleet.assess([str(logs)], str(out), recursive=True).assessed == 0
     assert flights(out) == before
     changed = logs / "vehicle=v1" / "1.csv"
-    changed.write_text(csv(60))
+    changed.write_text(csv(40))
     assert fleet.assess([str(logs)], str(out), recursive=True).assessed == 1
     after = flights(out)
     assert after["1.csv"]["risk_mean_pct"] != before["1.csv"]["risk_mean_pct"]
