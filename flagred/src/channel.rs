@@ -170,7 +170,7 @@ pub(crate) fn short_way_deg(difference_deg: f64) -> f64 {
 /// use flagred::channel::{Statistic, Threshold};
 ///
 /// let plan = estimator.plan()?;
-/// let at_limit = plan.inputs[4];
+/// let at_limit = plan.inputs[5];
 /// assert_eq!(at_limit.statistic, Statistic::ShareBelow(0.006));
 /// assert_eq!(plan.channels[at_limit.channel].threshold, Some(Threshold::Below(0.006)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

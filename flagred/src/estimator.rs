@@ -377,7 +377,7 @@ mod tests {
         motors.other_risks.clear();
         let motors = Estimator::new(&motors, model).unwrap();
         let default = shipped::flagred();
-        let known = [0.01, 0.02, 0.3, 0.4, 0.1];
+        let known = [0.01, 0.02, 0.01, 0.6, 0.01, 0.1];
         let with = |battery: f64| [&known[..], &[battery]].concat();
         let risk = default.at(&known);
         assert!(risk.is_some());
@@ -389,10 +389,10 @@ mod tests {
             let mut monitor = memory.monitor(&plan).unwrap();
             assert_eq!(monitor.at(&with(level)), risk, "{level}");
         }
-        let unknown = [f64::NAN; 6];
+        let unknown = [f64::NAN; 7];
         assert_eq!((motors.at(&unknown), battery.at(&unknown)), (None, None));
         let mut only_battery = unknown;
-        only_battery[5] = 0.0;
+        only_battery[6] = 0.0;
         assert_eq!(battery.at(&only_battery).unwrap().risk_pct, 100.0);
         assert!(!battery.plan().unwrap().needs_motors());
         assert!(motors.plan().unwrap().needs_motors());

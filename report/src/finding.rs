@@ -188,7 +188,7 @@ impl<'a> Teller<'a> {
     }
 }
 
-/// The cause of a finding in a few words, after a comma: `, unsteady_lately stormy`, `, lower limit, motor 2`, `, motor 2`.
+/// The cause of a finding in a few words, after a comma: `, unsteady_now violent`, `, lower limit, motor 2`, `, motor 2`.
 /// Texts to ground stations, lines and reports all have these words. Where there is no room for the last part, the first one
 /// is true alone.
 pub fn cause(finding: &Finding, motors: &[Motor]) -> [String; 2] {

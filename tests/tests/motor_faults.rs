@@ -325,8 +325,8 @@ fn a_turn_and_a_lean_are_no_weak_motor() {
 
 /// Shaken for two seconds; then the motors stay where they were not before, until 80 s.
 const SHAKEN: [&[f64]; 3] = [
-    &[0.4, -0.2, 0.4, -0.2],
-    &[-0.1, 0.0, -0.1, 0.0],
+    &[0.4, -0.4, 0.4, -0.4],
+    &[-0.4, 0.4, -0.4, 0.4],
     &[0.1, -0.1, 0.0, 0.0],
 ];
 

@@ -124,7 +124,7 @@ fn ten_minutes_of_an_octocopter_stay_small() {
     let log = folder.file("log.csv", long_log(600, 25));
     let html = report(&[&log], &folder);
     assert!(html.len() < 1_500_000, "{} bytes", html.len());
-    assert_eq!(html.matches("<figure class=\"panel small\"").count(), 8 + 5);
+    assert_eq!(html.matches("<figure class=\"panel small\"").count(), 8 + 6);
 }
 
 /// Who can write into a log must not be able to write into the page that shows it.

@@ -146,7 +146,7 @@ fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
     }
 }
 
-/// What the cause of a finding is called, as string literals: `"unsteady_lately stormy"`.
+/// What the cause of a finding is called, as string literals: `"unsteady_now violent"`.
 fn causes(estimator: &Estimator) -> impl Iterator<Item = String> {
     let propositions = estimator.propositions();
     propositions.map(|(input, term)| format!("{:?}", visible(&format!("{input} {term}"))))

@@ -132,7 +132,7 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     })
 }
 
-/// A change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, unsteady_lately stormy`, or where
+/// A change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, unsteady_now violent`, or where
 /// a motor is the cause `FLAGRED: WARN risk 78 %, upper limit, motor 3`, or `FLAGRED: WARN motor 3 weak: +24 %`. Without a
 /// finding an alarm stands because the motors do not work as before it.
 pub(crate) fn say(

@@ -74,7 +74,7 @@ pub struct Cause {
 }
 
 impl fmt::Display for Cause {
-    /// `unsteady_lately stormy`.
+    /// `unsteady_now violent`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.input, self.term)
     }
@@ -211,7 +211,10 @@ rules:
     fn only_limits_of_motors_are_about_a_motor() {
         let estimator = shipped::flagred();
         let plan = estimator.plan().unwrap();
-        let about = (0..5).map(|input| is_of_limits((plan.channels, plan.inputs), input, 0));
-        assert_eq!(about.collect::<Vec<_>>(), [false, false, false, true, true]);
+        let about = (0..6).map(|input| is_of_limits((plan.channels, plan.inputs), input, 0));
+        assert_eq!(
+            about.collect::<Vec<_>>(),
+            [false, false, false, false, false, true]
+        );
     }
 }
