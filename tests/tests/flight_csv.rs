@@ -234,3 +234,31 @@ fn a_clock_of_whole_numbers_is_named() {
     let csv = at(&|i| format!("{}", i / 3 * 2) + "e-2");
     assert_eq!(verdict(&csv), "GOOD");
 }
+
+/// A damaged log may hold what no flight CSV of a user may; it is converted and read back.
+#[test]
+fn what_convert_wrote_is_read_whatever_it_holds() {
+    let rows = "t_s,pwm1,pwm2,pwm3,pwm4,in_air\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n\
+                1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n";
+    let head = "# pwm_low_us: 1000\n# pwm_high_us: 2000\n";
+    let read = |text: String| flightlog::read(text.as_bytes(), &flightlog::Options::default());
+    assert!(read(format!("{head}{rows}")).is_err());
+    let flight = read(format!(
+        "{head}# rebooted_in_air_s: 9000\n# written_by: flagred\n{rows}"
+    ));
+    let flight = flight.unwrap();
+    assert_eq!(flight.rebooted_in_air_s, [9000.0]);
+    let mut written = Vec::new();
+    flight.write_csv(&mut written).unwrap();
+    assert_eq!(
+        read(String::from_utf8(written).unwrap()).unwrap().commands,
+        flight.commands
+    );
+}
+
+#[test]
+fn quotes_around_names_are_dropped_however_many() {
+    let text = "t_s, \"\"\"a\"\"\",motor1\n0,1,0.5\n0.1,2,0.5\n";
+    let flight = flightlog::read(text.as_bytes(), &flightlog::Options::default()).unwrap();
+    assert_eq!(flight.signals().next().unwrap().label.name, "a");
+}

@@ -140,6 +140,7 @@ pub(super) fn apply_header(
         },
         None => whole_range("no effective_low and effective_high in the header"),
     };
+    let is_ours = is_ours(&header);
     for entry in &header {
         match entry.key.as_str() {
             "vehicle" => flight.vehicle.frame = Some(entry.value.clone()),
@@ -188,7 +189,9 @@ pub(super) fn apply_header(
                         "write times in seconds, with spaces between them",
                     )
                 })?;
-                if let Some(outside) = times.iter().find(|t_s| !span_s.contains(t_s)) {
+                let outside = times.iter().find(|t_s| !span_s.contains(t_s));
+                // A damaged log may have it anywhere: no GOOD comes of it.
+                if let Some(outside) = outside.filter(|_| !is_ours) {
                     let (from_s, to_s) = (span_s.start(), span_s.end());
                     let text = format!(
                         "`rebooted_in_air_s` is {outside}, and the flight goes from {from_s} to {to_s} s"

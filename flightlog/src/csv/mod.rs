@@ -33,13 +33,13 @@ pub(crate) fn looks_like(start: &[u8]) -> bool {
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
 
-/// A cell without white space and quotes around it.
+/// A cell without white space and quotes around it, however many.
 fn cell(bytes: &[u8]) -> &[u8] {
-    let bytes = bytes.trim_ascii();
-    match bytes {
-        [b'"', inner @ .., b'"'] => inner.trim_ascii(),
-        _ => bytes,
+    let mut bytes = bytes.trim_ascii();
+    while let [b'"', inner @ .., b'"'] = bytes {
+        bytes = inner.trim_ascii();
     }
+    bytes
 }
 
 pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, ReadError> {
