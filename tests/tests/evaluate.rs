@@ -15,7 +15,7 @@ fn flight(kind: &str, in_trouble: bool) -> String {
     for i in 0..1500 {
         let t_s = f64::from(i) / 25.0;
         let swing = if in_trouble && (30.0..40.0).contains(&t_s) {
-            400.0 * (t_s * 5.0).sin().powi(2) * ((t_s - 30.0) / 4.0).min(1.0)
+            300.0 * (t_s * 5.0).sin().powi(2) * ((t_s - 30.0) / 4.0).min(1.0)
         } else {
             4.0 * (t_s * 7.0).sin()
         };
@@ -24,7 +24,7 @@ fn flight(kind: &str, in_trouble: bool) -> String {
         } else {
             0.1
         };
-        let (up, down) = (1550.0 + swing, 1550.0 - 0.5 * swing);
+        let (up, down) = (1550.0 + swing, 1550.0 - swing);
         writeln!(
             text,
             "{t_s},{up:.0},{down:.0},{up:.0},{down:.0},0,{off},0,0,1"
@@ -91,8 +91,8 @@ fn flights_are_compared_step_by_step_and_episode_by_episode() {
     // The error of a second is over the limit from 34.2 to 40.8 s: critical within 5 s from 29.5 s on.
     let flagred = estimator(&document, "flagred");
     assert_eq!(flagred["critical"], 23);
-    assert!(flagred["auc"].as_f64().unwrap() > 0.85, "{flagred}");
-    assert!(flagred["pr_auc"].as_f64().unwrap() > 0.6, "{flagred}");
+    assert!(flagred["auc"].as_f64().unwrap() > 0.9, "{flagred}");
+    assert!(flagred["pr_auc"].as_f64().unwrap() > 0.75, "{flagred}");
     let unknown = estimator(&document, "ekf_wind");
     assert_eq!(
         (&unknown["auc"], &unknown["unknown"]),
@@ -115,7 +115,7 @@ fn flights_are_compared_step_by_step_and_episode_by_episode() {
         (&1.into(), &1.into(), &0.into())
     );
     let lead_s = warnings["lead_s_median"].as_f64().unwrap();
-    assert!((0.2..4.2).contains(&lead_s), "{lead_s}");
+    assert!((0.5..4.2).contains(&lead_s), "{lead_s}");
     let kinds: Vec<&Value> = warnings["by_kind"]
         .as_array()
         .unwrap()
@@ -334,7 +334,7 @@ fn whole_flights_are_evaluated_from_a_table() {
     let said = String::from_utf8_lossy(&output.stderr);
     // Nothing but the load is in it, and nobody asks for the load alone.
     assert!(
-        said.contains("has no column for its input `unsteady_lately`"),
+        said.contains("has no column for its input `unsteady_now`"),
         "{said}"
     );
     let output = evaluate(&["--rows", &bad, &bad]);

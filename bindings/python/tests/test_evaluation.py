@@ -199,7 +199,7 @@ def test_whole_flights_are_evaluated_as_by_the_command_line(tmp_path):
     assert found.cases == "flights" and found.horizon_s is None and found.flights == []
     assert found.estimators["lowest_motor"].areas.auc == 1 and found.estimators["spread"].quiet is None
     assert found.scores.keys()[:2] == ["flight", "critical"] and found.scores["critical"].tolist() == [0, 0, 1, 1]
-    assert any("has no column for its input `unsteady_lately`" in note for note in found.notes)
+    assert any("has no column for its input `unsteady_now`" in note for note in found.notes)
     assert "4 flights of 2 vehicles" in found.html()
     pandas = pytest.importorskip("pandas", reason="pandas is not installed")
     assert flagred.evaluate(rows=pandas.read_csv(tmp_path / "rows.csv")).to_json() == found.to_json()
