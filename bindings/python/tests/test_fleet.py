@@ -502,6 +502,34 @@ def test_assess_reads_the_logs_of_a_torn_part_again(kind, logs, tmp_path, here, 
     assert torn.exists() and main(["compact", str(out)]) == 3
 
 
+@pytest.mark.parametrize("kind", ["findings", "steps"])
+def test_a_part_that_is_missing_is_named_and_its_logs_are_read_again(kind, logs, tmp_path, here, capsys):
+    pytest.importorskip("duckdb")
+    out = tmp_path / "out"
+    (logs / "vehicle=v5" / "weak.csv").write_text(weak(5))
+    arguments = ["assess", str(logs), "--recursive", "--out", str(out)]
+    assert main(arguments) == 0
+    before = content(out)
+    lost = sorted((out / kind).rglob("*.parquet"))[-1]
+    lost.unlink()
+    capsys.readouterr()
+    assert main(["compact", str(out)]) == 3
+    assert f"`{lost}` is missing" in capsys.readouterr().err
+    if kind == "findings":
+        assert main(["report", str(out), "-o", str(tmp_path / "fleet.html")]) == 3
+        told = capsys.readouterr().err
+        assert "has no findings of `" in told and "help: run `assess` again" in told
+    assert main(arguments) == 0
+    assert f"warning: `{lost}` is missing" in capsys.readouterr().err
+    assert content(out) == before
+    # The row of a log that is gone would be lost.
+    lost.unlink()
+    shutil.rmtree(logs)
+    logs.mkdir()
+    assert main(arguments) == 3
+    assert "is not listed" in capsys.readouterr().err
+
+
 def test_damage_inside_a_part_is_named(logs, tmp_path, here, capsys):
     pytest.importorskip("duckdb")
     out = tmp_path / "out"

@@ -25,12 +25,13 @@ __all__ = ["Catalog", "Counts"]
 TABLES = """
 CREATE TABLE listed(log TEXT PRIMARY KEY, source TEXT, path TEXT, bytes INT, modified_us INT, identity TEXT) WITHOUT ROWID;
 CREATE TABLE file(id INTEGER PRIMARY KEY, name TEXT UNIQUE, stamp TEXT);
+CREATE TABLE absent(file INT, kind TEXT);
 CREATE TABLE flight(file INT, log TEXT, flight_id TEXT, identity TEXT, settings TEXT, status TEXT, deleted INT,
-  modified_us INT, sha256 TEXT);
+  modified_us INT, sha256 TEXT, findings INT, risk_max_pct REAL);
 CREATE INDEX flight_log ON flight(log);
 CREATE INDEX flight_file ON flight(file);
 """
-COLUMNS = ["log", "flight_id", "identity", "settings", "status", "deleted", "modified_utc", "sha256"]
+COLUMNS = ["log", "flight_id", "identity", "settings", "status", "deleted", "modified_utc", "sha256", "findings", "risk_max_pct"]
 READERS = 4
 
 
@@ -82,15 +83,26 @@ class Catalog:
                 self.forget(path)
             waiting = iter(changed)
             while some := list(islice(waiting, READERS)):
-                for path, (rows, torn) in zip(some, readers.map(lambda path: _rows(out, path), some)):
+                for path, (rows, absent, torn) in zip(some, readers.map(lambda path: _rows(out, path), some)):
                     id = self._db.execute("INSERT INTO file(name, stamp) VALUES(?,?)", (path, now[path])).lastrowid
-                    self._db.executemany(f"INSERT INTO flight VALUES({id},?,?,?,?,?,?,?,?)", rows)
+                    self._db.executemany(f"INSERT INTO flight VALUES({id}{',?' * len(COLUMNS)})", rows)
+                    self._db.executemany(f"INSERT INTO absent VALUES({id},?)", [(kind,) for kind in absent])
                     if torn:
                         self._torn[path] = torn
 
-    def torn(self) -> dict[str, DamagedError]:
-        """The files of ``flights`` that were taken in and whose steps or findings are torn."""
-        return dict(self._torn)
+    def damaged(self, out: Place) -> dict[str, DamagedError]:
+        """The files of ``flights`` that were taken in and whose steps or findings are torn or missing.
+
+        A flight with a risk has steps. Of flights that another row may replace nothing is missing: they are dropped out of steps and
+        findings first.
+        """
+        query = """
+        SELECT DISTINCT n.name, a.kind FROM absent a JOIN file n ON n.id = a.file JOIN flight f USING(file)
+        WHERE CASE a.kind WHEN 'findings' THEN f.findings > 0 ELSE f.risk_max_pct IS NOT NULL END
+          AND (SELECT count(*) FROM flight g WHERE g.log = f.log) = 1
+        """
+        missing = {path: DamagedError.missing(out.shown(beside(out, path, kind))) for path, kind in self._db.execute(query)}
+        return missing | self._torn
 
     def unlisted(self, path: str) -> list[str]:
         """The logs of a file of ``flights`` that are not listed."""
@@ -100,6 +112,7 @@ class Catalog:
     def forget(self, path: str) -> None:
         """Lets go of the flights of a file."""
         self._torn.pop(path, None)
+        self._db.execute("DELETE FROM absent WHERE file = (SELECT id FROM file WHERE name = ?)", (path,))
         self._db.execute("DELETE FROM flight WHERE file = (SELECT id FROM file WHERE name = ?)", (path,))
         self._db.execute("DELETE FROM file WHERE name = ?", (path,))
 
@@ -177,9 +190,9 @@ class _Transaction:
         self._db.execute("COMMIT" if kind is None else "ROLLBACK")
 
 
-def _rows(out: Place, path: str) -> tuple[list[tuple[Any, ...]], DamagedError | None]:
-    """What of a file's flights the catalog knows, and whether their steps or findings are torn. Compaction bounds how many there
-    are in a file."""
+def _rows(out: Place, path: str) -> tuple[list[tuple[Any, ...]], list[str], DamagedError | None]:
+    """What of a file's flights the catalog knows, which other tables have no file of this name, and whether one is torn.
+    Compaction bounds how many flights there are in a file."""
     with parquet(out, path) as file:
         version = (file.schema_arrow.metadata or {}).get(b"flagred.fleet", b"none").decode()
         if version != VERSION:
@@ -189,12 +202,13 @@ def _rows(out: Place, path: str) -> tuple[list[tuple[Any, ...]], DamagedError | 
     modified = table["modified_utc"].cast(pa.int64())
     table = table.set_column(table.column_names.index("modified_utc"), "modified_utc", modified)
     rows = list(zip(*(table[name].to_pylist() for name in COLUMNS)))
+    absent = []
     for kind in KINDS[:-1]:
         try:
             with parquet(out, beside(out, path, kind)):
                 pass
         except FileNotFoundError:
-            continue
+            absent.append(kind)
         except DamagedError as error:
-            return rows, error
-    return rows, None
+            return rows, absent, error
+    return rows, absent, None

@@ -19,11 +19,18 @@ class FleetError(FlagredError):
 
 
 class DamagedError(FleetError):
-    """A file of a dataset is damaged."""
+    """A file of a dataset is damaged or missing."""
 
     @classmethod
     def of(cls, file: str, error: object) -> DamagedError:
-        """The error of a file, by its path as a person writes it."""
+        """The error of a file that is damaged, by its path as a person writes it."""
         reason = str(error).partition("\n")[0]
-        help = "restore the file, or delete all files of its name in the dataset: `assess` then reads its logs again"
-        return cls(f"`{file}` is damaged: {reason}", help)
+        return cls(f"`{file}` is damaged: {reason}", _HELP)
+
+    @classmethod
+    def missing(cls, file: str) -> DamagedError:
+        """The error of a file that should be there, by its path as a person writes it."""
+        return cls(f"`{file}` is missing, and flights of its name have rows in it", _HELP)
+
+
+_HELP = "restore the file, or delete all files of its name in the dataset: `assess` then reads its logs again"

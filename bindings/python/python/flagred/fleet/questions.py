@@ -80,6 +80,9 @@ def _views(connection: Any, place: Place) -> None:
             )
             connection.register(kind, of)
     connection.execute(_parts()[0])
+    told = "SELECT log FROM flights WHERE findings > 0 AND flight_id NOT IN (SELECT flight_id FROM findings) ORDER BY log LIMIT 1"
+    if lost := connection.execute(told).fetchone():
+        raise DamagedError(f"`{place.shown(place.root)}` has no findings of `{lost[0]}`, which has some", "run `assess` again, which completes it")
 
 
 def _open(place: Place, path: str) -> None:

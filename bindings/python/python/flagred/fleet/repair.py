@@ -20,26 +20,26 @@ __all__ = ["redo", "repair"]
 
 
 def redo(out: Place, catalog: Catalog, dry_run: bool) -> tuple[DamagedError, ...]:
-    """Takes files whose steps or findings are torn out of the dataset, so that their logs are read again. Gives their errors.
+    """Takes files whose steps or findings are torn or missing out of the dataset, so that their logs are read again. Gives their errors.
 
     Raises
     ------
     DamagedError
         Not all logs of such a file are listed, so that their rows would be lost.
     """
-    torn = catalog.torn()
-    for path, error in torn.items():
+    damaged = catalog.damaged(out)
+    for path, error in damaged.items():
         unlisted = catalog.unlisted(path)
         if unlisted:
             raise DamagedError(
                 f"{error}; `{unlisted[0]}` of its logs is not listed",
                 "restore the file, name the sources of all its logs, or delete all files of its name in the dataset, with the rows of logs that are gone",
             )
-    for path in torn:
+    for path in damaged:
         for kind in () if dry_run else KINDS[::-1]:
             out.delete(beside(out, path, kind))
         catalog.forget(path)
-    return tuple(torn.values())
+    return tuple(damaged.values())
 
 
 def repair(out: Place, catalog: Catalog, wanted: Callable[[str], bool]) -> None:
@@ -51,7 +51,7 @@ def repair(out: Place, catalog: Catalog, wanted: Callable[[str], bool]) -> None:
         A file of the dataset is damaged.
     """
     catalog.load(out)
-    for error in catalog.torn().values():
+    for error in catalog.damaged(out).values():
         raise error
     for path, flights in list(catalog.doubled()):
         drop(out, path, flights)
