@@ -127,6 +127,19 @@ impl Range {
     pub fn fraction(&self, value: f64) -> f64 {
         ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
+
+    /// Whether a value can be a command: one that is farther outside than ten times the width of the range is a code, such as
+    /// 65535 for no value, and so is NaN.
+    ///
+    /// ```
+    /// let pulse_us = flagred::margin::Range::new(1000.0, 2000.0).ok_or("low must be below high")?;
+    /// assert!(pulse_us.may_mean(0.0) && !pulse_us.may_mean(65535.0) && !pulse_us.may_mean(f64::NAN));
+    /// # Ok::<(), &str>(())
+    /// ```
+    pub fn may_mean(&self, value: f64) -> bool {
+        let most = 10.0 * (self.high - self.low);
+        (self.low - most..=self.high + most).contains(&value)
+    }
 }
 
 /// The margin of an effective command in [0, 1]: `min(e, 1 - e)`, in [0, 0.5]; 0 is saturated, low or high.

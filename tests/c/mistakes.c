@@ -144,6 +144,13 @@ int main(void) {
     CHECK(flagred_evaluate(monitor, NULL, 4, &said) == FLAGRED_NULL_POINTER);
     CHECK(flagred_evaluate(monitor, commands, 0, &said) == FLAGRED_OK && isnan(said.risk_pct));
 
+    double more[MOTORS + 1] = {0};
+    sample.commands = more;
+    sample.motors = MOTORS + 1;
+    CHECK(flagred_push(monitor, &sample, &said) == FLAGRED_WRONG_COUNT);
+    sample.commands = commands;
+    sample.motors = MOTORS;
+
     /* What is not known is never a risk: NAN, 65535 and infinities in every field, too few and too many motors. */
     const double odd[] = {NAN, 65535.0, INFINITY, -INFINITY, -1.0, 1e300};
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {

@@ -37,7 +37,7 @@ typedef enum flagred_status {
     FLAGRED_MEMORY_SIZE = 5,    /* less memory than flagred_memory_size returns, or not aligned to 16 bytes */
     FLAGRED_BAD_LIMITS = 6,     /* the lower limit of a motor is not below its upper limit */
     FLAGRED_BAD_GEOMETRY = 7,   /* the geometry does not tell roll, pitch, yaw and thrust of all motors apart */
-    FLAGRED_WRONG_COUNT = 8     /* not one value for each input, or not one outcome for each output */
+    FLAGRED_WRONG_COUNT = 8     /* not one value for each input, not one outcome for each output, or too many commands */
 } flagred_status;
 
 typedef enum flagred_level {
@@ -90,9 +90,9 @@ typedef struct flagred_factors {
 /* A sample of a flight. */
 typedef struct flagred_sample {
     double t_s;                 /* seconds; must increase */
-    const double *commands;     /* the command of each motor, in the unit of its limits; NAN where unknown (replace
-                                   codes such as 65535 by NAN) */
-    size_t motors;              /* the number of commands; missing ones are unknown, and so is the risk then */
+    const double *commands;     /* the command of each motor, in the unit of its limits; NAN where unknown */
+    size_t motors;              /* the number of commands; missing ones are unknown, and so is the risk then; more than
+                                   the monitor has motors are FLAGRED_WRONG_COUNT */
     const double *signals;      /* the signals of the profile, in its order; NAN where unknown; may be NULL */
     size_t signal_count;
     int32_t in_air;             /* what the land detector reports: 0 on the ground, 1 in the air; -1 not known: motors that
@@ -157,7 +157,8 @@ const char *flagred_status_text(int32_t status);
 size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 
 /* Makes a monitor of a new flight in `memory`; there is nothing to free. `plan` and `memory` must outlive it. `limits`,
- * one for each motor, are copied, and commands are clamped to them. If `limits` is NULL, commands are from 0 to 1: commands
+ * one for each motor, are copied, and commands are clamped to them; those that are ten times the width of the range outside,
+ * such as 65535, are unknown. If `limits` is NULL, commands are from 0 to 1: commands
  * from -0.5 to 1.5 are clamped to this range, and others are unknown. While a motor is unknown, so is the risk. */
 int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_limits *limits, void *memory, size_t size,
                       flagred_monitor **monitor);

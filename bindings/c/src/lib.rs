@@ -227,10 +227,13 @@ pub unsafe extern "C" fn flagred_push(
     let (Ok(commands), Ok(signals)) = arrays else {
         return Status::NullPointer as i32;
     };
+    if commands.len() > monitor.effective.len() {
+        return Status::WrongCount as i32;
+    }
     let known = commands.iter().copied().chain(core::iter::repeat(f64::NAN));
     for (i, (effective, command)) in monitor.effective.iter_mut().zip(known).enumerate() {
         *effective = match monitor.limits.get(i) {
-            Some(limits) if command.is_finite() => limits.fraction(command),
+            Some(limits) if limits.may_mean(command) => limits.fraction(command),
             Some(_) => f64::NAN,
             None => command,
         };
