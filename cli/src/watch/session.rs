@@ -29,9 +29,9 @@ use tracked::{Tracked, Watch, tell};
 use trust::{Candidates, Proof, doubt_of};
 pub(crate) use trust::{Doubt, Doubts, Source, may_be_multirotor};
 
-/// Seconds between two heartbeats, and between two risks sent.
+/// Seconds between two heartbeats, and between two risks sent: so often that a link that loses a tenth shows one every second.
 const HEARTBEAT_S: f64 = 1.0;
-const RISK_S: f64 = 0.5;
+const RISK_S: f64 = 0.25;
 /// A vehicle that sends no motor commands for so long although they are requested gives way to another one.
 const PROOF_S: f64 = 5.0;
 /// A vehicle that is silent for so long gives way to one of another system.

@@ -298,9 +298,9 @@ fn a_flight_at_the_limit_is_told_once_a_level() {
     let text = bench.said();
     assert!(text.starts_with("FLAGRED: FAIL risk "), "{text}");
     assert!(text.ends_with(" %, lower limit, motor 1"), "{text}");
-    // Sent for half a minute of the receiver's clock, twice a second.
+    // Sent for half a minute of the receiver's clock, four times a second.
     let values = bench.count_sent(|message| matches!(message, MavMessage::NAMED_VALUE_FLOAT(_)));
-    assert!((80..=130).contains(&values), "{values}");
+    assert!((160..=260).contains(&values), "{values}");
     let mut out = Out::default();
     assert_eq!(bench.session.finish(&mut out), Verdict::Known(Level::Fail));
 }
