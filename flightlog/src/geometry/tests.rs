@@ -293,5 +293,6 @@ fn parameters_of_either_autopilot_tell_the_layout() {
     );
     // An airframe of another number of motors is not that of these.
     assert_eq!(of(&airframe(6001.0), 8), None);
+    assert_eq!(of(&airframe(10_044.0), 4), None);
     assert_eq!(of(&airframe(4001.0), 4).unwrap().basis, Basis::Declared);
 }
