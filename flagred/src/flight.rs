@@ -28,6 +28,9 @@ pub use serialize::Steps;
 
 /// The least share of the time in the air in which the risk must be known for a verdict of GOOD.
 const KNOWN_SHARE: f64 = 0.5;
+/// The largest share of the time in the air without the command of a motor, and of samples that were ignored for their times,
+/// for a verdict of GOOD: what is unknown for longer, however often it is known in between, can hide a FAIL.
+const LOST_SHARE: f64 = 1.0 / 16.0;
 
 /// Findings that are kept of a flight, the gravest.
 const MOST_FINDINGS: usize = 1000;
@@ -110,8 +113,13 @@ struct Flight {
     saturated: u64,
     /// For how long the risk was unknown, by reason.
     unknown: Vec<(Unknown, f64)>,
-    /// The latest and the longest time in the air without the command of a motor.
-    motor_lost: [Option<MotorLost>; 2],
+    /// The latest and the longest time in the air without the command of a motor, and all of them as one.
+    motor_lost: [Option<MotorLost>; 3],
+    /// When the clock went back in the air.
+    set_back_s: Option<f64>,
+    /// Samples in the air that were taken, and those that were ignored for their times.
+    taken: u64,
+    ignored: u64,
     /// Judged risks that a landing would still take back, in order of time.
     pending: VecDeque<Pending>,
 }
@@ -126,12 +134,15 @@ struct Last {
 /// A time in the air in which the command of a motor was unknown.
 #[derive(Debug, Clone, Copy)]
 struct MotorLost {
-    /// Counted from 0.
+    /// The first, counted from 0.
     motor: usize,
+    /// Whether others were unknown, too.
+    others: bool,
     /// Where it is far outside [0, 1].
     command: Option<f64>,
     from_s: f64,
     to_s: f64,
+    unknown_s: f64,
     /// For how much longer it was unknown than known in between.
     lost_s: f64,
 }
@@ -140,10 +151,33 @@ impl MotorLost {
     fn reason(&self) -> Reason {
         Reason::MotorUnknown {
             motor: self.motor + 1,
+            others: self.others,
             command: self.command,
             from_s: self.from_s,
             to_s: self.to_s,
+            unknown_s: self.unknown_s,
         }
+    }
+
+    /// The command of a motor was unknown once more, for so long until `t_s`.
+    fn add(
+        lost: &mut Option<MotorLost>,
+        (motor, command): (usize, Option<f64>),
+        (t_s, held_s): (f64, f64),
+    ) {
+        let lost = lost.get_or_insert(MotorLost {
+            motor,
+            others: false,
+            command,
+            from_s: t_s - held_s,
+            to_s: t_s,
+            unknown_s: 0.0,
+            lost_s: 0.0,
+        });
+        lost.others |= lost.motor != motor;
+        lost.to_s = t_s;
+        lost.unknown_s += held_s;
+        lost.lost_s += held_s;
     }
 }
 
@@ -187,7 +221,12 @@ impl Assessor {
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         let update = self.monitor.push(sample);
         self.keep_findings(update.ended);
-        if update.risk != Err(Unknown::OutOfOrder) {
+        if update.risk == Err(Unknown::OutOfOrder) {
+            let before_s = self.flight.last.map_or(f64::NAN, |last| last.t_s);
+            // Of two samples at one time the first counts.
+            let counts = sample.t_s != before_s && !sample.is_on_ground();
+            self.flight.ignored += u64::from(counts);
+        } else {
             let profile = self.monitor.estimator().profile();
             let elsewhere = self.monitor.unknown_elsewhere();
             let unknown = update.risk.err().into_iter().chain(elsewhere);
@@ -298,7 +337,10 @@ impl Flight {
             motor_samples: 0,
             saturated: 0,
             unknown: Vec::new(),
-            motor_lost: [None; 2],
+            motor_lost: [None; 3],
+            set_back_s: None,
+            taken: 0,
+            ignored: 0,
             pending: VecDeque::new(),
         }
     }
@@ -316,7 +358,11 @@ impl Flight {
             t_s,
             in_air: !sample.is_on_ground(),
         });
-        let flown_s = last.filter(|last| last.in_air).map_or(0.0, |last| {
+        let last = last.filter(|last| last.in_air);
+        if let Some(last) = last.filter(|last| last.t_s > t_s) {
+            self.set_back_s.get_or_insert(last.t_s);
+        }
+        let flown_s = last.map_or(0.0, |last| {
             let held_s = (t_s - last.t_s).max(0.0);
             // It may have landed at any time of a gap.
             match !sample.is_on_ground() || held_s <= profile.sampling.longest_gap_s {
@@ -327,11 +373,12 @@ impl Flight {
         self.summary.in_air_s += flown_s;
         let quiet_s = profile.verdict.quiet_before_landing_s;
         if sample.is_on_ground() {
-            if last.is_some_and(|last| last.in_air) {
+            if last.is_some() {
                 self.take_back(t_s - quiet_s);
             }
             return;
         }
+        self.taken += 1;
         let commands = sample.motors.iter().map(|command| counted(*command));
         for e in commands.filter(|e| e.is_finite()) {
             self.motor_samples += 1;
@@ -374,30 +421,24 @@ impl Flight {
 
     /// Adds up the time without a motor; known time in between is taken off, so that single damaged samples never add up.
     fn follow_motors(&mut self, mut unknown: impl Iterator<Item = Unknown>, t_s: f64, held_s: f64) {
-        let [latest, longest] = &mut self.motor_lost;
+        let [latest, longest, all] = &mut self.motor_lost;
         let of_motor = unknown.find_map(|reason| match reason {
             Unknown::NoCommand { motor } => Some((motor, None)),
             Unknown::CommandOutside { motor, command } => Some((motor, Some(command))),
             _ => None,
         });
-        let Some((motor, command)) = of_motor else {
+        let Some(of_motor) = of_motor else {
             if let Some(lost) = latest {
                 lost.lost_s -= held_s;
             }
             *latest = latest.filter(|lost| lost.lost_s > 0.0);
             return;
         };
-        let lost = latest.get_or_insert(MotorLost {
-            motor,
-            command,
-            from_s: t_s - held_s,
-            to_s: t_s,
-            lost_s: 0.0,
-        });
-        lost.to_s = t_s;
-        lost.lost_s += held_s;
-        if longest.is_none_or(|longest| lost.lost_s > longest.lost_s) {
-            *longest = Some(*lost);
+        MotorLost::add(all, of_motor, (t_s, held_s));
+        MotorLost::add(latest, of_motor, (t_s, held_s));
+        let lost_s = |of: &Option<MotorLost>| of.map_or(0.0, |of| of.lost_s);
+        if longest.is_none() || lost_s(latest) > lost_s(longest) {
+            *longest = *latest;
         }
     }
 
@@ -493,16 +534,26 @@ impl Flight {
         }
     }
 
-    /// Without findings the flight is good only where enough of it is known, and every motor but for moments.
+    /// Without findings the flight is good only where enough of it is known, every motor but for moments, and the clock went on.
     fn verdict(&self, summary: &Summary, profile: &Profile) -> Verdict {
         let knows_enough =
             summary.assessed_s > 0.0 && summary.assessed_s >= KNOWN_SHARE * summary.in_air_s;
         let gravest = self.findings.first().map(|finding| finding.level);
-        let [_, longest] = self.motor_lost;
-        let lost = longest.filter(|lost| lost.lost_s > profile.sampling.longest_gap_s);
+        let [_, longest, all] = self.motor_lost;
+        let longest_gap_s = profile.sampling.longest_gap_s;
+        let share_s = LOST_SHARE * summary.in_air_s;
+        let lost = longest
+            .filter(|lost| lost.lost_s > longest_gap_s)
+            .or(all.filter(|lost| lost.unknown_s > share_s));
+        let ignored = self.ignored as f64 > LOST_SHARE * (self.taken + self.ignored) as f64;
+        let of_clock = self.set_back_s.map(|at_s| Reason::SetBackInAir { at_s });
+        let of_clock = of_clock.or(ignored.then_some(Reason::SamplesIgnored {
+            ignored: self.ignored,
+        }));
+        let lost = of_clock.or(lost.map(|lost| lost.reason()));
         match (gravest.filter(|level| *level > Level::Info), lost) {
             (Some(gravest), _) => Verdict::Known(gravest),
-            (None, Some(lost)) => Verdict::NotAvailable(lost.reason()),
+            (None, Some(lost)) => Verdict::NotAvailable(lost),
             (None, None) if knows_enough => Verdict::Known(Level::Good),
             (None, None) => {
                 let longest = self.unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1));

@@ -95,7 +95,7 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
                 )
         )
     {
-        assessment.verdict = Verdict::NotAvailable(Reason::RebootedInAir { at_s });
+        assessment.verdict = Verdict::NotAvailable(Reason::SetBackInAir { at_s });
     }
     assessment
 }

@@ -1,7 +1,7 @@
 //! Servo outputs of ArduPilot, before it is known which of them drive motors.
 
 use crate::Commands;
-use crate::signal::Order;
+use crate::signal::{Order, SetBack};
 
 /// Stands for an output that was not logged in a row, or is damaged.
 const MISSING: u16 = u16::MAX;
@@ -49,6 +49,7 @@ pub(crate) struct Outputs {
     /// Columns by output number less one; shorter than `t_s` while nothing was logged since,
     /// empty while all was 0.
     columns: Vec<Vec<u16>>,
+    set_back: SetBack,
 }
 
 impl Outputs {
@@ -64,6 +65,7 @@ impl Outputs {
         let mut order = Order::Last;
         if first || self.t_s.is_empty() {
             order = Order::of(&self.t_s, t_s);
+            self.set_back.see(order, t_s, self.t_s.last());
             match order {
                 Order::Last => {}
                 Order::Replaces => self.pop(),
@@ -97,6 +99,12 @@ impl Outputs {
     /// Moves all rows in time.
     pub(crate) fn shift(&mut self, by_s: f64) {
         self.t_s.iter_mut().for_each(|t_s| *t_s += by_s);
+        self.set_back.shift(by_s);
+    }
+
+    /// The last times before the clock was set back, so that rows were dropped.
+    pub(crate) fn set_back_s(&self) -> Vec<f64> {
+        self.set_back.at_s().to_vec()
     }
 
     /// Number of motors, where nothing else gives it: 4, 6 or 8 if that many of the first outputs,

@@ -196,6 +196,47 @@ impl Order {
     }
 }
 
+/// A clock that goes back by more than this for two rows or more, in seconds, was set back or started again.
+pub(crate) const SET_BACK_S: f64 = 0.2;
+/// Times at which a clock was set back that are kept of a log.
+const MOST_SET_BACK: usize = 1000;
+
+/// Notices a clock that is set back: what is dropped for it is missing, and the times that are kept do not show that.
+#[derive(Debug, Default)]
+pub(crate) struct SetBack {
+    /// The time of the row before, where it was dropped.
+    dropped_s: Option<f64>,
+    at_s: Vec<f64>,
+}
+
+impl SetBack {
+    /// Takes a row by its order and its time, with the last row that was kept before it.
+    pub(crate) fn see(&mut self, order: Order, t_s: f64, last_s: Option<&f64>) {
+        if order != Order::Back {
+            self.dropped_s = None;
+            return;
+        }
+        let before_s = self.dropped_s.replace(t_s).filter(|s| *s <= t_s);
+        let last_s = last_s.filter(|last_s| **last_s - t_s > SET_BACK_S);
+        if let (Some(_), Some(last_s)) = (before_s, last_s)
+            && self.at_s.last() != Some(last_s)
+            && self.at_s.len() < MOST_SET_BACK
+        {
+            self.at_s.push(*last_s);
+        }
+    }
+
+    /// The last times before the clock was set back.
+    pub(crate) fn at_s(&self) -> &[f64] {
+        &self.at_s
+    }
+
+    /// Moves all times.
+    pub(crate) fn shift(&mut self, by_s: f64) {
+        self.at_s.iter_mut().for_each(|t_s| *t_s += by_s);
+    }
+}
+
 /// Samples a second: the inverse of the mean time step, without pauses. A step is a pause
 /// when it is over 2 s and over ten times the median step. `None` without any step.
 pub(crate) fn rate_hz(t_s: &[f64]) -> Option<f64> {

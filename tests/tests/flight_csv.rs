@@ -262,3 +262,18 @@ fn quotes_around_names_are_dropped_however_many() {
     let flight = flightlog::read(text.as_bytes(), &flightlog::Options::default()).unwrap();
     assert_eq!(flight.signals().next().unwrap().label.name, "a");
 }
+
+#[test]
+fn times_of_a_clock_that_starts_again_far_below_never_go_back() {
+    let row = |t_s: &str| format!("{t_s},0.5,0.5,0.5,0.5\n");
+    let rows: String = ["-1e9", "0.0158", "-1e9", "-1e9", "0.5", "1"]
+        .map(row)
+        .concat();
+    let flight = read(&format!("t_s,motor1,motor2,motor3,motor4\n{rows}")).unwrap();
+    assert!(
+        flight.commands.t_s().is_sorted(),
+        "{:?}",
+        flight.commands.t_s()
+    );
+    assert_eq!(flight.commands.len(), 5);
+}

@@ -111,7 +111,8 @@ fn a_motor_without_commands_for_a_while_is_the_reason_unless_it_fails_elsewhere(
 }
 
 /// A DataFlash log of a hexacopter: parameters, then rows of outputs from `outputs(t_s)` at 25 Hz. It takes off at 1 s.
-fn dataflash(outputs: impl Fn(f64) -> [u16; 6], clock_back: Option<f64>) -> Vec<u8> {
+/// The clock goes back at a time, by a time.
+fn dataflash(outputs: impl Fn(f64) -> [u16; 6], clock_back: Option<(f64, f64)>) -> Vec<u8> {
     let mut log = DataFlash::new();
     log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
     log.define(130, "RCOU", "QHHHHHH", "TimeUS,C1,C2,C3,C4,C5,C6");
@@ -138,7 +139,8 @@ fn dataflash(outputs: impl Fn(f64) -> [u16; 6], clock_back: Option<f64>) -> Vec<
     for i in 0..3000 {
         let t_s = 1.0 + f64::from(i) * 0.04;
         let row = outputs(t_s).map(|pulse| Value::Number(pulse.into()));
-        let back_s = clock_back.filter(|at_s| t_s > *at_s).map_or(0.0, |_| 40.0);
+        let set_back = clock_back.filter(|(at_s, _)| t_s > *at_s);
+        let back_s = set_back.map_or(0.0, |(_, by_s)| by_s);
         log.write(
             "RCOU",
             std::iter::once(Value::Number((t_s - back_s) * 1e6)).chain(row),
@@ -176,20 +178,24 @@ fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
     assert_eq!(assess(&whole, &estimator, None).verdict.to_string(), "GOOD");
     assert!(whole.rebooted_in_air_s.is_empty());
 
-    let lost = read(&dataflash(calm, Some(61.0)));
+    let lost = read(&dataflash(calm, Some((61.0, 40.0))));
     let mut csv = Vec::new();
     lost.write_csv(&mut csv).unwrap();
     for flight in [&lost, &read(&csv)] {
         assert_eq!(flight.rebooted_in_air_s.len(), 1);
         let verdict = assess(flight, &estimator, None).verdict;
-        let Verdict::NotAvailable(reason @ Reason::RebootedInAir { .. }) = &verdict else {
+        let Verdict::NotAvailable(reason @ Reason::SetBackInAir { .. }) = &verdict else {
             panic!("{verdict:?}");
         };
         assert_eq!(
             reason.to_string(),
-            "the autopilot rebooted in the air at 61.0 s"
+            "the clock goes back in the air at 61.0 s"
         );
     }
+    // By a second: what came in that second is dropped.
+    let short = read(&dataflash(calm, Some((61.0, 1.0))));
+    assert_eq!(short.rebooted_in_air_s, [61.0]);
+    assert_eq!(assess(&short, &estimator, None).verdict.to_string(), "NA");
     // A motor that is unknown around the reboot is unknown for that, not for itself.
     let mut csv = String::from("t_s,motor1,motor2,in_air\n");
     for i in 0..1500 {
@@ -200,7 +206,7 @@ fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
     let Verdict::NotAvailable(Reason::MotorUnknown { .. }) = verdict(&csv) else {
         panic!("{:?}", verdict(&csv));
     };
-    let Verdict::NotAvailable(Reason::RebootedInAir { at_s: 40.0 }) =
+    let Verdict::NotAvailable(Reason::SetBackInAir { at_s: 40.0 }) =
         verdict(&format!("# rebooted_in_air_s: 40\n{csv}"))
     else {
         panic!("{:?}", verdict(&format!("# rebooted_in_air_s: 40\n{csv}")));
@@ -210,13 +216,17 @@ fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
         true => [2000, 1000, 2000, 1000, 2000, 1000],
         false => [1500; 6],
     };
-    let failed = assess(&read(&dataflash(trouble, Some(61.0))), &estimator, None);
+    let failed = assess(
+        &read(&dataflash(trouble, Some((61.0, 40.0)))),
+        &estimator,
+        None,
+    );
     assert_eq!(failed.verdict.to_string(), "FAIL");
 }
 
 #[test]
 fn a_clock_of_px4_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
-    let fly = |back_at: u64| {
+    let fly = |back_at: u64, back_by: u64| {
         let mut log = ULog::new(1_000_000);
         log.define("actuator_motors:uint64_t timestamp;float[12] control;");
         log.define("vehicle_land_detected:uint64_t timestamp;bool landed;");
@@ -224,7 +234,7 @@ fn a_clock_of_px4_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
         log.announce(0, 1, "actuator_motors");
         log.announce(0, 2, "vehicle_land_detected");
         for row in 0..3000 {
-            let us = 1_000_000 + 40_000 * (if row < back_at { row } else { row - 1000 });
+            let us = 1_000_000 + 40_000 * (if row < back_at { row } else { row - back_by });
             if row % 25 == 0 {
                 log.flags(2, us, &[0]);
             }
@@ -235,7 +245,9 @@ fn a_clock_of_px4_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
             .verdict
             .to_string()
     };
-    assert_eq!((fly(3000).as_str(), fly(1500).as_str()), ("GOOD", "NA"));
+    assert_eq!(fly(3000, 0), "GOOD");
+    assert_eq!(fly(1500, 1000), "NA");
+    assert_eq!(fly(1500, 25), "NA");
 }
 
 #[test]
@@ -248,7 +260,20 @@ fn a_flight_csv_whose_clock_starts_again_in_the_air_has_no_verdict() {
     let (code, text) = assess_csv(&format!("{head}{}{}", rows(1), rows(1)), &[]);
     assert_eq!(code, Some(3), "{text}");
     assert!(
-        text.contains("the autopilot rebooted in the air at 40.0 s"),
+        text.contains("the clock goes back in the air at 40.0 s"),
+        "{text}"
+    );
+    // By a second, too: what came in that second is assessed.
+    let second: String = rows(1).lines().fold(String::new(), |mut text, row| {
+        let (t_s, rest) = row.split_once(',').unwrap();
+        let t_s: f64 = t_s.parse().unwrap();
+        let _ = writeln!(text, "{},{rest}", t_s + 39.0);
+        text
+    });
+    let (code, text) = assess_csv(&format!("{head}{}{second}", rows(1)), &[]);
+    assert_eq!(code, Some(3), "{text}");
+    assert!(
+        text.contains("the clock goes back in the air at 40.0 s"),
         "{text}"
     );
     // On the ground it is the next flight.

@@ -47,7 +47,7 @@ impl Verdict {
     fn gravity(&self) -> u8 {
         match self {
             Verdict::NotAvailable(Reason::NoFlight) => 0,
-            Verdict::NotAvailable(Reason::LostInAir | Reason::RebootedInAir { .. }) => 3,
+            Verdict::NotAvailable(Reason::LostInAir | Reason::SetBackInAir { .. }) => 3,
             Verdict::NotAvailable(_) => 1,
             Verdict::Known(Level::Good | Level::Info) => 2,
             Verdict::Known(Level::Warn) => 4,
@@ -87,17 +87,22 @@ pub enum Reason {
         /// What helps, where something does.
         help: Option<&'static str>,
     },
-    /// The command of a motor was unknown in the air for longer than the profile's `longest_gap_s`.
-    #[error("{}", motor_unknown(.motor, .command, (.from_s, .to_s)))]
+    /// The command of a motor was unknown in the air for longer than the profile's `longest_gap_s`, or for more than a sixteenth
+    /// of the time.
+    #[error("{}", self.motor_unknown())]
     MotorUnknown {
-        /// The number of the motor.
+        /// The number of the motor, the first of several.
         motor: usize,
+        /// Whether others were unknown, too.
+        others: bool,
         /// Its first such command, where it is known and far outside 0 to 1.
         command: Option<f64>,
         /// Since when, in seconds.
         from_s: f64,
         /// Until when, in seconds.
         to_s: f64,
+        /// For how long in that time, in seconds.
+        unknown_s: f64,
     },
     /// There was hardly a motor command in the air.
     #[error("hardly any motor command was known in the air")]
@@ -105,11 +110,17 @@ pub enum Reason {
     /// The vehicle was in the air when it was last heard, or rebooted there.
     #[error("the vehicle was lost in the air")]
     LostInAir,
-    /// The clock of the log starts again in the air: the autopilot rebooted there.
-    #[error("the autopilot rebooted in the air at {at_s:.1} s")]
-    RebootedInAir {
+    /// The clock goes back in the air: the autopilot started again there, or its clock was set back.
+    #[error("the clock goes back in the air at {at_s:.1} s")]
+    SetBackInAir {
         /// When, in seconds.
         at_s: f64,
+    },
+    /// Samples in the air had times that are not after the ones before.
+    #[error("{ignored} samples in the air were ignored: their times are unknown or go back")]
+    SamplesIgnored {
+        /// How many.
+        ignored: u64,
     },
     /// No flight was watched.
     #[error("no flight was seen")]
@@ -119,15 +130,34 @@ pub enum Reason {
     NoMotorOutputs,
 }
 
-fn motor_unknown(motor: &usize, command: &Option<f64>, (from_s, to_s): (&f64, &f64)) -> String {
-    let why = match command {
-        Some(command) => format!("is `{command}`, not a fraction from 0 to 1,"),
-        None => "is unknown".into(),
-    };
-    format!("the command of motor {motor} {why} in the air from {from_s:.1} to {to_s:.1} s")
-}
-
 impl Reason {
+    fn motor_unknown(&self) -> String {
+        let Reason::MotorUnknown {
+            motor,
+            others,
+            command,
+            from_s,
+            to_s,
+            unknown_s,
+        } = self
+        else {
+            return String::new();
+        };
+        let whose = match others {
+            true => format!("the command of motor {motor}, then of others,"),
+            false => format!("the command of motor {motor}"),
+        };
+        let why = match command {
+            Some(command) => format!("is `{command}`, not a fraction from 0 to 1,"),
+            None => "is unknown".into(),
+        };
+        let when = match *unknown_s < 0.95 * (to_s - from_s) {
+            true => format!("for {unknown_s:.1} s between {from_s:.1} and {to_s:.1} s"),
+            false => format!("from {from_s:.1} to {to_s:.1} s"),
+        };
+        format!("{whose} {why} in the air {when}")
+    }
+
     /// What the pilot can do to get a verdict of the next flight.
     pub fn help(&self) -> Option<&'static str> {
         match self {
@@ -149,9 +179,12 @@ impl Reason {
             Reason::LostInAir => {
                 Some("the log on board tells how the flight ended: `flagred assess`")
             }
-            Reason::RebootedInAir { .. } => Some(
-                "what came after is not assessed: look for a reset of the autopilot or a loss of its power",
+            Reason::SetBackInAir { .. } => Some(
+                "what came after is missing or uncertain: look for a restart of the autopilot, or for a damaged clock",
             ),
+            Reason::SamplesIgnored { .. } => {
+                Some("give each sample a time after that of the one before, in seconds")
+            }
             Reason::Monitor(_) | Reason::NoCommands | Reason::NoFlight => None,
         }
     }

@@ -4,7 +4,7 @@ use csv::ByteRecord;
 
 use super::{Layout, cell, problem, unit_of};
 use crate::outputs::{LONGEST_PULSE_US, PULSES_US};
-use crate::signal::Label;
+use crate::signal::{Label, SET_BACK_S};
 use crate::{Commands, Intervals, ReadError, Report, Series};
 
 /// A fraction this far outside 0 to 1 comes from rounding, or from limits that are slightly exceeded.
@@ -15,8 +15,6 @@ const HELP_SHORT: &str = "give every row a cell for each column, empty where the
 /// On either side of 0. Logs that count microseconds in 64 bits are within it, and so is what they are converted to. One damaged
 /// time beyond it would make all later ones go back.
 const FURTHEST_S: f64 = 1e14;
-/// A clock that goes back by more than this, in seconds, was started again.
-const BACK_S: f64 = 2.0;
 /// The smallest step between motor commands that is taken for milliseconds.
 const LEAST_STEP_MS: f64 = 2.0;
 const LEAST_STEPS: usize = 5;
@@ -307,7 +305,7 @@ impl Rows {
             return Ok(now_s);
         }
         let before_s = self.back_s.replace(t_s);
-        match before_s.filter(|before_s| *before_s <= t_s && self.last_s - now_s > BACK_S) {
+        match before_s.filter(|before_s| *before_s <= t_s && self.last_s - now_s > SET_BACK_S) {
             Some(before_s) => {
                 self.back_s = None;
                 self.offset_s = self.last_s - before_s;
@@ -315,7 +313,8 @@ impl Rows {
                 if self.is_in_air() {
                     self.rebooted_in_air_s.push(self.last_s);
                 }
-                Ok(t_s + self.offset_s)
+                // Of a clock of 1e9 s and more the sum is rounded.
+                Ok((t_s + self.offset_s).max(self.last_s))
             }
             None => Err("the time goes back".into()),
         }

@@ -294,6 +294,9 @@ impl<'o> Collector<'o> {
         flight.parameters = self.parameters.of_motors("PARM");
         let own = ardupilot::pwm_range(&self.parameters);
         flight.range = self.options.range_or_given(own);
+        let mut restarts_s = self.outputs.set_back_s();
+        restarts_s.extend(self.clock.boots_s());
+        restarts_s.sort_by(f64::total_cmp);
         flight.commands = self.outputs.commands(&outputs);
         let span_s = self.clock.first_s().zip(self.clock.now_s());
         let left_out = &mut self.report.left_out;
@@ -301,7 +304,7 @@ impl<'o> Collector<'o> {
         (flight.armed, flight.in_air) =
             ardupilot::air_from_commands(&flight, &mut left_out.changes);
         if let Some(by_commands) = &flight.in_air {
-            flight.rebooted_in_air_s = by_commands.within(self.clock.boots_s());
+            flight.rebooted_in_air_s = by_commands.within(&restarts_s);
         }
         if !self.events.is_empty() {
             let span_s = span_s.unwrap_or_default();
@@ -309,7 +312,7 @@ impl<'o> Collector<'o> {
             flight.armed = Some(armed);
             if let Some(in_air) = in_air {
                 flight.in_air = Some(in_air);
-                flight.rebooted_in_air_s = boots_in_air(&self.events, self.clock.boots_s());
+                flight.rebooted_in_air_s = boots_in_air(&self.events, &restarts_s);
             }
         }
         flight.effective = ardupilot::range_in_force(&self.parameters, &flight);

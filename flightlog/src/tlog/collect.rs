@@ -218,6 +218,9 @@ impl Heard {
             flight.range = Some(known.range);
             flight.assumed = known.assumed;
         }
+        let mut restarts_s = self.outputs.set_back_s();
+        restarts_s.extend(&flight.boots_s);
+        restarts_s.sort_by(f64::total_cmp);
         flight.commands = self.outputs.commands(&outputs);
         self.series.sort_by_key(|(index, _)| *index);
         flight.series = preferred(self.series.into_iter().map(|(_, series)| series).collect());
@@ -244,7 +247,7 @@ impl Heard {
                 flight.in_air = flight.in_air.take().map(Intervals::assumed);
             }
             if let Some(in_air) = &flight.in_air {
-                flight.rebooted_in_air_s = in_air.within(&flight.boots_s);
+                flight.rebooted_in_air_s = in_air.within(&restarts_s);
             }
         }
         flight.parameters = self.decoder.parameters.of_motors("PARAM_VALUE");

@@ -307,14 +307,9 @@ impl<'o> Collector<'o> {
                 }
             });
         }
-        let restarts = self
-            .outputs
-            .iter()
-            .filter_map(|outputs| outputs.restarted_s);
-        let lost_s = restarts
-            .reduce(f64::min)
-            .filter(|t_s| flight.is_in_air(*t_s) == Some(true));
-        flight.rebooted_in_air_s = lost_s.into_iter().collect();
+        let set_back = self.outputs.iter().flat_map(|of| of.set_back.at_s());
+        let in_air = set_back.filter(|t_s| flight.is_in_air(**t_s) == Some(true));
+        flight.rebooted_in_air_s = in_air.copied().reduce(f64::min).into_iter().collect();
         flight.geometry = geometry::find(&flight, &Declared::of_px4(&self.parameters));
         flight
     }

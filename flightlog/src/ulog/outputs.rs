@@ -1,7 +1,7 @@
 //! Commands of motors and outputs, as PX4 logs them.
 
 use crate::Commands;
-use crate::signal::Order;
+use crate::signal::{Order, SetBack};
 
 /// Raw commands of one topic and instance.
 pub(super) struct Outputs {
@@ -11,14 +11,8 @@ pub(super) struct Outputs {
     /// Rows of `width` values.
     values: Vec<f32>,
     width: usize,
-    /// The time of the row before, where it was dropped because it goes back.
-    back_s: Option<f64>,
-    /// The last time before the clock started again.
-    pub(super) restarted_s: Option<f64>,
+    pub(super) set_back: SetBack,
 }
-
-/// A clock that goes back by more than this for two rows or more, in seconds, was started again.
-const RESTART_S: f64 = 10.0;
 
 impl Outputs {
     pub(super) fn new(topic: &'static str, instance: u8, width: usize) -> Self {
@@ -28,8 +22,7 @@ impl Outputs {
             t_s: Vec::new(),
             values: Vec::new(),
             width,
-            back_s: None,
-            restarted_s: None,
+            set_back: SetBack::default(),
         }
     }
 
@@ -40,20 +33,14 @@ impl Outputs {
     /// Adds a row; `true` when a row was dropped because times go back.
     pub(super) fn push(&mut self, t_s: f64, values: impl Iterator<Item = f32>) -> bool {
         let order = Order::of(&self.t_s, t_s);
+        self.set_back.see(order, t_s, self.t_s.last());
         match order {
             Order::Last => {}
             Order::Replaces => {
                 self.t_s.pop();
                 self.values.truncate(self.t_s.len() * self.width);
             }
-            Order::Back => {
-                let before_s = self.back_s.replace(t_s).filter(|before_s| *before_s <= t_s);
-                let last_s = self.t_s.last().filter(|last_s| **last_s - t_s > RESTART_S);
-                if let (Some(_), Some(last_s)) = (before_s, last_s) {
-                    self.restarted_s.get_or_insert(*last_s);
-                }
-                return true;
-            }
+            Order::Back => return true,
         }
         self.t_s.push(t_s);
         self.values
