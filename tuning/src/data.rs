@@ -102,11 +102,27 @@ impl Data {
 
     /// Whether a model can be tuned on the rows.
     pub(crate) fn check(&self, model: &Model, loss: Loss) -> Result<(), TuneError> {
-        let outputs = model.outputs.len();
-        if outputs != 1 {
-            return Err(TuneError::Outputs { outputs });
+        let [output] = model.outputs.as_slice() else {
+            return Err(TuneError::Outputs {
+                outputs: model.outputs.len(),
+            });
+        };
+        self.check_columns(model.inputs.len(), loss)?;
+        let (low, high) = (output.variable.low, output.variable.high);
+        let distance = |target: f64| (low - target).max(target - high);
+        let counting = self.truths.iter().enumerate();
+        let counting = counting.filter(|(row, _)| self.weight(*row) > 0.0);
+        let farthest = counting
+            .map(|(_, target)| *target)
+            .max_by(|a, b| distance(*a).total_cmp(&distance(*b)));
+        match farthest {
+            Some(target)
+                if loss == Loss::Squared && distance(target) > Data::FARTHEST * (high - low) =>
+            {
+                Err(TuneError::TooFar { target, low, high })
+            }
+            _ => Ok(()),
         }
-        self.check_columns(model.inputs.len(), loss)
     }
 
     /// Whether the rows have so many inputs, and numbers that can be used.
