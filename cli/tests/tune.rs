@@ -412,17 +412,17 @@ fn a_checkpoint_with_other_fixed_numbers_is_refused() {
         (
             &moved,
             &["--fix", "speed"][..],
-            "the checkpoint `best.yaml` has another at of `speed.fast`, which must not move: 7 instead of 8",
+            "the checkpoint `best.yaml` moves `speed.fast`, which must stay: its at is 7 instead of 8",
         ),
         (
             &moved,
             &["--only", "heat"],
-            "another at of `speed.fast`, which must not move",
+            "moves `speed.fast`, which must stay",
         ),
         (
             &weighted,
             &[],
-            "another weight of `rule 2`, which must not move: 0.5 instead of 1",
+            "moves `rule 2`, which must stay: its weight is 0.5 instead of 1",
         ),
     ] {
         let arguments = [&["--checkpoint", "best.yaml", "--no-validation"], more].concat();

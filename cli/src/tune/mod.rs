@@ -262,7 +262,7 @@ fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failur
     }) = fixed
     {
         let message = format!(
-            "the checkpoint `{}` has another {name} of `{}`, which must not move: {after} instead of {before}",
+            "the checkpoint `{}` moves `{}`, which must stay: its {name} is {after} instead of {before}",
             path.display(),
             visible(&of)
         );
