@@ -67,7 +67,7 @@ pub fn formatted(text: &str) -> Result<String, Unformatted> {
     }
 }
 
-/// Whether a tree has the key that a rule set or a profile begins with, or two keys of a rule set that lacks it.
+/// Whether a tree has the key that a rule set or a profile begins with, with a number, or two keys of a rule set that lacks it.
 fn is_ours(tree: &Node) -> bool {
     let Value::Mapping(entries) = &tree.value else {
         return false;
@@ -76,7 +76,16 @@ fn is_ours(tree: &Node) -> bool {
         let mut keys = entries.iter().map(|(key, _)| &key.value);
         keys.any(|key| matches!(key, Value::Scalar(key) if key.text == wanted))
     };
-    has("fuzzy") || has("flagred") || has("inputs") && has("outputs")
+    let is_numbered = entries
+        .iter()
+        .any(|(key, value)| match (&key.value, &value.value) {
+            (Value::Scalar(key), Value::Scalar(version)) => {
+                matches!(key.text.as_str(), "fuzzy" | "flagred")
+                    && version.text.parse::<f64>().is_ok()
+            }
+            _ => false,
+        });
+    is_numbered || has("inputs") && has("outputs")
 }
 
 /// A tree without its places in the text.
@@ -134,6 +143,8 @@ rules:
             "- flagred: 1\n",
             "inputs: {token: x}\n",
             "just text",
+            "fuzzy: hello\n",
+            "flagred: {image: nginx}\n",
         ] {
             let found = formatted(foreign);
             assert!(matches!(found, Err(Unformatted::Foreign)), "{foreign}");

@@ -130,7 +130,7 @@ Examples:
   flagred learn my-rules.yaml rows.csv --compare-gaps --output learned.yaml
   flagred check learned.yaml                     the gaps of the learned rules
 
-Exit code 1: the output does not go the way that --rising and --falling say.";
+Exit code 1: the output violates --rising or --falling.";
 
 pub(crate) const TUNE: &str = "\
 Examples:

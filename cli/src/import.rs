@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let text = read_text(&arguments.file)?;
     let file = arguments.file.display().to_string();
     let Some(format) = Format::of(&text) else {
-        let failure = Failure::unreadable(format!("`{file}` is no FIS, FLL, FCL or FML"));
+        let failure = Failure::unreadable(format!("`{file}` is not a FIS, FLL, FCL or FML file"));
         return Err(failure.help("a rule set in YAML needs no import"));
     };
     let losses = match arguments.lossy {

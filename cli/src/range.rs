@@ -7,8 +7,15 @@ use crate::failure::Failure;
 #[derive(clap::Args)]
 pub(crate) struct RangeArgument {
     /// Range of the motor outputs in us, where a log or the vehicle does not report it: `--range 1100 1900`
-    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = clap::value_parser!(u16).range(500..=2500))]
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = pulse_width)]
     range: Option<Vec<u16>>,
+}
+
+fn pulse_width(text: &str) -> Result<u16, String> {
+    let width = text.parse().ok();
+    width
+        .filter(|width| (500..=2500).contains(width))
+        .ok_or_else(|| "write microseconds from 500 to 2500, without decimals".into())
 }
 
 impl RangeArgument {

@@ -176,6 +176,10 @@ impl Header {
 
     /// The place of a column that must be there; `help` says what else could be done.
     pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
+        if name.is_empty() {
+            // Columns without a name in the header are not meant.
+            return Err(Failure::usage("a column must have a name").help(help));
+        }
         if self.names.iter().filter(|column| *column == name).count() > 1 {
             let name = quoted(name);
             let message = format!("`{}` has the column `{name}` more than once", self.file);
@@ -189,6 +193,7 @@ impl Header {
                 ));
             }
             let columns = self.names.iter().map(String::as_str);
+            let columns = columns.filter(|name| !name.is_empty());
             let meant = fuzzy::diagnostic::suggest(name, columns).unwrap_or_default();
             failure.help(format!("{meant}; {help}"))
         })

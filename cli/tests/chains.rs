@@ -96,7 +96,7 @@ fn learn_and_export_refuse_a_chain() {
     );
     assert_eq!(code, Some(2), "{errors}");
     assert!(
-        errors.contains("the model has 2 outputs; learning takes one"),
+        errors.contains("the rule set has 2 outputs; learning needs exactly one"),
         "{errors}"
     );
     assert!(

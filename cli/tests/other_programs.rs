@@ -91,7 +91,9 @@ fn what_a_format_cannot_say_is_refused_or_told() {
 fn what_is_no_such_file_is_told() {
     let output = flagred(&["import", "rules/tipper.yaml"]);
     assert_eq!(output.status.code(), Some(3));
-    assert!(text(&output.stderr).contains("`rules/tipper.yaml` is no FIS, FLL, FCL or FML"));
+    assert!(
+        text(&output.stderr).contains("`rules/tipper.yaml` is not a FIS, FLL, FCL or FML file")
+    );
 }
 
 #[test]

@@ -574,6 +574,7 @@ fn fmt_leaves_files_of_other_programs_alone() {
             "services:\n    web:   {image: nginx}\n",
             "is neither a rule set nor a profile",
         ),
+        ("fuzzy: hello\n", "is neither a rule set nor a profile"),
         ("fuzzy: 1\nname: [a\n", "error[yaml-syntax]"),
     ] {
         fs::write(&path, text).unwrap();

@@ -403,6 +403,59 @@ fn a_full_disk_keeps_no_other_output_from_being_written() {
 }
 
 /// Other rules, another range or another operator are not what was tuned.
+/// Numbers that the user fixed stay as they are, whatever a checkpoint has.
+#[test]
+fn a_checkpoint_with_other_fixed_numbers_is_refused() {
+    let moved = FAN.replace("{singleton: 8}", "{singleton: 7}");
+    let weighted = FAN.replace("IS fast\n", "IS fast WITH 0.5\n");
+    for (checkpoint, more, expected) in [
+        (
+            &moved,
+            &["--fix", "speed"][..],
+            "the checkpoint `best.yaml` moves `speed.fast`, which must stay: its at is 7 instead of 8",
+        ),
+        (
+            &moved,
+            &["--only", "heat"],
+            "moves `speed.fast`, which must stay",
+        ),
+        (
+            &weighted,
+            &[],
+            "moves `rule 2`, which must stay: its weight is 0.5 instead of 1",
+        ),
+    ] {
+        let arguments = [&["--checkpoint", "best.yaml", "--no-validation"], more].concat();
+        let (code, _, err, written) = tune(&[("best.yaml", checkpoint)], &arguments);
+        assert_eq!((code, written), (Some(2), None), "{err}");
+        assert!(err.contains(expected), "{err}");
+    }
+    for (checkpoint, more) in [
+        (&moved, &["--fix", "speed.slow"][..]),
+        (&moved, &["--only", "speed.fast"]),
+        (&weighted, &["--weights"]),
+    ] {
+        let arguments = [&["--checkpoint", "best.yaml", "--no-validation"], more].concat();
+        let (code, _, err, _) = tune(&[("best.yaml", checkpoint)], &arguments);
+        assert_eq!(code, Some(0), "{err}");
+    }
+}
+
+/// At 1e15 one of two constants was named, and at 1e20 the report said that no step helps.
+#[test]
+fn targets_that_leave_no_digit_of_the_loss_are_refused() {
+    for target in ["1e8", "-1e15", "1e20", "1e49"] {
+        let rows = format!("heat,speed\n10,2\n30,{target}\n");
+        let (code, _, err, written) = tune(&[("rows.csv", &rows)], &["--no-validation"]);
+        assert_eq!((code, written), (Some(3), None), "{err}");
+        let expected = format!(
+            "the target {target} is farther from the output's range [0, 10] than 1000000 times its width"
+        );
+        assert!(err.contains(&expected), "{err}");
+        assert!(err.contains("help: check the units"), "{err}");
+    }
+}
+
 #[test]
 fn a_checkpoint_that_differs_in_more_than_numbers_is_refused() {
     let rules = "  - IF heat IS cool THEN speed IS slow\n  - IF heat IS hot THEN speed IS fast\n";

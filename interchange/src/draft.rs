@@ -86,7 +86,10 @@ impl<'t> Draft<'t> {
                 "not-a-number",
                 word,
                 message,
-                "write it out in digits: 0.7853981633974483 for pi/4",
+                match word.to_lowercase().contains("pi") {
+                    true => "write it out in digits: 0.7853981633974483 for pi/4",
+                    false => "write a number in digits, such as `0.5`",
+                },
             );
         }
         number

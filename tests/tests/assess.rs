@@ -373,7 +373,12 @@ fn a_given_range_replaces_the_assumed_one_and_no_other() {
         2,
         "expected two pulse widths from 500 to 2500 us",
     );
-    refused(log, ["100", "1900"], 2, "100 is not in 500..=2500");
+    refused(
+        log,
+        ["100", "1900"],
+        2,
+        "write microseconds from 500 to 2500",
+    );
     refused(
         STEADY,
         ["1100", "1900"],

@@ -421,6 +421,9 @@ fn files_of_other_programs_are_refused_in_time() {
     let block = "RuleBlock:\n conjunction: Minimum\n disjunction: Maximum\n implication: Minimum\n rule: if x is a then o0 is t\n";
     let conclusions = vec!["o0 is very t"; 150_000].join(" and ");
     let attributes: String = (0..100_000).map(|i| format!(" a{i}=\"1\"")).collect();
+    let namespaces: String = (0..4_000)
+        .map(|i| format!("<a xmlns:a{i}=\"u{i}\">"))
+        .collect();
     let sums = "1 + ".repeat(900_000);
     for (name, file, text, said) in [
         (
@@ -481,7 +484,16 @@ fn files_of_other_programs_are_refused_in_time() {
                 "<fuzzySystem name=\"large\">{}</fuzzySystem>",
                 "<a>".repeat(900_000)
             ),
-            "this is no xml",
+            "elements are nested deeper than 256",
+        ),
+        (
+            "namespaces",
+            "large.fml",
+            format!(
+                "<fuzzySystem name=\"large\">{namespaces}{}</fuzzySystem>",
+                "</a>".repeat(4_000)
+            ),
+            "there are more than 100 declarations of namespaces",
         ),
     ] {
         assert!(text.len() < 4_000_000, "{name}");
@@ -658,7 +670,7 @@ fn large_rule_sets_are_checked_in_time() {
             "brackets in a formula",
             formula(&"(".repeat(900_000)),
             1,
-            "brackets are nested deeper than 64",
+            "brackets, signs and powers are nested deeper than 64",
         ),
     ] {
         let path = folder.file("large.yaml", text);

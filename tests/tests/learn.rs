@@ -1,6 +1,7 @@
 //! `flagred dataset` and `flagred learn` as their users meet them, and the rule set that they made.
 
 use std::{
+    collections::BTreeMap,
     fs,
     path::Path,
     process::{Command, Output},
@@ -56,6 +57,104 @@ fn a_rule_set_that_cannot_be_learned_into_is_refused_with_what_to_do() {
         assert_eq!(output.status.code(), Some(2), "{told}");
         assert!(told.contains(expected), "{told}");
     }
+}
+
+/// A column without a name is none that an option or a message can name.
+#[test]
+fn columns_without_a_name_are_not_taken() {
+    let folder = Folder::new();
+    let model = folder.file("model.yaml", VARIABLES);
+    let data = folder.file("data.csv", "margin,,spread\n0.1,5,0.2\n");
+    let told = |arguments: &[&str]| {
+        let out = folder.at("out.yaml");
+        let mut command = flagred();
+        let output = command.args(arguments).args(["-o", &out]).output().unwrap();
+        assert!(!output.status.success());
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let missing = told(&["learn", &model, &data]);
+    assert!(
+        missing.contains("there are `margin` and `spread`"),
+        "{missing}"
+    );
+    for arguments in [
+        &["identify", &data, "--target="][..],
+        &["learn", &model, &data, "--column", "risk="],
+        &[
+            "learn",
+            &model,
+            &data,
+            "--column",
+            "risk=margin",
+            "--weight=",
+        ],
+    ] {
+        let nameless = told(arguments);
+        assert!(nameless.contains("a column must have a name"), "{nameless}");
+    }
+}
+
+/// Sums of such weights overflowed: every rule had the same consequent, and the error was NaN.
+#[test]
+fn weights_whose_sums_overflow_are_refused_as_by_tune() {
+    let folder = Folder::new();
+    let model = folder.file("model.yaml", VARIABLES);
+    for weight in ["1e308", "1e-320"] {
+        let data = folder.file(
+            "data.csv",
+            format!("margin,spread,risk,w\n0.1,0.2,50,1\n0.2,0.2,40,{weight}\n"),
+        );
+        let out = folder.at("out.yaml");
+        let output = learn(&[&model, &data, "-o", &out, "--weight", "w"]);
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{told}");
+        let expected =
+            format!("line 3: the weight is {weight}, but must be a number from 1e-50 to 1e50");
+        assert!(told.contains(&expected), "{told}");
+        assert!(!std::path::Path::new(&out).exists());
+    }
+}
+
+/// The shipped profile has an input `spread`, which is not the spread of the motor commands of the summary.
+#[test]
+fn a_column_of_a_dataset_is_one_quantity_with_and_without_a_profile() {
+    let rows = |more: &[&str]| {
+        let output = flagred()
+            .args(["dataset", "--window", "2", STEADY])
+            .args(more)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    // By the time of a row: profiles judge flights from different times on.
+    let column = |rows: &str, name: &str| -> BTreeMap<String, String> {
+        let mut lines = rows.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let head = lines.next().unwrap();
+        let index = |name: &str| head.iter().position(|column| *column == name).unwrap();
+        let (t_s, value) = (index("t_s"), index(name));
+        lines
+            .map(|cells| (cells[t_s].to_owned(), cells[value].to_owned()))
+            .collect()
+    };
+    let (plain, with_profile) = (rows(&[]), rows(&["--profile", "flagred"]));
+    let of_profile = column(&with_profile, "input_spread");
+    for name in ["margin", "spread"] {
+        let (plain, with_profile) = (column(&plain, name), column(&with_profile, name));
+        assert!(plain.len() > 50);
+        assert!(
+            plain
+                .iter()
+                .all(|(t_s, value)| with_profile.get(t_s) == Some(value))
+        );
+        assert_ne!(with_profile, of_profile);
+    }
+    let ahead = flagred()
+        .args(["dataset", "--ahead", "5", "--profile", "flagred", STEADY])
+        .output()
+        .unwrap();
+    let head = String::from_utf8_lossy(&ahead.stdout);
+    assert!(!head.lines().next().unwrap().contains("input_"), "{head}");
 }
 
 #[test]

@@ -2,7 +2,10 @@
 
 use std::borrow::Cow;
 
-use fuzzy::Model;
+use fuzzy::{
+    Model,
+    learn::{WEIGHTS, bad_weight},
+};
 
 use crate::{Loss, TuneError};
 
@@ -21,10 +24,14 @@ pub struct Data {
 
 impl Data {
     /// The largest value and weight of a row. Squares of larger numbers, and their products, would overflow.
-    pub const LARGEST: f64 = 1e50;
+    pub const LARGEST: f64 = *WEIGHTS.end();
 
     /// The smallest weight above 0.
-    pub const SMALLEST_WEIGHT: f64 = 1e-50;
+    pub const SMALLEST_WEIGHT: f64 = *WEIGHTS.start();
+
+    /// How many widths of the output's range a target of [`Loss::Squared`] may lie away from the range. Beyond that, the loss
+    /// changes by less than its rounding errors.
+    pub const FARTHEST: f64 = 1e6;
 
     /// Why a row cannot be used: its values, the output's last, and its weight.
     pub fn problem(values: &[f64], weight: f64, loss: Loss) -> Option<String> {
@@ -37,12 +44,8 @@ impl Data {
                 format!("outside the range from -{largest:e} to {largest:e} that tuning supports");
             return Some(format!("the value {x:e} is {range}"));
         }
-        if !(weight == 0.0 || (Data::SMALLEST_WEIGHT..=largest).contains(&weight)) {
-            let range = format!(
-                "0, or a number from {:e} to {largest:e}",
-                Data::SMALLEST_WEIGHT
-            );
-            return Some(format!("the weight is {weight:?}, but must be {range}"));
+        if !(weight == 0.0 || WEIGHTS.contains(&weight)) {
+            return Some(bad_weight(weight, "0, or a number"));
         }
         let truth = values.last().filter(|truth| ![0.0, 1.0].contains(*truth));
         truth
@@ -99,11 +102,27 @@ impl Data {
 
     /// Whether a model can be tuned on the rows.
     pub(crate) fn check(&self, model: &Model, loss: Loss) -> Result<(), TuneError> {
-        let outputs = model.outputs.len();
-        if outputs != 1 {
-            return Err(TuneError::Outputs { outputs });
+        let [output] = model.outputs.as_slice() else {
+            return Err(TuneError::Outputs {
+                outputs: model.outputs.len(),
+            });
+        };
+        self.check_columns(model.inputs.len(), loss)?;
+        let (low, high) = (output.variable.low, output.variable.high);
+        let distance = |target: f64| (low - target).max(target - high);
+        let counting = self.truths.iter().enumerate();
+        let counting = counting.filter(|(row, _)| self.weight(*row) > 0.0);
+        let farthest = counting
+            .map(|(_, target)| *target)
+            .max_by(|a, b| distance(*a).total_cmp(&distance(*b)));
+        match farthest {
+            Some(target)
+                if loss == Loss::Squared && distance(target) > Data::FARTHEST * (high - low) =>
+            {
+                Err(TuneError::TooFar { target, low, high })
+            }
+            _ => Ok(()),
         }
-        self.check_columns(model.inputs.len(), loss)
     }
 
     /// Whether the rows have so many inputs, and numbers that can be used.

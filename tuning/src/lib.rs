@@ -32,7 +32,7 @@ use fuzzy::{Model, check, model::MembershipFunction};
 
 pub use data::Data;
 pub use folds::Interval;
-pub use numbers::{Moved, Number, numbers, with_numbers_of};
+pub use numbers::{Moved, Number, moved_although_fixed, numbers, with_numbers_of};
 pub use reliability::Bin;
 pub use settings::{Loss, Settings, TuneError};
 pub use simplify::{

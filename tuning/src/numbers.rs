@@ -1,11 +1,13 @@
 //! The numbers of a model that tuning can move, each with its name.
 
+use std::collections::BTreeSet;
+
 use fuzzy::{
     Model,
     model::{MembershipFunction, Term, Variable},
 };
 
-use crate::parameters::is_width;
+use crate::{parameters::is_width, settings::Settings};
 
 /// A number of a model.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +45,26 @@ pub(crate) fn moved(before: &Model, after: &Model) -> Vec<Moved> {
         after: after.value,
     });
     moved.collect()
+}
+
+/// The first number that differs although `settings` do not let it move.
+pub fn moved_although_fixed(before: &Model, after: &Model, settings: &Settings) -> Option<Moved> {
+    let outputs = before.outputs.iter().map(|output| &output.variable);
+    let (mut movable, mut fixed) = (BTreeSet::new(), BTreeSet::new());
+    for variable in before.inputs.iter().chain(outputs) {
+        for term in &variable.terms {
+            let names = match settings.may_move(&variable.name, &term.name) {
+                true => &mut movable,
+                false => &mut fixed,
+            };
+            names.insert(format!("{}.{}", variable.name, term.name));
+        }
+    }
+    // What belongs to no term is the weight of a rule.
+    let is_fixed = |of: &String| fixed.contains(of) || !(settings.weights || movable.contains(of));
+    moved(before, after)
+        .into_iter()
+        .find(|moved| is_fixed(&moved.of))
 }
 
 /// The numbers of a model, in the order in which it has them.

@@ -104,15 +104,7 @@ impl Parameters {
         if let Some(name) = names().find(|name| !is_known(model, name)) {
             return Err(TuneError::Unknown { name: name.clone() });
         }
-        let may_move = |variable: &str, term: &str| {
-            let named = |names: &[String]| {
-                let is_it = |name: &String| {
-                    *name == variable || name.split_once('.') == Some((variable, term))
-                };
-                names.iter().any(is_it)
-            };
-            (settings.only.is_empty() || named(&settings.only)) && !named(&settings.fix)
-        };
+        let may_move = |variable: &str, term: &str| settings.may_move(variable, term);
         let mut parameters = Parameters {
             model: model.clone(),
             beyond_range: settings.beyond_range,

@@ -1,5 +1,6 @@
 //! What may move, towards what, and for how long.
 
+use crate::Data;
 use fuzzy::{check::Monotone, diagnostic::Findings, engine::EvaluateError};
 
 /// What is made small. Each row counts by its weight.
@@ -73,6 +74,16 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Whether the numbers of a term may move.
+    pub(crate) fn may_move(&self, variable: &str, term: &str) -> bool {
+        let named = |names: &[String]| {
+            let is_it =
+                |name: &String| *name == variable || name.split_once('.') == Some((variable, term));
+            names.iter().any(is_it)
+        };
+        (self.only.is_empty() || named(&self.only)) && !named(&self.fix)
+    }
+
     /// Whether the consequents of a Takagi-Sugeno output are solved for, rather than searched: for squared errors they are a
     /// linear problem, as long as no constraint binds them.
     pub(crate) fn fits_consequents(&self) -> bool {
@@ -85,7 +96,7 @@ impl Settings {
 #[non_exhaustive]
 pub enum TuneError {
     /// Tuning needs one output.
-    #[error("the model has {outputs} outputs; tuning takes one")]
+    #[error("the rule set has {outputs} outputs; tuning needs exactly one")]
     Outputs {
         /// How many there are.
         outputs: usize,
@@ -135,6 +146,19 @@ pub enum TuneError {
         "the error on these rows is not a finite number: they are too far outside the range of the output"
     )]
     NotFinite,
+    /// Targets are so far from the range of the output that moving numbers changes no digit of the loss.
+    #[error(
+        "the target {target:e} is farther from the output's range [{low}, {high}] than {} times its width",
+        Data::FARTHEST
+    )]
+    TooFar {
+        /// The target that is farthest away.
+        target: f64,
+        /// The lower end of the range.
+        low: f64,
+        /// The upper end of the range.
+        high: f64,
+    },
     /// Truths of 0 and of 1 are both needed.
     #[error("all rows have the same truth")]
     OneClass,

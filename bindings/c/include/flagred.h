@@ -153,7 +153,7 @@ const char *flagred_version(void);
 const char *flagred_status_text(int32_t status);
 
 /* The size of a monitor's memory in bytes; 0 for an invalid plan. FLAGRED_MEMORY of an exported profile is at least as
- * large on every processor. */
+ * large on every processor. A program with several profiles uses FLAGRED_PLAN_NAME_MEMORY of each. */
 size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 
 /* Makes a monitor of a new flight in `memory`; there is nothing to free. `plan` and `memory` must outlive it. `limits`,

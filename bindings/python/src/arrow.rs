@@ -5,9 +5,11 @@
 
 use std::{
     borrow::Cow,
+    cell::Cell,
     ffi::{CStr, c_void},
-    panic::{AssertUnwindSafe, catch_unwind},
+    panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook},
     ptr::NonNull,
+    sync::Once,
 };
 
 use arrow_array::{
@@ -177,9 +179,31 @@ fn last_error(stream: &mut FFI_ArrowArrayStream, code: i32) -> String {
     }
 }
 
+struct Panicked;
+
+/// Runs what may panic, without a message on standard error: the caller reports an error of its own.
+fn unpanicked<T>(run: impl FnOnce() -> T) -> Result<T, Panicked> {
+    thread_local! {
+        static IS_SILENT: Cell<bool> = const { Cell::new(false) };
+    }
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let report = take_hook();
+        set_hook(Box::new(move |info| {
+            if !IS_SILENT.get() {
+                report(info);
+            }
+        }));
+    });
+    IS_SILENT.set(true);
+    let done = catch_unwind(AssertUnwindSafe(run));
+    IS_SILENT.set(false);
+    done.map_err(|_| Panicked)
+}
+
 /// The columns of a table.
 fn fields(schema: &FFI_ArrowSchema) -> PyResult<Fields> {
-    let read = catch_unwind(AssertUnwindSafe(|| DataType::try_from(schema)));
+    let read = unpanicked(|| DataType::try_from(schema));
     match read {
         Ok(Ok(DataType::Struct(fields))) => Ok(fields),
         Ok(Ok(other)) => {
@@ -190,7 +214,7 @@ fn fields(schema: &FFI_ArrowSchema) -> PyResult<Fields> {
             ))
         }
         Ok(Err(error)) => Err(data_error(error, None)),
-        Err(_) => Err(mismatched("a schema")),
+        Err(Panicked) => Err(mismatched("a schema")),
     }
 }
 
@@ -201,11 +225,11 @@ fn batch(array: FFI_ArrowArray, fields: &Fields) -> Result<StructArray, String> 
         return Err(broken());
     }
     let kind = DataType::Struct(fields.clone());
-    let read = catch_unwind(AssertUnwindSafe(|| {
+    let read = unpanicked(|| {
         // SAFETY: by the protocol the array is what the schema says.
         unsafe { from_ffi_and_data_type(array, kind) }.map(StructArray::from)
-    }));
-    read.map_err(|_| broken())?
+    });
+    read.map_err(|Panicked| broken())?
         .map_err(|error| error.to_string())
 }
 

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -440,8 +441,28 @@ def test_a_source_that_is_neither_folder_nor_file(tmp_path, here):
     os.mkfifo(tmp_path / "pipe.bin")
     with pytest.raises(fleet.FleetError, match="neither a folder nor a file"):
         fleet.assess([str(tmp_path / "pipe.bin")], str(tmp_path / "out"))
-    with pytest.raises(fleet.FleetError, match="is not UTF-8"):
-        fleet.assess([str(tmp_path) + "/\udcff"], str(tmp_path / "out"))
+    for kind in ("file", "folder"):
+        with pytest.raises(fleet.FleetError, match=r"\\xff` is not UTF-8") as raised:
+            fleet.assess([str(tmp_path) + "/\udcff"], str(tmp_path / "out"))
+        assert raised.value.help == f"rename the {kind}"
+        os.makedirs(os.fsencode(tmp_path) + b"/\xff", exist_ok=True)
+
+
+def test_hard_links_to_one_file_that_are_sources_count_once(tmp_path, here):
+    (tmp_path / "0.csv").write_text(csv(0))
+    os.link(tmp_path / "0.csv", tmp_path / "again.csv")
+    sources = [str(tmp_path / "0.csv"), str(tmp_path / "again.csv")]
+    assert fleet.assess(sources, str(tmp_path / "out"), dry_run=True).listed == 1
+
+
+def test_without_its_extras_the_command_names_what_to_install(tmp_path):
+    (tmp_path / "dask.py").write_text("raise ModuleNotFoundError('no dask', name='dask')")
+    paths = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, "PYTHONPATH": paths}
+    for arguments in (["-m", "flagred.fleet", "--help"], ["-c", "import flagred.fleet"]):
+        done = subprocess.run([sys.executable, *arguments], capture_output=True, text=True, env=environment)
+        assert done.returncode != 0 and "pip install 'flagred[fleet]'" in done.stderr
+        assert arguments[0] == "-c" or done.stderr.count("\n") == 1
 
 
 def tear(file: Path) -> Path:

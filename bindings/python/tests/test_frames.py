@@ -169,7 +169,7 @@ def test_a_row_that_is_null_as_a_whole_is_unknown():
     assert pyarrow.table(MODEL(sliced))["tip"].to_pylist() == expected[1:]
 
 
-def test_capsules_that_are_used_up_or_do_not_fit_are_refused():
+def test_capsules_that_are_used_up_or_do_not_fit_are_refused(capfd):
     pyarrow = library("pyarrow")
     batch = pyarrow.record_batch({"service": [8.0], "food": [9.0]})
     array, stream = batch.__arrow_c_array__(), pyarrow.table(batch.to_pydict()).__arrow_c_stream__()
@@ -194,6 +194,8 @@ def test_capsules_that_are_used_up_or_do_not_fit_are_refused():
     ]:
         with pytest.raises(flagred.DataError, match=told):
             MODEL(Capsules(kind, capsules))
+    # No message of a panic of the library behind it.
+    assert capfd.readouterr().err == ""
 
 
 def test_a_column_that_is_there_twice_is_refused():

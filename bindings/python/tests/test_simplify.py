@@ -59,5 +59,5 @@ def test_mistakes_are_told(fan):
         flagred.simplify(fan, rows_only=True)
     with pytest.raises(flagred.DataError, match="have no column `damp`"):
         flagred.simplify(fan, {"heat": [1.0]})
-    with pytest.raises(flagred.DataError, match="`speed`, which is no input"):
+    with pytest.raises(flagred.DataError, match="`speed`, which is not an input"):
         flagred.simplify(fan, {"heat": [1.0]}, columns={"speed": "x"})

@@ -125,7 +125,7 @@ def test_weights_count(wave):
         ({"n_terms": 1}, "n_terms is 1"),
         ({"spacing": "even"}, "spacing is 'even'"),
         ({"monotonic_cst": [1]}, "for each of the 2 features"),
-        ({"monotonic_cst": {"x7": 1}}, "'x7', which is no feature"),
+        ({"monotonic_cst": {"x7": 1}}, "'x7', which is not a feature"),
         ({"complete": True, "n_terms": 1000, "spacing": "uniform"}, "1e\\+06 combinations"),
         ({"min_support": 1000}, "min_support=1000"),
     ],

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use flagred::{
     attitude::CRITICAL_ERROR_DEG,
-    profile::Profile,
+    profile::{Profile, ProfileInput},
     source::{Motors, Signal, Source, Statistic},
 };
 
@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// Add the inputs of this profile: `flagred`, `flagred-battery`, `flagred-paper`, or a file
+    /// Add the inputs of this profile, as `input_NAME` where another column has the name: `flagred`, `flagred-battery`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE")]
     profile: Option<String>,
 
@@ -98,16 +98,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(name) => profile::read(name)?.0,
         None => profile::read("flagred-paper")?.0,
     };
-    let plan = Plan {
-        profile: with_margin_and_spread(profile),
-        cut: match (arguments.window, arguments.ahead) {
-            (Some(length_s), _) => Cut::Windows { length_s },
-            (None, Some(horizon_s)) => Cut::Ahead {
-                horizon_s,
-                step_s: arguments.every,
-            },
-            (None, None) => Cut::Flights,
+    let cut = match (arguments.window, arguments.ahead) {
+        (Some(length_s), _) => Cut::Windows { length_s },
+        (None, Some(horizon_s)) => Cut::Ahead {
+            horizon_s,
+            step_s: arguments.every,
         },
+        (None, None) => Cut::Flights,
+    };
+    let plan = Plan {
+        profile: with_margin_and_spread(profile, cut),
+        cut,
         critical_deg: arguments.critical,
     };
     let named = arguments.profile.iter();
@@ -153,13 +154,38 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// The paper's two inputs come first, whatever the rules of the profile look at.
-fn with_margin_and_spread(mut profile: Profile) -> Profile {
+/// The paper's two inputs come first, whatever the rules of the profile look at. An input of the profile that has one of these names
+/// and is another quantity is `input_NAME`, as in the steps of `assess`. Rows of [`Cut::Ahead`] are those of the profile: there it
+/// keeps its name.
+fn with_margin_and_spread(mut profile: Profile, cut: Cut) -> Profile {
     let paper = [
         ("margin", Statistic::Mean, Signal::MotorMargin),
         ("spread", Statistic::Std, Signal::MotorCommand),
     ];
     for (place, (name, statistic, signal)) in paper.into_iter().enumerate() {
+        let is_same = |input: &ProfileInput| {
+            let source = &input.source;
+            input.ratio.is_none()
+                && source.statistic == statistic
+                && source.signal == signal
+                && source.motors == Motors::Pooled
+                && !source.exponential
+        };
+        let mut inputs = profile.inputs.iter_mut();
+        if !matches!(cut, Cut::Ahead { .. })
+            && let Some(other) = inputs.find(|input| input.name == name && !is_same(input))
+        {
+            let renamed = format!("input_{name}");
+            other.name.clone_from(&renamed);
+            let ratios = profile
+                .inputs
+                .iter_mut()
+                .filter_map(|input| input.ratio.as_mut());
+            let named = ratios.flat_map(|ratio| ratio.plus.iter_mut().chain([&mut ratio.per]));
+            for other in named.filter(|other| *other == name) {
+                other.clone_from(&renamed);
+            }
+        }
         if profile.inputs.iter().all(|input| input.name != name) {
             let source = Source {
                 statistic,
@@ -169,7 +195,7 @@ fn with_margin_and_spread(mut profile: Profile) -> Profile {
                 exponential: false,
             };
             let name = name.to_owned();
-            let input = flagred::profile::ProfileInput {
+            let input = ProfileInput {
                 name,
                 source,
                 ratio: None,

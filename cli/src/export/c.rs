@@ -25,11 +25,21 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], causes: &[Str
         out,
         "/* Enough memory for a monitor of so many motors, on any processor. */",
     );
+    let memory = format!("FLAGRED_PLAN_{}_MEMORY(motors)", name.to_uppercase());
+    line(
+        out,
+        &format!("#define {memory} ({} + {motor} * (motors))", plan.bytes(0)),
+    );
     line(
         out,
         &format!(
-            "#define FLAGRED_MEMORY(motors) ({} + {motor} * (motors))\n",
-            plan.bytes(0)
+            "/* The same, in a program with one profile. With several, use the names above. */\n\
+             #ifndef FLAGRED_HAS_PLAN\n\
+             #define FLAGRED_HAS_PLAN\n\
+             #define FLAGRED_MEMORY(motors) {memory}\n\
+             #else\n\
+             #undef FLAGRED_MEMORY\n\
+             #endif\n"
         ),
     );
     let rules = arrays.rules(&plan.rules);

@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "most_terms")]
     clusters: bool,
 
-    /// Conclude lines over the inputs instead of numbers
+    /// Use linear consequents instead of constants
     #[arg(long)]
     lines: bool,
 
@@ -74,7 +74,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 1, value_name = "ROWS")]
     min_support: usize,
 
-    /// The seed of what is random: the parts of rows
+    /// Random seed (folds of cross-validation)
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     seed: u64,
 

@@ -2,6 +2,7 @@
 
 use std::io::{self, BufRead, Read};
 
+use fuzzy::diagnostic::quoted;
 use lsp_server::Message;
 
 use crate::output::say;
@@ -55,10 +56,15 @@ fn head<R: BufRead>(from: &mut R) -> io::Result<Option<u64>> {
             return length.map(Some).ok_or_else(missing);
         }
         let Some((name, value)) = line.split_once(": ") else {
-            return Err(invalid(format!("`{line}` is not a header line")));
+            return Err(invalid(format!("`{}` is not a header line", quoted(line))));
         };
         if name.eq_ignore_ascii_case("content-length") {
-            let wrong = |_| invalid(format!("`{value}` is not the length of a message"));
+            let wrong = |_| {
+                invalid(format!(
+                    "`{}` is not the length of a message",
+                    quoted(value)
+                ))
+            };
             length = Some(value.parse().map_err(wrong)?);
         }
     }

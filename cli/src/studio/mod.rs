@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
 
-    /// Show the file and what becomes of it, and never write it
+    /// Follow the file read-only
     #[arg(long, requires = "file")]
     read_only: bool,
 

@@ -15,11 +15,14 @@ use std::{
 
 use authoring::provenance::fingerprint;
 use clap::ValueEnum;
-use fuzzy::{Model, drawing::moved_svg};
+use fuzzy::{
+    Model,
+    drawing::{moved_svg, visible},
+};
 use indicatif::{ProgressBar, ProgressStyle};
 use tuning::{
-    CurvePoint, Data, Loss, Progress, Settings, TuneError, Tuned, Validation, cross_validate,
-    learning_curve, tune,
+    CurvePoint, Data, Loss, Moved, Progress, Settings, TuneError, Tuned, Validation,
+    cross_validate, learning_curve, tune,
 };
 
 use crate::{
@@ -33,7 +36,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     rows: rows::FromRows,
 
-    /// What is made small
+    /// Loss to minimise
     #[arg(long, value_enum, default_value = "squared", value_name = "LOSS")]
     loss: LossName,
 
@@ -69,7 +72,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 100, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     iterations: u32,
 
-    /// The seed of what is random: places to start, parts of cross-validation
+    /// Random seed (starting points, folds of cross-validation)
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     seed: u64,
 
@@ -248,6 +251,25 @@ fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failur
         let message = format!("`{}` is a checkpoint of another rule set", path.display());
         return Err(Failure::usage(message).help("name a new file, or remove this one"));
     }
+    let fixed = resumed
+        .as_ref()
+        .and_then(|resumed| tuning::moved_although_fixed(model, resumed, &settings(arguments)));
+    if let Some(Moved {
+        of,
+        name,
+        before,
+        after,
+    }) = fixed
+    {
+        let message = format!(
+            "the checkpoint `{}` moves `{}`, which must stay: its {name} is {after} instead of {before}",
+            path.display(),
+            visible(&of)
+        );
+        return Err(Failure::usage(message).help(
+            "run with the `--only`, `--fix` and `--weights` that the checkpoint was written with, or name a new file",
+        ));
+    }
     Ok(resumed)
 }
 
@@ -262,7 +284,9 @@ fn failure(name: &str, error: &TuneError) -> Failure {
         }
         TuneError::NoRows => "the tables have a header and no rows",
         TuneError::NoWeight => "give rows a weight above 0, or leave out `--weight`",
-        TuneError::NotFinite => "check the units of the output's column and of its range",
+        TuneError::NotFinite | TuneError::TooFar { .. } => {
+            "check the units of the output's column and of its range"
+        }
         TuneError::OneClass => "ranking needs rows of 1 and rows of 0",
         TuneError::NotMonotone { .. } => {
             "`flagred check --monotone` shows where; begin with a rule set that holds it: `flagred learn --rising`"

@@ -2,7 +2,7 @@
 
 use alloc::{string::String, vec::Vec};
 
-use super::logic::{Cells, Extent, Level, Logic, halves};
+use super::logic::{Cells, Changes, Extent, Level, Logic, halves};
 use crate::model::{Model, Variable};
 
 /// A box of the input space in which no rule of an output reaches a degree.
@@ -62,11 +62,31 @@ const MOST_BOXES: usize = 50;
 const MOST_MISSING: usize = 16;
 /// For a box with more sides no antecedents are listed: such a rule would be too long to write.
 const MOST_SIDES_OF_A_RULE: usize = 6;
-/// The search stops after so many evaluations of formulas.
+/// The search for an output stops after so many evaluations of formulas.
 const MOST_LOOKS: usize = 100_000;
+/// So do those for all outputs together.
+const MOST_LOOKS_IN_ALL: usize = 4_000_000;
+
+/// What the searches for all outputs share.
+pub(super) struct Shared {
+    looks_left: usize,
+}
+
+impl Shared {
+    pub(super) fn new() -> Self {
+        let looks_left = MOST_LOOKS_IN_ALL;
+        Shared { looks_left }
+    }
+}
 
 /// The boxes in which no rule of `output` reaches `coverage`, or, with `None`, in which none fires.
-pub(super) fn uncovered(model: &Model, output: &str, coverage: Option<f64>) -> Boxes {
+pub(super) fn uncovered(
+    model: &Model,
+    output: &str,
+    coverage: Option<f64>,
+    shared: &mut Shared,
+    known: &mut Changes,
+) -> Boxes {
     let level = coverage.map_or(Level::fires(model), Level::reaches);
     let concludes = |rule: &&crate::model::Rule| {
         model.is_enabled(rule)
@@ -79,8 +99,8 @@ pub(super) fn uncovered(model: &Model, output: &str, coverage: Option<f64>) -> B
     };
     let conditions = model.rules.iter().filter(concludes);
     let conditions = conditions.map(|rule| &rule.rule.condition);
-    let logic = Logic::new(model, conditions, level, Extent::Intervals);
-    let (boxes, complete) = search(&logic);
+    let logic = Logic::new(model, conditions, level, Extent::Intervals, known);
+    let (boxes, complete) = search(&logic, shared);
     let boxes = merged(boxes);
     let mut found: Vec<Uncovered> = boxes
         .iter()
@@ -91,15 +111,18 @@ pub(super) fn uncovered(model: &Model, output: &str, coverage: Option<f64>) -> B
 }
 
 /// The boxes in which no formula is true, and whether the search ended.
-fn search(logic: &Logic) -> (Vec<Cells>, bool) {
+fn search(logic: &Logic, shared: &mut Shared) -> (Vec<Cells>, bool) {
     let all: Vec<usize> = (0..logic.formulas.len()).collect();
     let mut boxes = Vec::new();
+    let most = shared.looks_left.min(MOST_LOOKS);
     let mut looks = 0;
     // Boxes to search, each with the formulas that may be true in it.
     let mut left = Vec::from([(logic.everywhere(), all)]);
     while let Some((cells, formulas)) = left.pop() {
-        looks += formulas.len() + 1;
-        if looks > MOST_LOOKS || boxes.len() >= MOST_BOXES {
+        let more = formulas.len() + 1;
+        looks += more;
+        shared.looks_left = shared.looks_left.saturating_sub(more);
+        if looks > most || boxes.len() >= MOST_BOXES {
             return (boxes, false);
         }
         let Some(open) = undecided(logic, &cells, &formulas) else {

@@ -40,6 +40,12 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
         && more > 0
     {
         found.push(at.more_uncovered(more, report.uncovered_complete));
+    } else if !report.uncovered_complete {
+        let message = "regions without a rule were searched for in a part of the input space only";
+        found.push(
+            Diagnostic::note("examined-in-part", spans.rules_key.clone(), message)
+                .help("there are too many rules, terms or outputs to search it all"),
+        );
     }
     for one in &report.contradictions {
         if one.first == one.second {
@@ -86,7 +92,12 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
     found.extend(outside.filter_map(|one| at.outside_range(one)));
     found.extend(report.equal_terms.iter().map(|one| at.equal_terms(one)));
     found.extend(report.holes.iter().map(|one| at.hole(one)));
-    found.extend(report.reach.iter().filter_map(|one| at.reach(one)));
+    found.extend(
+        report
+            .reach
+            .iter()
+            .filter_map(|one| at.reach(one, report.reach_complete)),
+    );
     found.extend(report.against_trend.iter().map(|one| at.against_trend(one)));
     found.extend(
         report
@@ -95,6 +106,7 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
             .map(|one| at.counterexample(one)),
     );
     found.extend(report.jumps.iter().map(|one| at.jump(one)));
+    found.extend(at.unexamined(report));
     found
 }
 
@@ -363,12 +375,16 @@ impl At<'_> {
     }
 
     /// Reported only if the output leaves its range or stays away from an end of it.
-    fn reach(&self, one: &Reach) -> Option<Diagnostic> {
+    fn reach(&self, one: &Reach, is_complete: bool) -> Option<Diagnostic> {
         const BEYOND: f64 = 1e-9;
         let [low, high] = one.range;
         let beyond = BEYOND * (high - low);
         if one.low < low - beyond || one.high > high + beyond {
             return Some(self.outside(one));
+        }
+        if !is_complete {
+            // It may take other values at the points that were not evaluated.
+            return None;
         }
         let mut outputs = self.model.outputs.iter();
         let output = outputs.find(|output| output.variable.name == one.output)?;
@@ -454,6 +470,28 @@ impl At<'_> {
         Diagnostic::warning("not-monotone", self.name(output), one.to_string()).help(format!(
             "it is claimed that it never {does}; look at the rules that fire there"
         ))
+    }
+
+    /// What was examined in part, because it would have taken too long.
+    fn unexamined(&self, report: &Report) -> Option<Diagnostic> {
+        let parts = [
+            (report.reach_complete, "the values that outputs reach"),
+            (report.counterexamples_complete, "claims"),
+            (report.jumps_complete, "jumps"),
+        ];
+        let parts = parts.into_iter().filter(|(is_complete, _)| !is_complete);
+        let parts: Vec<&str> = parts.map(|(_, part)| part).collect();
+        let message = format!(
+            "evaluating this rule set takes so long that only some points were examined for {}",
+            match parts.as_slice() {
+                [] => return None,
+                [first, second, third] => format!("{first}, {second} and {third}"),
+                others => others.join(" and "),
+            }
+        );
+        let place = self.spans.rules_key.clone();
+        let finding = Diagnostic::note("examined-in-part", place, message);
+        Some(finding.help("terms with straight sides, or fewer terms and rules, are faster"))
     }
 
     fn jump(&self, one: &Jump) -> Diagnostic {

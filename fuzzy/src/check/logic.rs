@@ -74,12 +74,15 @@ pub(super) enum Formula {
     Or(Vec<Formula>),
 }
 
+/// Where literals change, of those that were looked at: outputs share most of them.
+pub(super) type Changes = BTreeMap<Key, Vec<f64>>;
+
 /// Cells `from..to` of each input.
 pub(super) type Cells = Vec<(usize, usize)>;
 
 /// What a literal says. Equal literals are stored once.
 #[derive(PartialEq, Eq, PartialOrd, Ord, Clone)]
-struct Key {
+pub(super) struct Key {
     input: usize,
     term: usize,
     hedges: Vec<u8>,
@@ -94,6 +97,7 @@ impl Logic {
         conditions: impl Iterator<Item = &'m Condition>,
         level: Level,
         extent: Extent,
+        known: &mut Changes,
     ) -> Self {
         let mut reader = Reader {
             model,
@@ -117,7 +121,10 @@ impl Logic {
                 cuts.get_mut(key.input),
                 points.get_mut(key.input),
             ) {
-                cuts.extend(axis::changes(values, |x| key.holds(input, x)));
+                let changes = known
+                    .entry(key.clone())
+                    .or_insert_with(|| axis::changes(values, |x| key.holds(input, x)));
+                cuts.extend(changes.iter());
                 if extent == Extent::Points {
                     points.extend(axis::points(values, |x| key.holds(input, x)));
                 }

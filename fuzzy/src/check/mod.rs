@@ -105,12 +105,18 @@ pub struct Report {
     pub holes: Vec<Hole>,
     /// The values each output takes.
     pub reach: Vec<Reach>,
+    /// Whether they are from all points that were chosen; where evaluation is slow, the search stops early.
+    pub reach_complete: bool,
     /// Rules against the trend of their neighbours.
     pub against_trend: Vec<AgainstTrend>,
     /// Points at which an output contradicts a claim.
     pub counterexamples: Vec<Counterexample>,
+    /// Whether the claims were examined at all points that were chosen; where evaluation is slow, the search stops early.
+    pub counterexamples_complete: bool,
     /// Points at which an output jumps.
     pub jumps: Vec<Jump>,
+    /// Whether they are from all points that were chosen; where evaluation is slow, the search stops early.
+    pub jumps_complete: bool,
 }
 
 /// Analyses the model of an engine.
@@ -144,7 +150,7 @@ pub struct Report {
 /// ```
 pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed::Box<Diagnostic>> {
     let model = engine.model();
-    let counterexamples = counterexamples(engine, &options.monotone)?;
+    let (counterexamples, counterexamples_complete) = claims(engine, &options.monotone)?;
     let (first, later) = stages(model);
     let stages: Vec<Stage<'_>> = core::iter::once(first).chain(later).collect();
     let never_firing = never_firing(&stages);
@@ -156,6 +162,9 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
     });
     let holes = model.inputs.iter().chain(read).flat_map(terms::holes);
     let mut probe = probe::Probe::new(model, engine);
+    let reach = probe.with_part(0.5, probe::Probe::reach);
+    let reach_complete = core::mem::replace(&mut probe.is_complete, true);
+    let jumps = probe.jumps();
     Ok(Report {
         uncovered,
         uncovered_complete,
@@ -166,10 +175,13 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
         never_firing,
         equal_terms: all_variables(model).flat_map(terms::equal).collect(),
         holes: holes.collect(),
-        reach: probe.reach(),
+        reach,
+        reach_complete,
         against_trend: stages.iter().flat_map(against_trend).collect(),
         counterexamples,
-        jumps: probe.jumps(),
+        counterexamples_complete,
+        jumps,
+        jumps_complete: probe.is_complete,
     })
 }
 
@@ -197,12 +209,20 @@ pub fn counterexamples(
     engine: &Engine,
     claims: &[Monotone],
 ) -> Result<Vec<Counterexample>, alloc::boxed::Box<Diagnostic>> {
+    self::claims(engine, claims).map(|(found, _)| found)
+}
+
+/// [`counterexamples`], and whether all chosen points were evaluated.
+fn claims(
+    engine: &Engine,
+    claims: &[Monotone],
+) -> Result<(Vec<Counterexample>, bool), alloc::boxed::Box<Diagnostic>> {
     for claim in claims {
         known(engine.model(), claim)?;
     }
     let mut probe = probe::Probe::new(engine.model(), engine);
     let found = claims.iter().flat_map(|claim| probe.counterexamples(claim));
-    Ok(found.collect())
+    Ok((found.collect(), probe.is_complete))
 }
 
 /// Checks a rule set that was read: its errors, or else the warnings of reading and the analysis, as located findings.
@@ -264,13 +284,19 @@ fn all_variables(model: &Model) -> impl Iterator<Item = &Variable> {
 fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<Uncovered>, bool) {
     let mut found: Vec<Uncovered> = Vec::new();
     let mut complete = true;
+    let mut shared = coverage::Shared::new();
+    let mut known = alloc::vec![logic::Changes::new(); stages.len()];
     for level in [None, Some(coverage)] {
-        let outputs = stages.iter().flat_map(|stage| {
+        let outputs = stages.iter().enumerate().flat_map(|(index, stage)| {
             let outputs = stage.model.outputs.iter();
-            outputs.map(|output| (&*stage.model, output))
+            outputs.map(move |output| (index, &*stage.model, output))
         });
-        for (model, output) in outputs {
-            let boxes = coverage::uncovered(model, &output.variable.name, level);
+        for (stage, model, output) in outputs {
+            let Some(known) = known.get_mut(stage) else {
+                continue;
+            };
+            let name = &output.variable.name;
+            let boxes = coverage::uncovered(model, name, level, &mut shared, known);
             complete &= boxes.complete;
             let new = boxes.found.into_iter().filter(|one| {
                 // A box in which no rule fires is uncovered too.

@@ -24,6 +24,9 @@ pub struct Coordinate {
 
 /// The work that an analysis may take, in rules and terms evaluated at a point: some tens of milliseconds.
 const MOST_STEPS: usize = 3_000_000;
+/// The work that all analyses may take together, in rules, terms and memberships evaluated: about a second. A single evaluation of
+/// an output with many curved terms takes millions.
+const MOST_STEPS_IN_ALL: u64 = 200_000_000;
 /// The most points of a line along one input.
 pub(super) const MOST_ON_A_LINE: usize = 200;
 /// The least change, as a fraction of the output's range, that counts as a jump or a counterexample.
@@ -39,6 +42,12 @@ pub(super) struct Probe<'m> {
     pub(super) values: Vec<Vec<f64>>,
     /// The most evaluations of an analysis.
     pub(super) evaluations: usize,
+    /// The rules and terms that each evaluation looks at.
+    work: u64,
+    /// The work that is left.
+    steps_left: u64,
+    /// Whether every point that an analysis wanted was evaluated.
+    pub(super) is_complete: bool,
 }
 
 impl<'m> Probe<'m> {
@@ -48,6 +57,7 @@ impl<'m> Probe<'m> {
             .iter()
             .map(|input| chosen(input, MOST_ON_A_LINE));
         let work = model.rules.len() + model.inputs.iter().map(|v| v.terms.len()).sum::<usize>();
+        let terms = model.outputs.iter().map(|o| o.variable.terms.len());
         Probe {
             model,
             engine,
@@ -55,15 +65,25 @@ impl<'m> Probe<'m> {
             outcomes: alloc::vec![Outcome::default(); model.outputs.len()],
             values: values.collect(),
             evaluations: (MOST_STEPS / work.max(1)).clamp(100, 60_000),
+            work: (work + terms.sum::<usize>()) as u64,
+            steps_left: MOST_STEPS_IN_ALL,
+            is_complete: true,
         }
     }
 
-    /// The values of the outputs at a point; `None` where no rule fires.
+    /// Runs an analysis with at most this part of the work that is left.
+    pub(super) fn with_part<T>(&mut self, part: f64, run: impl FnOnce(&mut Self) -> T) -> T {
+        let all = self.steps_left;
+        let own = (all as f64 * part) as u64;
+        self.steps_left = own;
+        let done = run(self);
+        self.steps_left += all - own;
+        done
+    }
+
+    /// The values of the outputs at a point; `None` where no rule fires, and where no work is left to evaluate it.
     pub(super) fn outputs(&mut self, point: &[f64]) -> impl Iterator<Item = Option<f64>> {
-        let done = self
-            .engine
-            .evaluate_with(&mut self.scratch, point, &mut self.outcomes);
-        let failed = done.is_err();
+        let failed = !self.is_evaluated(point);
         self.outcomes
             .iter()
             .map(move |outcome| match outcome.state {
@@ -71,6 +91,24 @@ impl<'m> Probe<'m> {
                 State::Defined(value) if !failed => Some(value),
                 _ => None,
             })
+    }
+
+    /// Evaluates a point; whether the outcomes are its own.
+    fn is_evaluated(&mut self, point: &[f64]) -> bool {
+        let left = self.steps_left.checked_sub(self.work);
+        let Some(left) = left.filter(|left| *left > 0) else {
+            self.steps_left = 0;
+            self.is_complete = false;
+            return false;
+        };
+        self.scratch.bound_steps(left);
+        let done = self
+            .engine
+            .evaluate_with(&mut self.scratch, point, &mut self.outcomes);
+        let (steps, enough) = self.scratch.steps();
+        self.steps_left = left.saturating_sub(steps);
+        self.is_complete &= enough;
+        done.is_ok() && enough
     }
 
     pub(super) fn value(&mut self, point: &[f64], output: usize) -> Option<f64> {

@@ -6,7 +6,7 @@ use alloc::{
     vec::Vec,
 };
 
-use super::logic::{Extent, Level, Logic};
+use super::logic::{Changes, Extent, Level, Logic};
 use crate::{
     model::{self, Activation, Aggregation, Model, Output, concludes},
     rule::{Condition, Consequent, Rule},
@@ -276,7 +276,13 @@ fn conclusion(rule: &Rule) -> String {
 pub(super) fn never_firing(model: &Model) -> Vec<usize> {
     let level = Level::fires(model);
     let conditions = model.rules.iter().map(|rule| &rule.rule.condition);
-    let logic = Logic::new(model, conditions, level, Extent::Points);
+    let logic = Logic::new(
+        model,
+        conditions,
+        level,
+        Extent::Points,
+        &mut Changes::new(),
+    );
     let rules = model.rules.iter().zip(&logic.formulas).enumerate();
     let dead = rules.filter(|(_, (rule, formula))| {
         model.is_enabled(rule) && (rule.rule.weight <= 0.0 || !logic.holds_somewhere(formula))

@@ -45,28 +45,40 @@ pub struct EqualTerms {
 pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
     let values = axis::values(variable);
     let outside = outside(variable);
-    let same = |a: &Term, b: &Term| {
-        let sets =
-            is_set(&a.membership_function, variable) && is_set(&b.membership_function, variable);
+    // Of each fuzzy set, so that most pairs need no comparison of degrees.
+    let hashes = variable.terms.iter().map(|term| {
+        is_set(&term.membership_function, variable).then(|| hash_of_degrees(term, &values))
+    });
+    let hashes: Vec<Option<u64>> = hashes.collect();
+    let same = |(a, a_hash): (&Term, &Option<u64>), (b, b_hash): (&Term, &Option<u64>)| {
         let equal = || values.iter().all(|&x| a.membership(x) == b.membership(x));
         (a.membership_function == b.membership_function && a.height == b.height)
-            || (sets && equal())
+            || (a_hash.is_some() && a_hash == b_hash && equal())
     };
     let mut found = Vec::new();
-    for (i, second) in variable.terms.iter().enumerate() {
-        let mut earlier = variable.terms.iter().take(i);
+    let terms = || variable.terms.iter().zip(&hashes);
+    for (i, second) in terms().enumerate() {
         // That a term is 0 everywhere is a finding of its own.
-        if let Some(first) = earlier.find(|first| same(first, second))
-            && !outside.contains(&i)
+        if !outside.contains(&i)
+            && let Some((first, _)) = terms().take(i).find(|first| same(*first, second))
         {
             found.push(EqualTerms {
                 variable: variable.name.clone(),
                 first: first.name.clone(),
-                second: second.name.clone(),
+                second: second.0.name.clone(),
             });
         }
     }
     found
+}
+
+/// A number that is the same for terms with the same degrees at the values, and rarely for others (FxHash).
+fn hash_of_degrees(term: &Term, values: &[f64]) -> u64 {
+    values.iter().fold(0, |hash: u64, &x| {
+        // 0 and -0 are the same degree.
+        let degree = (term.membership(x) + 0.0).to_bits();
+        (hash.rotate_left(5) ^ degree).wrapping_mul(0x517c_c1b7_2722_0a95)
+    })
 }
 
 /// Terms that stand in no rule, and variables none of whose terms does.

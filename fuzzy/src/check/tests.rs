@@ -28,6 +28,51 @@ fn paper() -> &'static str {
     include_str!("../../../rules/flagred-paper.yaml")
 }
 
+/// Several of the hottest loops: equal terms of long lists, trends for many outputs, and evaluations with curved terms.
+#[test]
+fn large_rule_sets_are_examined_in_bounded_time() {
+    let terms = |count: usize, shape: &dyn Fn(usize) -> String| {
+        let terms: Vec<String> = (0..count).map(|i| format!("a{i}: {}", shape(i))).collect();
+        format!("terms: {{{}}}", terms.join(", "))
+    };
+    let triangle = |i: usize| format!("{{triangle: [{}, {i}, {}]}}", i as f64 - 1.0, i + 1);
+    let gaussian = |i: usize| format!("{{gaussian: {{mean: {i}, sd: 1}}}}");
+    let long = format!(
+        "fuzzy: 1\nname: long\ninputs: {{x: {{range: [0, 999], {0}}}}}\noutputs: {{y: {{range: [0, 999], {0}}}}}\nrules:\n{1}",
+        terms(1000, &triangle),
+        (0..1000)
+            .map(|i| format!("  - IF x IS a{i} THEN y IS a{i}\n"))
+            .collect::<String>()
+    );
+    // Many output terms are concluded at once.
+    let pairs = (0..100).flat_map(|i| (0..100).map(move |j| (i, j)));
+    let rules = pairs.map(|(i, j)| {
+        let term = (7 * i + 3 * j) % 100;
+        format!("  - IF x IS a{i} AND z IS a{j} THEN y IS a{term}\n")
+    });
+    let curved = format!(
+        "fuzzy: 1\nname: curved\ninputs: {{x: {{range: [0, 99], {0}}}, z: {{range: [0, 99], {0}}}}}\noutputs: {{y: {{range: [0, 99], {0}}}}}\nrules:\n{1}",
+        terms(100, &gaussian),
+        rules.collect::<String>()
+    );
+    for (text, is_complete) in [(long, true), (curved, false)] {
+        let document = crate::yaml::parse(&text).unwrap();
+        let engine = Engine::new(&document.model).unwrap();
+        let started = std::time::Instant::now();
+        let report = check(&engine, &Options::default()).unwrap();
+        // Without optimisation and on a busy machine; unbounded, the second takes minutes.
+        assert!(started.elapsed().as_secs() < 120, "{:?}", started.elapsed());
+        assert_eq!(report.reach_complete, is_complete);
+        let findings = report.findings(&document.model, &document.spans);
+        let is_told = findings
+            .iter()
+            .any(|one| one.code == "examined-in-part" && one.message.starts_with("evaluating"));
+        assert_eq!(is_told, !is_complete);
+        let narrow = findings.iter().any(|one| one.code == "narrow-reach");
+        assert!(is_complete || !narrow);
+    }
+}
+
 #[test]
 fn terms_at_a_single_value_fire_there() {
     let text = |rules: &str| {

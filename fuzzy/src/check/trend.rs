@@ -45,8 +45,10 @@ pub struct AgainstTrend {
 /// The steps against the trend. There is a trend where at least twice as many steps go one way as the other.
 pub(super) fn against(model: &Model) -> Vec<AgainstTrend> {
     let mut found = Vec::new();
+    // Terms are ordered by their middles, not as they are written.
+    let order: Vec<Vec<usize>> = model.inputs.iter().map(ranks).collect();
     for output in &model.outputs {
-        let Some(table) = Table::new(model, &output.variable) else {
+        let Some(table) = Table::new(model, &output.variable, &order) else {
             continue;
         };
         table.against(model, &output.variable, &mut found);
@@ -68,9 +70,7 @@ struct Row {
 }
 
 impl Table {
-    fn new(model: &Model, output: &Variable) -> Option<Self> {
-        // Terms are ordered by their middles, not as they are written.
-        let order: Vec<Vec<usize>> = model.inputs.iter().map(ranks).collect();
+    fn new(model: &Model, output: &Variable, order: &[Vec<usize>]) -> Option<Self> {
         let names: BTreeMap<&str, usize> = model
             .inputs
             .iter()
@@ -95,7 +95,7 @@ impl Table {
             let Some(middle) = *middles.get(term)? else {
                 continue;
             };
-            if let Some(key) = key(model, &names, &order, &written.rule.condition) {
+            if let Some(key) = key(model, &names, order, &written.rule.condition) {
                 let term = String::from(term);
                 rows.insert(key, Row { rule, term, middle });
             }

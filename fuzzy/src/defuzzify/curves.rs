@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::maxima::{EQUAL, monotone};
 use super::piece::{Curve, Piece};
-use super::polyline::Workspace;
+use super::polyline::{STEPS_OF_A_CURVE, Workspace};
 use super::sloped::{Sloped, activate, aggregate};
 use super::{Joint, Strengths};
 use crate::model::{Aggregation, Implication, MembershipFunction, Term};
@@ -104,7 +104,7 @@ impl Curves {
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
         let all_known = self.kinks(strengths, joint, workspace);
-        let (cuts, parts) = (&workspace.cuts, &mut workspace.parts);
+        let (cuts, parts, steps) = (&workspace.cuts, &mut workspace.parts, &mut workspace.steps);
         for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
             let width = to - from;
             if width <= 0.0 {
@@ -112,6 +112,9 @@ impl Curves {
             }
             let middle = from + 0.5 * width;
             self.parts(strengths, joint.implication, (from, to), all_known, parts);
+            if !steps.take(strengths.strengths.len() + parts.len() * STEPS_OF_A_CURVE) {
+                return;
+            }
             let degree = self.joined(parts, joint.aggregation, middle);
             let has_step = all_known
                 && matches!(

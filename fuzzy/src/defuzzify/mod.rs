@@ -255,6 +255,10 @@ impl Defuzzify {
     pub(crate) fn value(&self, strengths: Strengths<'_>, workspace: &mut Workspace) -> Option<f64> {
         let value = match &self.method {
             Method::Sampled(sampling, curves) => {
+                let steps = sampling.samples.saturating_mul(strengths.strengths.len());
+                if !workspace.steps.take(steps) {
+                    return None;
+                }
                 sampling.value(self.defuzzifier, (self.low, self.high), |x| {
                     curves.degree(strengths, self.joint, x)
                 })

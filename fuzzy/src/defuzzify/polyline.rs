@@ -52,7 +52,36 @@ pub(crate) struct Workspace {
     pub(super) most_cuts: usize,
     segments: Vec<Segment>,
     pub(super) parts: Vec<Part>,
+    pub(crate) steps: Steps,
 }
+
+/// The work of integrations, about one membership a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Steps {
+    pub(crate) taken: u64,
+    /// An integration that would take more ends early, and its value means nothing.
+    pub(crate) most: u64,
+}
+
+impl Steps {
+    const UNBOUNDED: Steps = Steps {
+        taken: 0,
+        most: u64::MAX,
+    };
+
+    /// Takes steps, and returns whether there were enough left.
+    pub(super) fn take(&mut self, steps: usize) -> bool {
+        self.taken = self.taken.saturating_add(steps as u64);
+        !self.are_spent()
+    }
+
+    pub(crate) fn are_spent(&self) -> bool {
+        self.taken > self.most
+    }
+}
+
+/// About so many memberships of each term are evaluated to integrate a piece with a curve.
+pub(super) const STEPS_OF_A_CURVE: usize = 16;
 
 /// A line under a firing strength.
 #[derive(Debug, Clone, Copy)]
@@ -72,6 +101,7 @@ impl Workspace {
             most_cuts,
             segments: Vec::with_capacity(activations),
             parts: Vec::with_capacity(activations),
+            steps: Steps::UNBOUNDED,
         }
     }
 }
@@ -193,6 +223,10 @@ impl Polylines {
             }
             workspace.cuts.push(1.0);
             workspace.cuts.sort_unstable_by(f64::total_cmp);
+            let steps = workspace.active.len() * workspace.cuts.len() * STEPS_OF_A_CURVE;
+            if !workspace.steps.take(steps) {
+                return;
+            }
             let width = to - from;
             for (&start, &end) in workspace.cuts.iter().zip(workspace.cuts.iter().skip(1)) {
                 if start >= end {

@@ -3,7 +3,7 @@
 use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
-use crate::defuzzify::polyline::Workspace;
+use crate::defuzzify::polyline::{Steps, Workspace};
 use crate::defuzzify::{Defuzzify, Strengths};
 use crate::model::{Model, NoRuleFires};
 use crate::table::{self, Buffers, Partial, Strongest, Table};
@@ -132,6 +132,30 @@ struct StageScratch<const L: usize = 1> {
     table: RowBuffers<L>,
     /// For outputs that have no closed form.
     workspace: Workspace,
+}
+
+#[cfg(feature = "check")]
+impl Scratch {
+    /// Bounds the steps of further integrations: those that would take more end early, and their values mean nothing.
+    pub(crate) fn bound_steps(&mut self, most: u64) {
+        for workspace in self.workspaces() {
+            workspace.steps = Steps { taken: 0, most };
+        }
+    }
+
+    /// The steps of integrations since they were bounded, and whether there were enough.
+    pub(crate) fn steps(&mut self) -> (u64, bool) {
+        let steps = self.workspaces().map(|workspace| workspace.steps);
+        steps.fold((0, true), |(sum, enough), steps| {
+            let sum = steps.taken.saturating_add(sum);
+            (sum, enough && !steps.are_spent())
+        })
+    }
+
+    fn workspaces(&mut self) -> impl Iterator<Item = &mut Workspace> {
+        let stages = core::iter::once(&mut self.first).chain(&mut self.later);
+        stages.map(|stage| &mut stage.workspace)
+    }
 }
 
 type RowBuffers<const L: usize> = Buffers<Rows<L>, Vec<Partial<L>>, Vec<Strongest<L>>>;

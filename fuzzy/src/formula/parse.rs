@@ -465,12 +465,13 @@ impl Mistake<'_> {
             Wrong::Number(written) => {
                 let message = match written.parse::<f64>() {
                     Ok(_) => format!("`{written}` is too large a number"),
-                    Err(_) => format!("`{written}` is no number"),
+                    Err(_) => format!("`{written}` is not a number"),
                 };
                 error(written.len(), message).help("write digits with one decimal point: `0.5`")
             }
             Wrong::TooDeep => {
-                let message = format!("brackets are nested deeper than {DEEPEST_NESTING}");
+                let message =
+                    format!("brackets, signs and powers are nested deeper than {DEEPEST_NESTING}");
                 error(found.len(), message).help("let several terms share the work")
             }
             Wrong::TooLong => {

@@ -21,11 +21,15 @@ mod consequents;
 mod monotone;
 mod resolve;
 mod settings;
+mod sum;
 #[cfg(test)]
 mod tests;
 
 use consequents::{Consequents, highest};
-pub use settings::{Direction, LearnError, Refusal, Resolution, Settings};
+#[doc(hidden)]
+pub use settings::bad_weight;
+pub use settings::{Direction, LearnError, Refusal, Resolution, Settings, WEIGHTS};
+use sum::Sum;
 
 /// Collects samples and derives rules from them.
 ///
@@ -61,6 +65,8 @@ pub struct Learner {
     settings: Settings,
     consequents: Consequents,
     samples: u64,
+    /// The largest weight of a sample.
+    heaviest: f64,
     cells: BTreeMap<Box<[u16]>, Cell>,
 }
 
@@ -97,32 +103,16 @@ struct Cell {
     /// By the index of the output's term.
     votes: BTreeMap<u16, Votes>,
     /// The sum of the degrees of the antecedent.
-    degrees: Fixed,
+    degrees: Sum,
     /// The sum of these degrees times the value, as a share of the output's range.
-    values: Fixed,
+    values: Sum,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Votes {
     samples: u64,
     strongest: f64,
-    degrees: Fixed,
-}
-
-/// A sum of numbers from 0 to 2^40 in steps of 2^-64. It does not depend on their order.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct Fixed(u128);
-
-impl Fixed {
-    const ONE: f64 = 18_446_744_073_709_551_616.0;
-
-    fn add(&mut self, x: f64) {
-        self.0 = self.0.saturating_add((x * Fixed::ONE) as u128);
-    }
-
-    fn value(self) -> f64 {
-        self.0 as f64 / Fixed::ONE
-    }
+    degrees: Sum,
 }
 
 impl Learner {
@@ -164,11 +154,12 @@ impl Learner {
             settings,
             consequents: Consequents::of(&output.variable),
             samples: 0,
+            heaviest: 0.0,
             cells: BTreeMap::new(),
         })
     }
 
-    /// Adds a sample: a value for each input of the model, then the output, and a weight.
+    /// Adds a sample: a value for each input of the model, then the output, and a weight, one of [`WEIGHTS`].
     ///
     /// # Errors
     /// The sample is invalid. The learner does not change.
@@ -182,7 +173,7 @@ impl Learner {
                 got: values.len(),
             });
         };
-        if !(weight.is_finite() && weight > 0.0) {
+        if !WEIGHTS.contains(&weight) {
             return Err(Refusal::Weight { weight });
         }
         let Some(consequent) = self.model.outputs.first().map(|o| &o.variable) else {
@@ -217,6 +208,7 @@ impl Learner {
             }
         };
         self.samples += 1;
+        self.heaviest = self.heaviest.max(weight);
         if degree <= 0.0 {
             return Ok(());
         }

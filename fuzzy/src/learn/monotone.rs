@@ -11,7 +11,7 @@ use crate::model::Variable;
 
 /// The most rounds over the inputs. Means settle long before.
 const MOST_ROUNDS: usize = 1000;
-/// The weight of a rule without samples: it follows its neighbours.
+/// The weight of a rule without samples, as a share of the largest weight of a sample: it follows its neighbours.
 const NO_SAMPLES: f64 = 1e-6;
 
 /// Moves consequents as far as the directions ask, and returns how many.
@@ -43,7 +43,7 @@ pub(super) fn enforce(
         if let Some(value) = values.get_mut(place(terms)) {
             *value = Some(Value {
                 value: decision.value,
-                weight: degrees.max(NO_SAMPLES),
+                weight: degrees.max(NO_SAMPLES * learner.heaviest),
             });
         }
     }

@@ -1,6 +1,18 @@
 //! The settings of a learner, and its errors.
 
-use alloc::{string::String, vec::Vec};
+use alloc::{format, string::String, vec::Vec};
+use core::ops::RangeInclusive;
+
+/// The weights that rows can have. Errors times weights, and their sums, would overflow or underflow beyond them.
+pub const WEIGHTS: RangeInclusive<f64> = 1e-50..=1e50;
+
+/// The message for a weight that is none of these: `wanted` is "a number", or what else can be written.
+#[doc(hidden)]
+#[must_use]
+pub fn bad_weight(weight: f64, wanted: &str) -> String {
+    let (least, most) = (WEIGHTS.start(), WEIGHTS.end());
+    format!("the weight is {weight:?}, but must be {wanted} from {least:e} to {most:e}")
+}
 
 /// How the consequent is chosen where samples of one antecedent disagree.
 ///
@@ -118,7 +130,10 @@ impl core::fmt::Display for LearnError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             LearnError::Outputs { outputs } => {
-                write!(f, "the model has {outputs} outputs; learning takes one")
+                write!(
+                    f,
+                    "the rule set has {outputs} outputs; learning needs exactly one"
+                )
             }
             LearnError::Blocks => f.write_str("learned rules stand in no rule block"),
             LearnError::ReadsInputs { term } => write!(
@@ -185,7 +200,7 @@ pub enum Refusal {
         /// The value.
         value: f64,
     },
-    /// A weight that is not a finite number above 0.
+    /// A weight that is not one of [`WEIGHTS`].
     Weight {
         /// The weight.
         weight: f64,
@@ -206,16 +221,25 @@ impl core::fmt::Display for Refusal {
                 high,
             } => write!(
                 f,
-                "`{variable}` is {value}, outside its range from {low} to {high}"
+                "`{variable}` is {}, outside its range from {} to {}",
+                short(*value),
+                short(*low),
+                short(*high)
             ),
             Refusal::NoTerm { variable, value } => {
-                write!(f, "every term of `{variable}` is 0 at {value}")
+                write!(f, "every term of `{variable}` is 0 at {}", short(*value))
             }
-            Refusal::Weight { weight } => {
-                write!(f, "the weight {weight} is not a finite number above 0")
-            }
+            Refusal::Weight { weight } => f.write_str(&bad_weight(*weight, "a number")),
         }
     }
 }
 
 impl core::error::Error for Refusal {}
+
+/// A number without rows of zeros.
+fn short(x: f64) -> String {
+    match x == 0.0 || (1e-5..1e15).contains(&libm::fabs(x)) {
+        true => format!("{x}"),
+        false => format!("{x:e}"),
+    }
+}

@@ -300,6 +300,11 @@ fn bad_samples_are_refused_with_the_reason() {
             "`spread` is 0.6, outside its range from 0 to 0.5",
         ),
         (
+            vec![1e308, 0.1, 1.0],
+            1.0,
+            "`margin` is 1e308, outside its range from 0 to 0.5",
+        ),
+        (
             vec![0.1, 0.1, -1.0],
             1.0,
             "`risk` is -1, outside its range from 0 to 100",
@@ -307,7 +312,17 @@ fn bad_samples_are_refused_with_the_reason() {
         (
             vec![0.1, 0.1, 1.0],
             0.0,
-            "the weight 0 is not a finite number above 0",
+            "the weight is 0.0, but must be a number from 1e-50 to 1e50",
+        ),
+        (
+            vec![0.1, 0.1, 1.0],
+            1e308,
+            "the weight is 1e308, but must be a number from 1e-50 to 1e50",
+        ),
+        (
+            vec![0.1, 0.1, 1.0],
+            1e-320,
+            "the weight is 1e-320, but must be a number from 1e-50 to 1e50",
         ),
     ] {
         let refusal = learner.add(&values, weight).unwrap_err();
@@ -315,6 +330,37 @@ fn bad_samples_are_refused_with_the_reason() {
     }
     assert_eq!(learner.samples(), 0);
     assert_eq!(learner.finish().model.rules, []);
+}
+
+/// Sums that overflowed gave every rule one consequent.
+#[test]
+fn equal_weights_give_the_rules_of_rows_without_weights() {
+    let rows = [
+        [0.02, 0.1, 90.0],
+        [0.1, 0.02, 70.0],
+        [0.11, 0.03, 20.0],
+        [0.45, 0.4, 3.0],
+    ];
+    for resolution in [Resolution::Heaviest, Resolution::Mean] {
+        let learned = |weight: f64| {
+            let settings = Settings {
+                resolution,
+                complete: true,
+                monotone: vec![("margin".into(), Direction::Falling)],
+                ..Settings::default()
+            };
+            let mut learner = Learner::new(&variables(), settings).unwrap();
+            for row in rows {
+                learner.add(&row, weight).unwrap();
+            }
+            let rules = learner.finish().model.rules;
+            rules.into_iter().map(|rule| rule.rule).collect::<Vec<_>>()
+        };
+        let plain = learned(1.0);
+        for weight in [1e50, 1e30, 1e-30, 1e-50] {
+            assert_eq!(learned(weight), plain, "{resolution:?} {weight}");
+        }
+    }
 }
 
 #[test]

@@ -311,7 +311,12 @@ fn syntax(text: &str, error: &ScanError) -> Box<Diagnostic> {
         Diagnostic::error(
             "yaml-syntax",
             span,
-            alloc::format!("invalid YAML: {}", error.kind()),
+            match error.kind() {
+                ErrorKind::RecursionLimitExceeded => {
+                    alloc::format!("lists and mappings are nested deeper than {DEEPEST}")
+                }
+                kind => alloc::format!("invalid YAML: {kind}"),
+            },
         )
         .help(help),
     )

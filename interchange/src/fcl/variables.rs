@@ -72,7 +72,7 @@ impl<'t> Reader<'_, 't> {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => "name it between `VAR_INPUT` and `END_VAR`".into(),
             };
-            let message = format!("`{name}` is no input");
+            let message = format!("`{name}` is not an input");
             self.draft.error("unknown-variable", name, message, &help);
             return self.skip("FUZZIFY");
         };

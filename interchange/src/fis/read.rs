@@ -156,7 +156,7 @@ fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
             Some((key, value)) if !rules => (key.trim(), value.trim()),
             _ if rules => ("", line),
             _ => {
-                let message = format!("`{line}` is no line of FIS");
+                let message = format!("`{line}` is not a line of FIS");
                 draft.error("fis-syntax", line, message, "each line reads `Key=value`");
                 continue;
             }
@@ -282,7 +282,7 @@ fn variable(
     spans.range = draft.span(range);
     let ends = bracketed(range);
     let [low, high] = ends[..] else {
-        let message = format!("`{range}` is no range");
+        let message = format!("`{range}` is not a range");
         draft.error("no-range", range, message, "write `Range=[0 10]`");
         return None;
     };

@@ -12,7 +12,7 @@ use crate::draft::Draft;
 /// Reads a rule into the model.
 pub(super) fn read(draft: &mut Draft<'_>, line: &str) {
     let Some(parts) = parts(line) else {
-        let message = format!("`{line}` is no rule");
+        let message = format!("`{line}` is not a rule");
         let help = "with two inputs and one output a rule reads `1 2, 1 (1) : 1`";
         draft.error("rule-syntax", line, message, help);
         return;
@@ -46,7 +46,10 @@ pub(super) fn read(draft: &mut Draft<'_>, line: &str) {
         }) {
             Ok(Some(named)) => {
                 if !named.hedges.is_empty() {
-                    let message = format!("`{word}` has a hedge in a conclusion");
+                    let message = match named.hedges.as_slice() {
+                        [Hedge::Not] => format!("`{word}` negates the term of a conclusion"),
+                        _ => format!("`{word}` has a hedge in a conclusion"),
+                    };
                     draft.loss(
                         "hedge-in-conclusion",
                         word,
@@ -88,7 +91,7 @@ pub(super) fn read(draft: &mut Draft<'_>, line: &str) {
         (_, "1") => Condition::And(conditions),
         (_, "2") => Condition::Or(conditions),
         (_, other) => {
-            let message = format!("`{other}` is no connective");
+            let message = format!("`{other}` is not a connective");
             draft.error(
                 "rule-syntax",
                 parts.connective,
@@ -183,7 +186,11 @@ fn proposition(
     let term = variable.terms.get((index as usize).saturating_sub(1));
     let Some(term) = term.map(|term| term.name.clone()) else {
         let help = format!("it has {} terms", variable.terms.len());
-        let message = format!("`{name}` has no term {index}");
+        let number = match index < 1e15 {
+            true => index.to_string(),
+            false => format!("{index:e}"),
+        };
+        let message = format!("`{name}` has no term {number}");
         draft.error("unknown-term", word, message, &help);
         return Err(());
     };

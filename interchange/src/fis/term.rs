@@ -20,7 +20,7 @@ pub(super) fn read(
         .split_once(':')
         .and_then(|(name, rest)| Some((name, rest.split_once(',')?)));
     let Some((name, (shape, parameters))) = parts else {
-        let message = format!("`{written}` is no term");
+        let message = format!("`{written}` is not a term");
         let help = "write `MF1='low':'trimf',[0 1 2]`";
         draft.error("no-term", written, message, help);
         return None;

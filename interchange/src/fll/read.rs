@@ -144,7 +144,7 @@ fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
             continue;
         }
         let Some((key, value)) = line.split_once(':') else {
-            let message = format!("`{line}` is no line of FLL");
+            let message = format!("`{line}` is not a line of FLL");
             let help = "each line reads `key: value`, and a comment begins with `#`";
             draft.error("fll-syntax", line, message, help);
             continue;
@@ -217,7 +217,7 @@ fn variable(
     spans.range = draft.span(range);
     let mut ends = range.split_whitespace();
     let (Some(low), Some(high), None) = (ends.next(), ends.next(), ends.next()) else {
-        let message = format!("`{range}` is no range");
+        let message = format!("`{range}` is not a range");
         draft.error(
             "no-range",
             range,
@@ -298,7 +298,7 @@ fn defuzzifier(draft: &mut Draft<'_>, written: &str, output: &mut Output) {
             });
         }
         Err(_) => {
-            let message = format!("`{part}` is no number of samples");
+            let message = format!("`{part}` is not a number of samples");
             let help = "write `defuzzifier: Centroid 100`";
             draft.error("no-samples", part, message, help);
         }

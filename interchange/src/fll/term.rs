@@ -21,7 +21,7 @@ pub(super) fn read(
     match written.split_once(char::is_whitespace) {
         Some((name, shape)) => of_shape(draft, name, shape.trim(), inputs, own),
         None => {
-            let message = format!("`{written}` is no term");
+            let message = format!("`{written}` is not a term");
             let help = "write a name, a shape and its parameters: `term: low Triangle 0 1 2`";
             draft.error("no-term", written, message, help);
             None

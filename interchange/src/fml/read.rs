@@ -31,14 +31,8 @@ pub(super) const HEDGES: [(&str, Hedge); 6] = [
 
 pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
     let mut draft = Draft::new(text, losses);
-    if let Some(part) = too_many_attributes(text) {
-        let message = format!("an element has more than {MOST_ATTRIBUTES} attributes");
-        draft.error(
-            "too-large",
-            part,
-            message,
-            "elements of FML have fewer than ten",
-        );
+    if let Some((part, message, help)) = too_large(text) {
+        draft.error("too-large", part, message, help);
         return draft.finish();
     }
     let document = match roxmltree::Document::parse(text) {
@@ -49,7 +43,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
                 .lines()
                 .nth(at.row.saturating_sub(1) as usize)
                 .unwrap_or_default();
-            let message = format!("this is no XML: {error}").to_lowercase();
+            let message = format!("this is not XML: {error}").to_lowercase();
             draft.error("xml-syntax", line, message, "mend the XML first");
             return draft.finish();
         }
@@ -77,24 +71,61 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
 /// Attributes of an element: each is compared with those before it.
 const MOST_ATTRIBUTES: usize = 1000;
 
-/// The start of the first element that has too many attributes.
-fn too_many_attributes(text: &str) -> Option<&str> {
+/// Declarations of namespaces: each element that has one copies those of the elements around it.
+const MOST_NAMESPACES: usize = 100;
+
+/// Elements in each other.
+const DEEPEST_ELEMENTS: usize = 256;
+
+/// The start of the first element at which a document is larger than these bounds, the message and the help. Looks at the text
+/// alone, before the XML library takes it apart.
+fn too_large(text: &str) -> Option<(&str, String, &'static str)> {
     let mut reader = quick_xml::Reader::from_str(text);
+    reader.config_mut().check_end_names = false;
+    let (mut namespaces, mut depth) = (0, 0_usize);
     loop {
         let start = usize::try_from(reader.buffer_position()).ok()?;
         // What is not XML is an error of the parser behind this.
-        match reader.read_event().ok()? {
-            Event::Start(element) | Event::Empty(element) => {
-                let mut attributes = element.attributes();
-                let attributes = attributes.with_checks(false);
-                if attributes.take(MOST_ATTRIBUTES + 1).count() > MOST_ATTRIBUTES {
-                    let name = text.get(start..)?;
-                    return name.split_whitespace().next();
-                }
+        let (element, is_open) = match reader.read_event().ok()? {
+            Event::Start(element) => (element, true),
+            Event::Empty(element) => (element, false),
+            Event::End(_) => {
+                depth = depth.saturating_sub(1);
+                continue;
             }
             Event::Eof => return None,
-            _ => {}
+            _ => continue,
+        };
+        let mut attributes = 0;
+        for attribute in element.attributes().with_checks(false) {
+            attributes += 1;
+            let is_namespace = |key: &[u8]| key == b"xmlns" || key.starts_with(b"xmlns:");
+            namespaces += usize::from(attribute.is_ok_and(|one| is_namespace(one.key.as_ref())));
+            if attributes > MOST_ATTRIBUTES {
+                break;
+            }
         }
+        let (message, help) = if attributes > MOST_ATTRIBUTES {
+            (
+                format!("an element has more than {MOST_ATTRIBUTES} attributes"),
+                "elements of FML have fewer than ten",
+            )
+        } else if namespaces > MOST_NAMESPACES {
+            (
+                format!("there are more than {MOST_NAMESPACES} declarations of namespaces"),
+                "FML needs one, of its root element; remove the `xmlns` attributes of others",
+            )
+        } else if depth >= DEEPEST_ELEMENTS {
+            (
+                format!("elements are nested deeper than {DEEPEST_ELEMENTS}"),
+                "elements of FML are nested about six deep",
+            )
+        } else {
+            depth += usize::from(is_open);
+            continue;
+        };
+        let part = text.get(start..)?.split_whitespace().next()?;
+        return Some((part, message, help));
     }
 }
 

@@ -291,6 +291,48 @@ fn the_pages_in_c_run() {
     }
 }
 
+/// With one name for both, the size of the profile that was included last would count.
+#[test]
+fn two_profiles_in_one_program_have_memory_sizes_of_their_own() {
+    let folder = Folder::new();
+    for profile in ["flagred", "flagred-paper"] {
+        let status = flagred()
+            .args(["export", "--c", profile, "--output"])
+            .arg(folder.at(&format!("{profile}-plan.h")))
+            .status();
+        assert!(status.unwrap().success());
+    }
+    let header = Path::new(env!("CARGO_MANIFEST_DIR")).join("../bindings/c/include");
+    let compiles = |text: &str| {
+        let cc = Command::new("cc")
+            .args([
+                "-std=c11",
+                "-Wall",
+                "-Wextra",
+                "-Werror",
+                "-Wno-unused",
+                "-fsyntax-only",
+            ])
+            .arg("-I")
+            .arg(&header)
+            .arg(folder.file("program.c", text))
+            .output();
+        cc.unwrap().status.success()
+    };
+    let include = |file: &str| format!("#include \"{}\"\n", folder.at(file));
+    let one = include("flagred-plan.h");
+    let both = one.clone() + &include("flagred-paper-plan.h");
+    let memory = |name: &str| format!("static unsigned char of_{name}[{name}(4)];\n");
+    let own = [
+        "FLAGRED_PLAN_FLAGRED_MEMORY",
+        "FLAGRED_PLAN_FLAGRED_PAPER_MEMORY",
+    ]
+    .map(memory);
+    assert!(compiles(&(one + &own[0] + &memory("FLAGRED_MEMORY"))));
+    assert!(compiles(&(both.clone() + &own.concat())));
+    assert!(!compiles(&(both + &memory("FLAGRED_MEMORY"))));
+}
+
 #[test]
 fn mistakes_in_c_are_told_and_nothing_is_written() {
     let (mut program, _folder) = program("tests/c/mistakes.c", "mistakes", FLAGRED);

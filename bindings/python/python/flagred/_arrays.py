@@ -27,7 +27,7 @@ def array(value: Any) -> NDArray[np.float64]:
     except DataError:
         raise
     except (TypeError, ValueError) as error:
-        raise DataError(f"an array of objects holds something that is no number: {error}") from None
+        raise DataError(f"an array of objects holds something that is not a number: {error}") from None
 
 
 def alike(values: list[Any]) -> list[NDArray[np.float64]]:

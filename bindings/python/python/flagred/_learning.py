@@ -324,7 +324,7 @@ def _rows(
     renamed = dict(columns or {})
     for name in renamed:
         if name not in names:
-            raise DataError(f"`columns` names `{name}`, which is no variable of the rule set")
+            raise DataError(f"`columns` names `{name}`, which is not a variable of the rule set")
     data = table_of(data)
     found = [array(column_of(data, renamed.get(name, name))) for name in names]
     weights = None if weight is None else array(column_of(data, weight))

@@ -92,7 +92,7 @@ def simplify(
     renamed = dict(columns or {})
     for name in renamed:
         if name not in names:
-            raise DataError(f"`columns` names `{name}`, which is no input of the rule set")
+            raise DataError(f"`columns` names `{name}`, which is not an input of the rule set")
     rows = []
     if data is not None:
         data = table_of(data)

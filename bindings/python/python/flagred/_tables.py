@@ -28,7 +28,7 @@ def column_names(data: Any) -> list[str]:
         return [str(name) for name in data.columns]
     if hasattr(data, "keys"):
         return [str(name) for name in data.keys()]
-    raise DataError(f"`{type(data).__name__}` is no table\n  help: give a frame, or a dict of columns by their names")
+    raise DataError(f"`{type(data).__name__}` is not a table\n  help: give a frame, or a dict of columns by their names")
 
 
 def column_of(data: Any, name: str) -> Any:

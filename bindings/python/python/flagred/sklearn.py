@@ -142,7 +142,7 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
             known = list(getattr(self, "feature_names_in_", names))
             for name in given:
                 if name not in known:
-                    raise ValueError(f"monotonic_cst names {name!r}, which is no feature")
+                    raise ValueError(f"monotonic_cst names {name!r}, which is not a feature")
             signs = [given.get(name, 0) for name in known]
         else:
             signs = list(given)

@@ -107,7 +107,7 @@ fn shipped_text(name: &str) -> Result<String, JsError> {
     found.map(|known| known.text.to_owned()).ok_or_else(|| {
         let names = shipped::profile_names().join(", ");
         let help = format!("shipped profiles are {names}");
-        failure(format!("`{name}` is no shipped profile"), Some(&help))
+        failure(format!("`{name}` is not a built-in profile"), Some(&help))
     })
 }
 

@@ -44,7 +44,7 @@ pub fn export(text: &str, format: &str, lossy: bool) -> Result<String, JsError> 
     let known = formats.find(|known| known.name() == format);
     let known = known.ok_or_else(|| {
         let help = Format::ALL.map(Format::name).join(", ");
-        failure(format!("`{format}` is no format"), Some(&help))
+        failure(format!("`{format}` is not a format"), Some(&help))
     })?;
     let document = interchange::document(text).map_err(refused)?;
     match interchange::write(&document.model, known, losses(lossy)) {

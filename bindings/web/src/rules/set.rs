@@ -225,7 +225,10 @@ impl RuleSet {
                 .ok_or_else(|| failure("a surface needs two inputs, and one is left", None)),
             _ => {
                 let help = "there are `map`, `surface` and `rules`";
-                Err(failure(format!("`{kind}` is no picture"), Some(help)))
+                Err(failure(
+                    format!("`{kind}` is not a kind of picture"),
+                    Some(help),
+                ))
             }
         }
     }

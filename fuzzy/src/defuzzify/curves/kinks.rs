@@ -27,7 +27,7 @@ impl Curves {
         joint: Joint,
         workspace: &mut Workspace,
     ) -> bool {
-        let parts = &mut workspace.parts;
+        let (parts, steps) = (&mut workspace.parts, &mut workspace.steps);
         workspace.cuts.clear();
         let active = |term: usize| strengths.of(term).iter().any(|h| *h > 0.0);
         for &(x, term) in &self.cuts {
@@ -41,12 +41,25 @@ impl Curves {
             is_full: false,
             between: (0.0, 0.0),
         };
-        cuts.each_stretch(|cuts, _| self.levels(strengths, joint.implication, cuts));
+        cuts.each_stretch(|cuts, _| {
+            if steps.take(2 * strengths.strengths.len()) {
+                self.levels(strengths, joint.implication, cuts);
+            }
+        });
         let all_known = !cuts.is_full && !self.has_formula;
         // Between the levels each activated term is smooth.
         cuts.each_stretch(|cuts, stretch| {
+            if !steps.take(strengths.strengths.len()) {
+                return;
+            }
             self.parts(strengths, joint.implication, stretch, all_known, parts);
-            self.crossings(parts, joint.aggregation, cuts);
+            let pairs = match joint.aggregation {
+                Aggregation::Maximum | Aggregation::NilpotentMaximum => parts.len(),
+                _ => 1,
+            };
+            if steps.take(2 * pairs * parts.len()) {
+                self.crossings(parts, joint.aggregation, cuts);
+            }
         });
         !cuts.is_full && !self.has_formula
     }

@@ -46,13 +46,15 @@ class Listing:
             A folder cannot be listed.
         """
         if not _is_utf8(root):
-            raise FleetError(f"the name of `{ascii(root)[1:-1]}` is not UTF-8", "rename the folder")
+            shown = os.fsencode(root).decode(errors="backslashreplace")
+            raise FleetError(f"the name of `{shown}` is not UTF-8", f"rename the {'folder' if os.path.isdir(root) else 'file'}")
         try:
             found = os.stat(root)
         except FileNotFoundError as error:
             raise FleetError(f"there is no `{root}`", "the folder must exist") from error
         if stat.S_ISREG(found.st_mode):
-            yield _log(root, found)
+            if found.st_nlink == 1 or self._is_new(found):
+                yield _log(root, found)
         elif stat.S_ISDIR(found.st_mode):
             yield from self._folder(root)
         else:
@@ -90,10 +92,14 @@ class Listing:
             return False
         if not entry.is_symlink() and found.st_nlink == 1:
             return True
+        return self._is_new(found)
+
+    def _is_new(self, found: os.stat_result) -> bool:
+        """Whether a file with several names was not listed yet."""
         file = (found.st_dev, found.st_ino)
-        is_first = file not in self._linked
+        is_new = file not in self._linked
         self._linked.add(file)
-        return is_first
+        return is_new
 
 
 def _is_utf8(name: str) -> bool:
