@@ -18,6 +18,9 @@ pub use assessment::{Assessment, Peak, Step, Summary};
 mod finding;
 pub use finding::{Cause, Finding};
 
+mod loss;
+use loss::Losses;
+
 mod verdict;
 pub use verdict::{Reason, Verdict};
 
@@ -28,9 +31,6 @@ pub use serialize::Steps;
 
 /// The least share of the time in the air in which the risk must be known for a verdict of GOOD.
 const KNOWN_SHARE: f64 = 0.5;
-/// The largest share of the time in the air without the command of a motor, and of samples that were ignored for their times,
-/// for a verdict of GOOD: what is unknown for longer, however often it is known in between, can hide a FAIL.
-const LOST_SHARE: f64 = 1.0 / 16.0;
 
 /// Findings that are kept of a flight, the gravest.
 const MOST_FINDINGS: usize = 1000;
@@ -113,13 +113,7 @@ struct Flight {
     saturated: u64,
     /// For how long the risk was unknown, by reason.
     unknown: Vec<(Unknown, f64)>,
-    /// The latest and the longest time in the air without the command of a motor, and all of them as one.
-    motor_lost: [Option<MotorLost>; 3],
-    /// When the clock went back in the air.
-    set_back_s: Option<f64>,
-    /// Samples in the air that were taken, and those that were ignored for their times.
-    taken: u64,
-    ignored: u64,
+    losses: Losses,
     /// Judged risks that a landing would still take back, in order of time.
     pending: VecDeque<Pending>,
 }
@@ -129,56 +123,6 @@ struct Flight {
 struct Last {
     t_s: f64,
     in_air: bool,
-}
-
-/// A time in the air in which the command of a motor was unknown.
-#[derive(Debug, Clone, Copy)]
-struct MotorLost {
-    /// The first, counted from 0.
-    motor: usize,
-    /// Whether others were unknown, too.
-    others: bool,
-    /// Where it is far outside [0, 1].
-    command: Option<f64>,
-    from_s: f64,
-    to_s: f64,
-    unknown_s: f64,
-    /// For how much longer it was unknown than known in between.
-    lost_s: f64,
-}
-
-impl MotorLost {
-    fn reason(&self) -> Reason {
-        Reason::MotorUnknown {
-            motor: self.motor + 1,
-            others: self.others,
-            command: self.command,
-            from_s: self.from_s,
-            to_s: self.to_s,
-            unknown_s: self.unknown_s,
-        }
-    }
-
-    /// The command of a motor was unknown once more, for so long until `t_s`.
-    fn add(
-        lost: &mut Option<MotorLost>,
-        (motor, command): (usize, Option<f64>),
-        (t_s, held_s): (f64, f64),
-    ) {
-        let lost = lost.get_or_insert(MotorLost {
-            motor,
-            others: false,
-            command,
-            from_s: t_s - held_s,
-            to_s: t_s,
-            unknown_s: 0.0,
-            lost_s: 0.0,
-        });
-        lost.others |= lost.motor != motor;
-        lost.to_s = t_s;
-        lost.unknown_s += held_s;
-        lost.lost_s += held_s;
-    }
 }
 
 /// A judged risk, or several at nearly the same time.
@@ -222,10 +166,10 @@ impl Assessor {
         let update = self.monitor.push(sample);
         self.keep_findings(update.ended);
         if update.risk == Err(Unknown::OutOfOrder) {
-            let before_s = self.flight.last.map_or(f64::NAN, |last| last.t_s);
-            // Of two samples at one time the first counts.
-            let counts = sample.t_s != before_s && !sample.is_on_ground();
-            self.flight.ignored += u64::from(counts);
+            let is_repeated = self.flight.last.is_some_and(|last| last.t_s == sample.t_s);
+            if !is_repeated && !sample.is_on_ground() {
+                self.flight.losses.ignore_sample();
+            }
         } else {
             let profile = self.monitor.estimator().profile();
             let elsewhere = self.monitor.unknown_elsewhere();
@@ -337,10 +281,7 @@ impl Flight {
             motor_samples: 0,
             saturated: 0,
             unknown: Vec::new(),
-            motor_lost: [None; 3],
-            set_back_s: None,
-            taken: 0,
-            ignored: 0,
+            losses: Losses::default(),
             pending: VecDeque::new(),
         }
     }
@@ -360,7 +301,7 @@ impl Flight {
         });
         let last = last.filter(|last| last.in_air);
         if let Some(last) = last.filter(|last| last.t_s > t_s) {
-            self.set_back_s.get_or_insert(last.t_s);
+            self.losses.set_clock_back(last.t_s);
         }
         let flown_s = last.map_or(0.0, |last| {
             let held_s = (t_s - last.t_s).max(0.0);
@@ -378,13 +319,12 @@ impl Flight {
             }
             return;
         }
-        self.taken += 1;
         let commands = sample.motors.iter().map(|command| counted(*command));
         for e in commands.filter(|e| e.is_finite()) {
             self.motor_samples += 1;
             self.saturated += u64::from(margin(e) < SATURATED_MARGIN);
         }
-        self.follow_motors(unknown.clone(), t_s, flown_s);
+        self.losses.take_sample(unknown.clone(), t_s, flown_s);
         if unknown.clone().next().is_none() {
             self.summary.assessed_s += flown_s;
         }
@@ -416,29 +356,6 @@ impl Flight {
         match known.find(|(known, _)| is_same(known, &reason)) {
             Some((_, total_s)) => *total_s += flown_s,
             None => self.unknown.push((reason, flown_s)),
-        }
-    }
-
-    /// Adds up the time without a motor; known time in between is taken off, so that single damaged samples never add up.
-    fn follow_motors(&mut self, mut unknown: impl Iterator<Item = Unknown>, t_s: f64, held_s: f64) {
-        let [latest, longest, all] = &mut self.motor_lost;
-        let of_motor = unknown.find_map(|reason| match reason {
-            Unknown::NoCommand { motor } => Some((motor, None)),
-            Unknown::CommandOutside { motor, command } => Some((motor, Some(command))),
-            _ => None,
-        });
-        let Some(of_motor) = of_motor else {
-            if let Some(lost) = latest {
-                lost.lost_s -= held_s;
-            }
-            *latest = latest.filter(|lost| lost.lost_s > 0.0);
-            return;
-        };
-        MotorLost::add(all, of_motor, (t_s, held_s));
-        MotorLost::add(latest, of_motor, (t_s, held_s));
-        let lost_s = |of: &Option<MotorLost>| of.map_or(0.0, |of| of.lost_s);
-        if longest.is_none() || lost_s(latest) > lost_s(longest) {
-            *longest = *latest;
         }
     }
 
@@ -539,18 +456,9 @@ impl Flight {
         let knows_enough =
             summary.assessed_s > 0.0 && summary.assessed_s >= KNOWN_SHARE * summary.in_air_s;
         let gravest = self.findings.first().map(|finding| finding.level);
-        let [_, longest, all] = self.motor_lost;
-        let longest_gap_s = profile.sampling.longest_gap_s;
-        let share_s = LOST_SHARE * summary.in_air_s;
-        let lost = longest
-            .filter(|lost| lost.lost_s > longest_gap_s)
-            .or(all.filter(|lost| lost.unknown_s > share_s));
-        let ignored = self.ignored as f64 > LOST_SHARE * (self.taken + self.ignored) as f64;
-        let of_clock = self.set_back_s.map(|at_s| Reason::SetBackInAir { at_s });
-        let of_clock = of_clock.or(ignored.then_some(Reason::SamplesIgnored {
-            ignored: self.ignored,
-        }));
-        let lost = of_clock.or(lost.map(|lost| lost.reason()));
+        let lost = self
+            .losses
+            .reason(summary.in_air_s, profile.sampling.longest_gap_s);
         match (gravest.filter(|level| *level > Level::Info), lost) {
             (Some(gravest), _) => Verdict::Known(gravest),
             (None, Some(lost)) => Verdict::NotAvailable(lost),

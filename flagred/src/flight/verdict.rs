@@ -89,7 +89,7 @@ pub enum Reason {
     },
     /// The command of a motor was unknown in the air for longer than the profile's `longest_gap_s`, or for more than a sixteenth
     /// of the time.
-    #[error("{}", self.motor_unknown())]
+    #[error("{}", motor_unknown((.motor, .others), .command, (.from_s, .to_s), .unknown_s))]
     MotorUnknown {
         /// The number of the motor, the first of several.
         motor: usize,
@@ -130,34 +130,28 @@ pub enum Reason {
     NoMotorOutputs,
 }
 
-impl Reason {
-    fn motor_unknown(&self) -> String {
-        let Reason::MotorUnknown {
-            motor,
-            others,
-            command,
-            from_s,
-            to_s,
-            unknown_s,
-        } = self
-        else {
-            return String::new();
-        };
-        let whose = match others {
-            true => format!("the command of motor {motor}, then of others,"),
-            false => format!("the command of motor {motor}"),
-        };
-        let why = match command {
-            Some(command) => format!("is `{command}`, not a fraction from 0 to 1,"),
-            None => "is unknown".into(),
-        };
-        let when = match *unknown_s < 0.95 * (to_s - from_s) {
-            true => format!("for {unknown_s:.1} s between {from_s:.1} and {to_s:.1} s"),
-            false => format!("from {from_s:.1} to {to_s:.1} s"),
-        };
-        format!("{whose} {why} in the air {when}")
-    }
+fn motor_unknown(
+    (motor, others): (&usize, &bool),
+    command: &Option<f64>,
+    (from_s, to_s): (&f64, &f64),
+    unknown_s: &f64,
+) -> String {
+    let whose = match others {
+        true => format!("the command of motor {motor}, then of others,"),
+        false => format!("the command of motor {motor}"),
+    };
+    let why = match command {
+        Some(command) => format!("is `{command}`, not a fraction from 0 to 1,"),
+        None => "is unknown".into(),
+    };
+    let when = match *unknown_s < 0.95 * (to_s - from_s) {
+        true => format!("for {unknown_s:.1} s between {from_s:.1} and {to_s:.1} s"),
+        false => format!("from {from_s:.1} to {to_s:.1} s"),
+    };
+    format!("{whose} {why} in the air {when}")
+}
 
+impl Reason {
     /// What the pilot can do to get a verdict of the next flight.
     pub fn help(&self) -> Option<&'static str> {
         match self {
