@@ -286,7 +286,8 @@ pub struct Flight {
     pub utc_at_zero_s: Option<f64>,
     /// Times at which the autopilot booted again within the log; empty for one boot.
     pub boots_s: Vec<f64>,
-    /// The reboots in the air. The end of such a flight is not in the log.
+    /// The times in the air at which the clock starts again, as after a reboot, or is set back. What came after them may be
+    /// missing from the log.
     pub rebooted_in_air_s: Vec<f64>,
     /// Header lines of a CSV file as keys and values, in their order.
     pub header: Vec<(String, String)>,

@@ -102,9 +102,11 @@ impl Outputs {
         self.set_back.shift(by_s);
     }
 
-    /// The last times before the clock was set back, so that rows were dropped.
-    pub(crate) fn set_back_s(&self) -> Vec<f64> {
-        self.set_back.at_s().to_vec()
+    /// The times at which the clock started again, in order: these boots, and where it was set back so that rows were dropped.
+    pub(crate) fn restarts_s(&self, boots_s: &[f64]) -> Vec<f64> {
+        let mut restarts_s = [self.set_back.at_s(), boots_s].concat();
+        restarts_s.sort_by(f64::total_cmp);
+        restarts_s
     }
 
     /// Number of motors, where nothing else gives it: 4, 6 or 8 if that many of the first outputs,

@@ -201,7 +201,7 @@ pub(crate) const SET_BACK_S: f64 = 0.2;
 /// Times at which a clock was set back that are kept of a log.
 const MOST_SET_BACK: usize = 1000;
 
-/// Notices a clock that is set back: what is dropped for it is missing, and the times that are kept do not show that.
+/// Detects a clock that is set back. The rows that are dropped for it leave no gap in the times of the others.
 #[derive(Debug, Default)]
 pub(crate) struct SetBack {
     /// The time of the row before, where it was dropped.
@@ -210,7 +210,7 @@ pub(crate) struct SetBack {
 }
 
 impl SetBack {
-    /// Takes a row by its order and its time, with the last row that was kept before it.
+    /// Takes the order and the time of a row, and the time of the last row that was kept before it.
     pub(crate) fn see(&mut self, order: Order, t_s: f64, last_s: Option<&f64>) {
         if order != Order::Back {
             self.dropped_s = None;
@@ -226,7 +226,7 @@ impl SetBack {
         }
     }
 
-    /// The last times before the clock was set back.
+    /// The last time before each step back.
     pub(crate) fn at_s(&self) -> &[f64] {
         &self.at_s
     }

@@ -313,7 +313,7 @@ impl Rows {
                 if self.is_in_air() {
                     self.rebooted_in_air_s.push(self.last_s);
                 }
-                // Of a clock of 1e9 s and more the sum is rounded.
+                // For times of 1e9 s and more the sum is rounded.
                 Ok((t_s + self.offset_s).max(self.last_s))
             }
             None => Err("the time goes back".into()),

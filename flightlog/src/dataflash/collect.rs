@@ -294,9 +294,7 @@ impl<'o> Collector<'o> {
         flight.parameters = self.parameters.of_motors("PARM");
         let own = ardupilot::pwm_range(&self.parameters);
         flight.range = self.options.range_or_given(own);
-        let mut restarts_s = self.outputs.set_back_s();
-        restarts_s.extend(self.clock.boots_s());
-        restarts_s.sort_by(f64::total_cmp);
+        let restarts_s = self.outputs.restarts_s(self.clock.boots_s());
         flight.commands = self.outputs.commands(&outputs);
         let span_s = self.clock.first_s().zip(self.clock.now_s());
         let left_out = &mut self.report.left_out;

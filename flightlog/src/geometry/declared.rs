@@ -167,10 +167,10 @@ fn thrust_coefficients(parameters: &Parameters, count: u16) -> Vec<f64> {
 fn airframe_group(airframe: i64) -> Option<(i64, i64)> {
     use super::tables::{HEXA, OCTA, OCTAQUAD, PLUS, QUAD, X, Y6, Y6B};
     Some(match airframe {
-        // The wide frames are numbered as the others with an X.
-        4000..=4999 | 10_000..=10_043 | 10_045..=10_999 => (QUAD, X),
-        // PX4's own simulator.
+        // The hexacopter of PX4's own simulator.
         10_044 => (HEXA, X),
+        // The wide frames are numbered as the others with an X.
+        4000..=4999 | 10_000..=10_999 => (QUAD, X),
         5000..=5999 => (QUAD, PLUS),
         6000..=6999 => (HEXA, X),
         7000..=7999 => (HEXA, PLUS),

@@ -218,9 +218,7 @@ impl Heard {
             flight.range = Some(known.range);
             flight.assumed = known.assumed;
         }
-        let mut restarts_s = self.outputs.set_back_s();
-        restarts_s.extend(&flight.boots_s);
-        restarts_s.sort_by(f64::total_cmp);
+        let restarts_s = self.outputs.restarts_s(&flight.boots_s);
         flight.commands = self.outputs.commands(&outputs);
         self.series.sort_by_key(|(index, _)| *index);
         flight.series = preferred(self.series.into_iter().map(|(_, series)| series).collect());
