@@ -539,7 +539,7 @@ def test_a_part_that_is_missing_is_named_and_its_logs_are_read_again(kind, logs,
     if kind == "findings":
         assert main(["report", str(out), "-o", str(tmp_path / "fleet.html")]) == 3
         told = capsys.readouterr().err
-        assert "has no findings of `" in told and "help: run `assess` again" in told
+        assert "the findings of `" in told and "` are missing in `" in told and "help: run `assess` again" in told
     assert main(arguments) == 0
     assert f"warning: `{lost}` is missing" in capsys.readouterr().err
     assert content(out) == before

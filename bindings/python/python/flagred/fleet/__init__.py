@@ -15,14 +15,15 @@ try:
     from .schema import FINDINGS, FLIGHTS, STEPS, VERSION
     from .shards import Job, Shard
     from .storage import Log, open_place
-except ModuleNotFoundError as error:
-    if (error.name or "").partition(".")[0] not in ("bokeh", "dask", "distributed", "duckdb", "pyarrow"):
+except ModuleNotFoundError as _error:
+    if (_error.name or "").partition(".")[0] not in ("bokeh", "dask", "distributed", "duckdb", "pyarrow"):
         raise
-    missing = f"flagred.fleet needs `{error.name}`: pip install 'flagred[fleet]'"
-    if "-m" in sys.orig_argv and "flagred.fleet" in sys.orig_argv:
-        print(f"error: {missing}", file=sys.stderr)
+    _missing = f"flagred.fleet needs `{_error.name}`: pip install 'flagred[fleet]'"
+    # While Python looks for the module of `-m`, this stands for its path.
+    if sys.argv[:1] == ["-m"] and "flagred.fleet" in sys.orig_argv:
+        print(f"error: {_missing}", file=sys.stderr)
         sys.exit(2)
-    raise ModuleNotFoundError(missing, name=error.name) from None
+    raise ModuleNotFoundError(_missing, name=_error.name) from None
 
 __all__ = [
     "FINDINGS",

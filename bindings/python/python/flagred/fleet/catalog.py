@@ -93,8 +93,8 @@ class Catalog:
     def damaged(self, out: Place) -> dict[str, DamagedError]:
         """The files of ``flights`` that were taken in and whose steps or findings are torn or missing.
 
-        A flight with a risk has steps. Of flights that another row may replace nothing is missing: they are dropped out of steps and
-        findings first.
+        A flight with a risk has steps. Flights whose log has another row do not count: they may be half removed, since that begins with
+        steps and findings.
         """
         query = """
         SELECT DISTINCT n.name, a.kind FROM absent a JOIN file n ON n.id = a.file JOIN flight f USING(file)
@@ -191,7 +191,7 @@ class _Transaction:
 
 
 def _rows(out: Place, path: str) -> tuple[list[tuple[Any, ...]], list[str], DamagedError | None]:
-    """What of a file's flights the catalog knows, which other tables have no file of this name, and whether one is torn.
+    """The columns of a file's flights for the catalog, the tables that have no file of this name, and the error of one that is torn.
     Compaction bounds how many flights there are in a file."""
     with parquet(out, path) as file:
         version = (file.schema_arrow.metadata or {}).get(b"flagred.fleet", b"none").decode()

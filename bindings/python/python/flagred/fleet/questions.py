@@ -80,9 +80,9 @@ def _views(connection: Any, place: Place) -> None:
             )
             connection.register(kind, of)
     connection.execute(_parts()[0])
-    told = "SELECT log FROM flights WHERE findings > 0 AND flight_id NOT IN (SELECT flight_id FROM findings) ORDER BY log LIMIT 1"
-    if lost := connection.execute(told).fetchone():
-        raise DamagedError(f"`{place.shown(place.root)}` has no findings of `{lost[0]}`, which has some", "run `assess` again, which completes it")
+    missing = "SELECT log FROM flights WHERE findings > 0 AND flight_id NOT IN (SELECT flight_id FROM findings) ORDER BY log LIMIT 1"
+    if lost := connection.execute(missing).fetchone():
+        raise DamagedError(f"the findings of `{lost[0]}` are missing in `{place.shown(place.root)}`", "run `assess` again: it reads the log again")
 
 
 def _open(place: Place, path: str) -> None:
