@@ -63,7 +63,7 @@ fn read_profile(profile: &str, path: &Path) -> Result<String, Failure> {
 pub(crate) fn file_text(path: &Path) -> Result<String, Failure> {
     read_text(path).map_err(|failure| {
         let names = shipped::profile_names().join(", ");
-        failure.help(format!("shipped profiles are {names}"))
+        failure.help(format!("built-in profiles are {names}"))
     })
 }
 

@@ -177,7 +177,7 @@ impl Header {
     /// The place of a column that must be there; `help` says what else could be done.
     pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
         if name.is_empty() {
-            // Columns without a name in the header are not meant.
+            // A column without a name in the header cannot be requested.
             return Err(Failure::usage("a column must have a name").help(help));
         }
         if self.names.iter().filter(|column| *column == name).count() > 1 {

@@ -402,7 +402,6 @@ fn a_full_disk_keeps_no_other_output_from_being_written() {
     assert!(folder.path().join("moved.svg").exists());
 }
 
-/// Other rules, another range or another operator are not what was tuned.
 /// Numbers that the user fixed stay as they are, whatever a checkpoint has.
 #[test]
 fn a_checkpoint_with_other_fixed_numbers_is_refused() {
@@ -412,17 +411,17 @@ fn a_checkpoint_with_other_fixed_numbers_is_refused() {
         (
             &moved,
             &["--fix", "speed"][..],
-            "the checkpoint `best.yaml` moves `speed.fast`, which must stay: its at is 7 instead of 8",
+            "the checkpoint `best.yaml` changes `at` of `speed.fast` from 8 to 7, which must not change",
         ),
         (
             &moved,
             &["--only", "heat"],
-            "moves `speed.fast`, which must stay",
+            "changes `at` of `speed.fast` from 8 to 7, which must not change",
         ),
         (
             &weighted,
             &[],
-            "moves `rule 2`, which must stay: its weight is 0.5 instead of 1",
+            "changes `weight` of `rule 2` from 1 to 0.5, which must not change",
         ),
     ] {
         let arguments = [&["--checkpoint", "best.yaml", "--no-validation"], more].concat();
@@ -456,6 +455,7 @@ fn targets_that_leave_no_digit_of_the_loss_are_refused() {
     }
 }
 
+/// Other rules, another range or another operator are not what was tuned.
 #[test]
 fn a_checkpoint_that_differs_in_more_than_numbers_is_refused() {
     let rules = "  - IF heat IS cool THEN speed IS slow\n  - IF heat IS hot THEN speed IS fast\n";

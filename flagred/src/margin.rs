@@ -128,15 +128,15 @@ impl Range {
         ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
 
-    /// Whether a value can be a command: one that is farther outside than ten times the width of the range is a code, such as
-    /// 65535 for no value, and so is NaN.
+    /// Whether a value can be a command. A value that lies outside the range by more than ten times its width is a code, such as
+    /// 65535 for an unknown command; NaN is unknown, too.
     ///
     /// ```
     /// let pulse_us = flagred::margin::Range::new(1000.0, 2000.0).ok_or("low must be below high")?;
-    /// assert!(pulse_us.may_mean(0.0) && !pulse_us.may_mean(65535.0) && !pulse_us.may_mean(f64::NAN));
+    /// assert!(pulse_us.can_be_command(0.0) && !pulse_us.can_be_command(65535.0) && !pulse_us.can_be_command(f64::NAN));
     /// # Ok::<(), &str>(())
     /// ```
-    pub fn may_mean(&self, value: f64) -> bool {
+    pub fn can_be_command(&self, value: f64) -> bool {
         let most = 10.0 * (self.high - self.low);
         (self.low - most..=self.high + most).contains(&value)
     }

@@ -233,7 +233,7 @@ pub unsafe extern "C" fn flagred_push(
     let known = commands.iter().copied().chain(core::iter::repeat(f64::NAN));
     for (i, (effective, command)) in monitor.effective.iter_mut().zip(known).enumerate() {
         *effective = match monitor.limits.get(i) {
-            Some(limits) if limits.may_mean(command) => limits.fraction(command),
+            Some(limits) if limits.can_be_command(command) => limits.fraction(command),
             Some(_) => f64::NAN,
             None => command,
         };

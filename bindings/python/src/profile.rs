@@ -65,7 +65,7 @@ impl Profile {
             Ok(loaded) => Ok(Profile::new(name, loaded)),
             Err(LoadError::Read(error)) => {
                 let names = shipped::profile_names().join(", ");
-                let help = format!("shipped profiles are {names}");
+                let help = format!("built-in profiles are {names}");
                 Err(os_error(py, &error, name, Some(&help))?)
             }
             Err(LoadError::Findings {

@@ -151,7 +151,7 @@ def test_profiles(tmp_path):
     with pytest.raises(flagred.RuleSetError) as error:
         flagred.Profile(str(file))
     assert str(file) in str(error.value)
-    with pytest.raises(FileNotFoundError, match="shipped profiles are flagred, flagred-paper, flagred-battery"):
+    with pytest.raises(FileNotFoundError, match="built-in profiles are flagred, flagred-paper, flagred-battery"):
         flagred.Profile("none")
     file.write_text(flagred.loads(profile.rules_text).to_yaml(), encoding="utf-8")
     with pytest.raises(flagred.DataError, match="is a rule set, not a profile"):

@@ -56,7 +56,7 @@ test('what cannot be read is an error with the words of the command line', () =>
   };
   assert.throws(() => Flight.read('x.bin', broken), { message: '`x.bin` cannot be read: the disk is gone' });
   assert.throws(() => Flight.read('x.bin', () => 'no bytes'), { message: /gave no bytes/ });
-  assert.throws(() => Profile.named('nobody'), { message: '`nobody` is not a built-in profile\nhelp: shipped profiles are flagred, flagred-paper, flagred-battery' });
+  assert.throws(() => Profile.named('nobody'), { message: '`nobody` is not a built-in profile\nhelp: built-in profiles are flagred, flagred-paper, flagred-battery' });
   assert.throws(() => Profile.fromText('mine.yaml', 'flagred: 1\nnam: x\n'), { message: /mine.yaml:2/ });
 });
 

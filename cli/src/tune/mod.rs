@@ -262,7 +262,7 @@ fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failur
     }) = fixed
     {
         let message = format!(
-            "the checkpoint `{}` moves `{}`, which must stay: its {name} is {after} instead of {before}",
+            "the checkpoint `{}` changes `{name}` of `{}` from {before} to {after}, which must not change",
             path.display(),
             visible(&of)
         );

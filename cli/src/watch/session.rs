@@ -29,8 +29,9 @@ use tracked::{Tracked, Watch, tell};
 use trust::{Candidates, Proof, doubt_of};
 pub(crate) use trust::{Doubt, Doubts, Source, may_be_multirotor};
 
-/// Seconds between two heartbeats, and between two risks sent: so often that a link that loses a tenth shows one every second.
+/// Seconds between two heartbeats.
 const HEARTBEAT_S: f64 = 1.0;
+/// Seconds between two risks. At this rate one arrives every second over a link that loses a tenth of its packets.
 const RISK_S: f64 = 0.25;
 /// A vehicle that sends no motor commands for so long although they are requested gives way to another one.
 const PROOF_S: f64 = 5.0;

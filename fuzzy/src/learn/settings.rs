@@ -6,7 +6,7 @@ use core::ops::RangeInclusive;
 /// The weights that rows can have. Errors times weights, and their sums, would overflow or underflow beyond them.
 pub const WEIGHTS: RangeInclusive<f64> = 1e-50..=1e50;
 
-/// The message for a weight that is none of these: `wanted` is "a number", or what else can be written.
+/// The message for a weight outside [`WEIGHTS`]. `wanted` is "a number", or what else is accepted.
 #[doc(hidden)]
 #[must_use]
 pub fn bad_weight(weight: f64, wanted: &str) -> String {

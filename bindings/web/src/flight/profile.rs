@@ -106,7 +106,7 @@ fn shipped_text(name: &str) -> Result<String, JsError> {
     let found = PROFILES.iter().find(|known| known.name == name);
     found.map(|known| known.text.to_owned()).ok_or_else(|| {
         let names = shipped::profile_names().join(", ");
-        let help = format!("shipped profiles are {names}");
+        let help = format!("built-in profiles are {names}");
         failure(format!("`{name}` is not a built-in profile"), Some(&help))
     })
 }
