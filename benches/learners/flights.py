@@ -17,7 +17,7 @@ from sklearn.metrics import roc_auc_score
 from sklearn.model_selection import GroupKFold
 
 FLAGRED, DATA = sys.argv[1:]
-INPUTS = ["unsteady_now", "unsteady_lately", "throttle_activity", "load", "spread", "at_limit"]
+INPUTS = ["unsteady_now", "unsteady_lately", "throttle_activity", "swing_per_room", "at_limit"]
 CRITICAL_DEG = 5.0
 
 
@@ -45,7 +45,7 @@ def tuned(x, y, folder):
     rows, model = folder / "rows.csv", folder / "tuned.yaml"
     write(rows, [*INPUTS, "risk"], np.column_stack([x, y]))
     options = ["--loss", "log", "--weights", "--least-distance", "0.001", "--no-validation", "--force"]
-    flagred("tune", "rules/to-learn/flagred.yaml", rows, *options, "-o", model)
+    flagred("tune", "rules/flagred.yaml", rows, *options, "-o", model)
     return model
 
 

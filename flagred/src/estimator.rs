@@ -377,7 +377,7 @@ mod tests {
         motors.other_risks.clear();
         let motors = Estimator::new(&motors, model).unwrap();
         let default = shipped::flagred();
-        let known = [0.01, 0.02, 0.01, 0.6, 0.01, 0.1];
+        let known = [0.01, 0.02, 0.01, 0.3, 0.4, 0.1];
         let with = |battery: f64| [&known[..], &[battery]].concat();
         let risk = default.at(&known);
         assert!(risk.is_some());

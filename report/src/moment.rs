@@ -134,7 +134,7 @@ mod tests {
         assert!(moment["step"]["risk"].is_number());
         let rules = moment["rules"].as_array().unwrap();
         assert_eq!(rules[0]["rule"], moment["step"]["dominant_rule"]);
-        assert_eq!(moment["inputs"].as_array().unwrap().len(), 6);
+        assert_eq!(moment["inputs"].as_array().unwrap().len(), 5);
         let given = &moment["inputs"][0];
         let name = given["name"].as_str().unwrap();
         assert_eq!(given["given"], moment["step"]["inputs"][name]);

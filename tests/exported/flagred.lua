@@ -137,11 +137,13 @@ return load_all, 1000
 -- 
 -- -- The sum is nil where the commands are unknown.
 -- function read_commands()
---   local low_us, scale, command = low_us, scale, command
+--   -- Locals take fewer instructions.
+--   local low_us, scale, command, functions, channels = low_us, scale, command, functions, SRV_Channels
+--   local margin = margin
 --   local total = 0.0
 --   yaw_effort = has_geometry and 0.0 or nil
 --   for i = 1, motors do
---     local pwm = SRV_Channels:get_output_pwm(functions[i])
+--     local pwm = channels:get_output_pwm(functions[i])
 --     if not pwm then
 --       sum = nil
 --       yaw_effort = nil
@@ -161,14 +163,16 @@ return load_all, 1000
 --     end
 --   end
 --   sum = total
+--   local less_yaw, yaw_factor, yaw_effort = less_yaw, yaw_factor, yaw_effort
 --   for i = 1, motors do
---     less_yaw[i] = has_geometry and command[i] - yaw_factor[i] * yaw_effort or command[i]
+--     less_yaw[i] = yaw_effort and command[i] - yaw_factor[i] * yaw_effort or command[i]
 --   end
 -- end
 -- 
--- function deviation_of(list)
---   local mean, square = 0.0, 0.0
---   for i = 1, motors do
+-- -- `sum` is that of the list; nil adds it up.
+-- function deviation_of(list, sum)
+--   local mean, square = sum or 0.0, 0.0
+--   for i = 1, sum and 0 or motors do
 --     mean = mean + list[i]
 --   end
 --   mean = mean / motors
@@ -179,12 +183,8 @@ return load_all, 1000
 --   return sqrt(square / motors)
 -- end
 -- 
--- function mean_of(list)
---   local total = 0.0
---   for i = 1, motors do
---     total = total + list[i]
---   end
---   return total / motors
+-- function highest_of(list)
+--   return max(unpack(list, 1, motors))
 -- end
 -- 
 -- function share_of_below(list, limit)
@@ -201,7 +201,7 @@ return load_all, 1000
 -- 
 -- local PARAMETERS = {
 --   {"ENABLE", 1.0},
---   {"WARN", 66.0},
+--   {"WARN", 60.0},
 --   {"FAIL", 80.0},
 -- }
 -- 
@@ -480,12 +480,13 @@ return load_all, 1000
 -- new_window(2.0, 24)
 -- inputs[1] = new_row(windows[1], "spread") -- unsteady_now
 -- inputs[3] = new_row(windows[1], "spread") -- throttle_activity
+-- inputs[4] = new_row(windows[1], "spread") -- swing_per_room
 -- new_window(20.0, 130)
 -- inputs[2] = new_row(windows[2], "spread") -- unsteady_lately
+-- new_window(20.0, 130)
+-- inputs[5] = new_row(windows[3], "mean") -- room
 -- new_window(2.0, 70)
--- inputs[4] = new_row(windows[3], "mean") -- load
--- inputs[5] = new_row(windows[3], "mean") -- spread
--- inputs[6] = new_row(windows[3], "mean") -- at_limit
+-- inputs[6] = new_row(windows[4], "mean") -- at_limit
 -- risks = new_window(3.0, 104)
 -- new_row(risks, "spread")
 -- 
@@ -754,19 +755,18 @@ return load_all, 1000
 -- 
 -- -- The corners of the terms of inputs: value, degree, value, degree and so on.
 -- local TERMS = {
---   {0.0, 0.0, 0.5, 1.0}, -- at_limit much
---   {0.004, 1.0, 0.02, 0.0}, -- unsteady_now calm
---   {0.0, 1.0, 0.5, 0.0}, -- at_limit none
---   {0.02, 0.0, 0.05, 1.0}, -- unsteady_now violent
---   {0.008, 1.0, 0.02, 0.0}, -- unsteady_lately calm
---   {0.008, 0.0, 0.02, 1.0, 0.04, 0.0}, -- unsteady_lately gusty
---   {0.02, 0.0, 0.04, 1.0}, -- unsteady_lately stormy
---   {0.003, 1.0, 0.012, 0.0}, -- throttle_activity steady
---   {0.003, 0.0, 0.012, 1.0, 0.025, 0.0}, -- throttle_activity moving
---   {0.012, 0.0, 0.025, 1.0}, -- throttle_activity surging
---   {0.7, 0.0, 0.9, 1.0}, -- load heavy
---   {0.0012, 1.0, 0.04, 0.0}, -- spread even
---   {0.0012, 0.0, 0.04, 1.0}, -- spread uneven
+--   {0.0, 0.0, 0.35, 1.0}, -- at_limit much
+--   {0.01, 0.0, 0.03, 1.0}, -- unsteady_now violent
+--   {0.0, 1.0, 0.35, 0.0}, -- at_limit none
+--   {0.008, 1.0, 0.012, 0.0}, -- unsteady_lately calm
+--   {0.008, 0.0, 0.012, 1.0, 0.04, 0.0}, -- unsteady_lately gusty
+--   {0.012, 0.0, 0.04, 1.0}, -- unsteady_lately stormy
+--   {0.0012, 1.0, 0.008, 0.0}, -- throttle_activity steady
+--   {0.0012, 0.0, 0.008, 1.0, 0.03, 0.0}, -- throttle_activity moving
+--   {0.008, 0.0, 0.03, 1.0}, -- throttle_activity surging
+--   {0.05, 1.0, 0.3, 0.0}, -- swing_per_room small
+--   {0.05, 0.0, 0.3, 1.0, 1.0, 0.0}, -- swing_per_room moderate
+--   {0.3, 0.0, 1.0, 1.0}, -- swing_per_room large
 -- }
 -- local OUTPUT_TERMS = 5
 -- -- The areas of the output's terms, and their moments about the middle of its range.
@@ -780,43 +780,40 @@ return load_all, 1000
 --     strengths[term] = 0.0
 --   end
 --   local d = degrees
---   d[1] = along(TERMS[1], x[6]) -- at_limit much
---   d[2] = along(TERMS[2], x[1]) -- unsteady_now calm
---   d[3] = along(TERMS[3], x[6]) -- at_limit none
---   d[4] = along(TERMS[4], x[1]) -- unsteady_now violent
---   d[5] = along(TERMS[5], x[2]) -- unsteady_lately calm
---   d[6] = along(TERMS[6], x[2]) -- unsteady_lately gusty
---   d[7] = along(TERMS[7], x[2]) -- unsteady_lately stormy
---   d[8] = along(TERMS[8], x[3]) -- throttle_activity steady
---   d[9] = along(TERMS[9], x[3]) -- throttle_activity moving
---   d[10] = along(TERMS[10], x[3]) -- throttle_activity surging
---   d[11] = along(TERMS[11], x[4]) -- load heavy
---   d[12] = along(TERMS[12], x[5]) -- spread even
---   d[13] = along(TERMS[13], x[5]) -- spread uneven
+--   d[1] = along(TERMS[1], x[5]) -- at_limit much
+--   d[2] = along(TERMS[2], x[1]) -- unsteady_now violent
+--   d[3] = along(TERMS[3], x[5]) -- at_limit none
+--   d[4] = along(TERMS[4], x[2]) -- unsteady_lately calm
+--   d[5] = along(TERMS[5], x[2]) -- unsteady_lately gusty
+--   d[6] = along(TERMS[6], x[2]) -- unsteady_lately stormy
+--   d[7] = along(TERMS[7], x[3]) -- throttle_activity steady
+--   d[8] = along(TERMS[8], x[3]) -- throttle_activity moving
+--   d[9] = along(TERMS[9], x[3]) -- throttle_activity surging
+--   d[10] = along(TERMS[10], x[4]) -- swing_per_room small
+--   d[11] = along(TERMS[11], x[4]) -- swing_per_room moderate
+--   d[12] = along(TERMS[12], x[4]) -- swing_per_room large
 --   -- IF at_limit IS much THEN risk IS very_high
 --   fire(1, 5, d[1])
---   -- IF unsteady_now IS calm AND at_limit IS none THEN risk IS very_low WITH 0.5
---   fire(2, 1, 0.5 * d[2] * d[3])
 --   -- IF unsteady_now IS violent AND at_limit IS none THEN risk IS very_high
---   fire(3, 5, d[4] * d[3])
---   -- IF unsteady_lately IS calm AND at_limit IS none THEN risk IS very_low WITH 0.2
---   fire(4, 1, 0.2 * d[5] * d[3])
---   -- IF unsteady_lately IS gusty AND at_limit IS none THEN risk IS medium
---   fire(5, 3, d[6] * d[3])
---   -- IF unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_high
---   fire(6, 5, d[7] * d[3])
---   -- IF throttle_activity IS steady AND at_limit IS none THEN risk IS very_low WITH 0.35
---   fire(7, 1, 0.35 * d[8] * d[3])
---   -- IF throttle_activity IS moving AND at_limit IS none THEN risk IS medium WITH 0.1
---   fire(8, 3, 0.1 * d[9] * d[3])
---   -- IF throttle_activity IS surging AND at_limit IS none THEN risk IS high WITH 0.5
---   fire(9, 4, 0.5 * d[10] * d[3])
---   -- IF load IS heavy AND at_limit IS none THEN risk IS high WITH 0.35
---   fire(10, 4, 0.35 * d[11] * d[3])
---   -- IF spread IS even AND at_limit IS none THEN risk IS low WITH 0.7
---   fire(11, 2, 0.7 * d[12] * d[3])
---   -- IF spread IS uneven AND at_limit IS none THEN risk IS very_high WITH 0.1
---   fire(12, 5, 0.1 * d[13] * d[3])
+--   fire(2, 5, d[2] * d[3])
+--   -- IF unsteady_lately IS calm AND at_limit IS none THEN risk IS very_low WITH 0.58
+--   fire(3, 1, 0.58 * d[4] * d[3])
+--   -- IF unsteady_lately IS gusty AND at_limit IS none THEN risk IS low WITH 0.58
+--   fire(4, 2, 0.58 * d[5] * d[3])
+--   -- IF unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_high WITH 0.58
+--   fire(5, 5, 0.58 * d[6] * d[3])
+--   -- IF throttle_activity IS steady AND at_limit IS none THEN risk IS very_low WITH 0.41
+--   fire(6, 1, 0.41 * d[7] * d[3])
+--   -- IF throttle_activity IS moving AND at_limit IS none THEN risk IS medium WITH 0.2
+--   fire(7, 3, 0.2 * d[8] * d[3])
+--   -- IF throttle_activity IS surging AND at_limit IS none THEN risk IS high WITH 0.41
+--   fire(8, 4, 0.41 * d[9] * d[3])
+--   -- IF swing_per_room IS small AND at_limit IS none THEN risk IS very_low WITH 0.58
+--   fire(9, 1, 0.58 * d[10] * d[3])
+--   -- IF swing_per_room IS moderate AND at_limit IS none THEN risk IS medium WITH 0.58
+--   fire(10, 3, 0.58 * d[11] * d[3])
+--   -- IF swing_per_room IS large AND at_limit IS none THEN risk IS very_high WITH 0.58
+--   fire(11, 5, 0.58 * d[12] * d[3])
 --   local area, moment = 0.0, 0.0
 --   for term = 1, OUTPUT_TERMS do
 --     area = area + strengths[term] * AREAS[term]
@@ -834,9 +831,8 @@ return load_all, 1000
 --   point[1] = max(0.0, min(0.5, value[1]))
 --   point[2] = max(0.0, min(0.5, value[2]))
 --   point[3] = max(0.0, min(0.5, value[3]))
---   point[4] = max(0.0, min(1.0, value[4]))
---   point[5] = max(0.0, min(0.5, value[5]))
---   point[6] = max(0.0, min(1.0, value[6]))
+--   point[4] = max(0.0, min(10.0, value[4]))
+--   point[5] = max(0.0, min(1.0, value[6]))
 --   local risk = by_rules(point)
 --   return risk and max(0.0, min(100.0, risk))
 -- end
@@ -849,17 +845,20 @@ return load_all, 1000
 -- function observe()
 --   local inputs, value, windows = inputs, value, windows
 --   local deviation_of_less_yaw = sum and deviation_of(less_yaw) or nil
---   local mean_of_command = sum and mean_of(command) or nil
+--   local mean_command = sum and sum / motors or nil
+--   local deviation_of_command = sum and deviation_of(command, sum) or nil
+--   local least_room = sum and 1 - highest_of(command) or nil
 --   local share_of_below_margin_0_005999 = sum and share_of_below(margin, 0.005999) or nil
 --   inputs[1].x = deviation_of_less_yaw -- unsteady_now
 --   inputs[2].x = deviation_of_less_yaw -- unsteady_lately
---   inputs[3].x = mean_of_command -- throttle_activity
---   inputs[4].x = mean_of_command -- load
---   inputs[5].x = deviation_of_less_yaw -- spread
+--   inputs[3].x = mean_command -- throttle_activity
+--   inputs[4].x = deviation_of_command -- swing_per_room
+--   inputs[5].x = least_room -- room
 --   inputs[6].x = share_of_below_margin_0_005999 -- at_limit
 --   take_bin(windows[1])
 --   take_bin(windows[2])
 --   take_sample(windows[3], held_s)
+--   take_sample(windows[4], held_s)
 -- end
 -- 
 -- -- The seconds that are known of a window and the share of its oldest slot that has left it; nil where too little is known.
@@ -882,17 +881,20 @@ return load_all, 1000
 --   total, out = enough(window)
 --   value[1] = total and deviation(window, inputs[1], total, out) -- unsteady_now
 --   value[3] = total and deviation(window, inputs[3], total, out) -- throttle_activity
+--   value[4] = total and deviation(window, inputs[4], total, out) -- swing_per_room
 --   window = windows[2]
 --   total, out = enough(window)
 --   value[2] = total and deviation(window, inputs[2], total, out) -- unsteady_lately
 --   window = windows[3]
 --   total, out = enough(window)
---   value[4] = total and read_row(window, inputs[4], total, out) -- load
---   value[5] = total and read_row(window, inputs[5], total, out) -- spread
+--   value[5] = total and read_row(window, inputs[5], total, out) -- room
+--   window = windows[4]
+--   total, out = enough(window)
 --   value[6] = total and read_row(window, inputs[6], total, out) -- at_limit
 --   all = all and value[1]
 --   all = all and value[2]
 --   all = all and value[3]
+--   value[4] = value[4] and value[3] and value[5] and (value[4] + value[3]) / max(value[5], 0.02)
 --   all = all and value[4]
 --   all = all and value[5]
 --   all = all and value[6]
@@ -904,19 +906,18 @@ return load_all, 1000
 -- -- What each rule is about: the area and the centre of its consequent, an input and a term, whether motors are at a limit.
 -- CAUSES = {
 --   {5.0, 95.0, "at_limit", "much", true}, -- 1
---   {5.0, 5.0, "unsteady_now", "calm", false}, -- 2
---   {5.0, 95.0, "unsteady_now", "violent", false}, -- 3
---   {5.0, 5.0, "unsteady_lately", "calm", false}, -- 4
---   {5.0, 50.0, "unsteady_lately", "gusty", false}, -- 5
---   {5.0, 95.0, "unsteady_lately", "stormy", false}, -- 6
---   {5.0, 5.0, "throttle_activity", "steady", false}, -- 7
---   {5.0, 50.0, "throttle_activity", "moving", false}, -- 8
---   {5.0, 75.0, "throttle_activity", "surging", false}, -- 9
---   {5.0, 75.0, "load", "heavy", false}, -- 10
---   {5.0, 25.0, "spread", "even", false}, -- 11
---   {5.0, 95.0, "spread", "uneven", false}, -- 12
+--   {5.0, 95.0, "unsteady_now", "violent", false}, -- 2
+--   {5.0, 5.0, "unsteady_lately", "calm", false}, -- 3
+--   {5.0, 25.0, "unsteady_lately", "gusty", false}, -- 4
+--   {5.0, 95.0, "unsteady_lately", "stormy", false}, -- 5
+--   {5.0, 5.0, "throttle_activity", "steady", false}, -- 6
+--   {5.0, 50.0, "throttle_activity", "moving", false}, -- 7
+--   {5.0, 75.0, "throttle_activity", "surging", false}, -- 8
+--   {5.0, 5.0, "swing_per_room", "small", false}, -- 9
+--   {5.0, 50.0, "swing_per_room", "moderate", false}, -- 10
+--   {5.0, 95.0, "swing_per_room", "large", false}, -- 11
 -- }
--- warn_risk, fail_risk = 66.0, 80.0 -- parameters may change them
+-- warn_risk, fail_risk = 60.0, 80.0 -- parameters may change them
 -- risk_level = 0 -- of the risk alone
 -- local reached_at = {} -- since when the thresholds of each level are reached
 -- local held_at = 0 -- when something last held the level
@@ -996,7 +997,7 @@ return load_all, 1000
 -- 
 -- -- Keeps what the motors do while a level is being reached, from its beginning.
 -- local function watch_motors(risk, takes_off)
---   local warns = not takes_off and is_reached(risk, warn_risk, 2.0)
+--   local warns = not takes_off and is_reached(risk, warn_risk, 60.0)
 --   local fails = is_reached(risk, fail_risk, nil)
 --   fails = fails and (falls or not sinks)
 --   if not warns and not fails then
@@ -1030,7 +1031,7 @@ return load_all, 1000
 --   is_back = works_as_before()
 --   if (risk_level > 0 or doubt_us) and not is_back then
 --     doubt_us = 0
---   elseif risk_level == 0 and doubt_us and doubt_us >= 10000000 then
+--   elseif risk_level == 0 and doubt_us and doubt_us >= 5000000 then
 --     doubt_us = nil
 --   end
 -- end
@@ -1039,12 +1040,12 @@ return load_all, 1000
 --   watch_motors(risk, takes_off)
 --   local held, can_fail = 0, true
 --   can_fail = falls or not sinks
---   local warn_until, fail_until = lower(45.0, warn_risk), lower(65.0, fail_risk)
---   held = follow(2, held, risk, not takes_off, warn_risk, 2.0, 200000, warn_until, 1.0)
+--   local warn_until, fail_until = lower(43.0, warn_risk), lower(65.0, fail_risk)
+--   held = follow(2, held, risk, not takes_off, warn_risk, 60.0, 200000, warn_until, 20.0)
 --   held = follow(3, held, risk, can_fail, fail_risk, nil, 300000, fail_until, nil)
 --   if held >= risk_level then
 --     held_at = clock_us
---   elseif clock_us - held_at >= 10000000 then
+--   elseif clock_us - held_at >= 5000000 then
 --     risk_level, held_at = held, clock_us
 --     is_open = held > 0
 --   end
@@ -1434,7 +1435,7 @@ return load_all, 1000
 -- local function read_parameters()
 --   local enable = param:get("FRISK_ENABLE")
 --   is_enabled = enable == nil or enable > 0
---   warn_risk = param:get("FRISK_WARN") or 66.0
+--   warn_risk = param:get("FRISK_WARN") or 60.0
 --   fail_risk = param:get("FRISK_FAIL") or 80.0
 -- end
 -- 
@@ -1544,7 +1545,7 @@ return load_all, 1000
 --   if total > 0 then
 --     local mean, variance = read_row(risks, row, total, out)
 --     local deviation = sqrt(variance)
---     local rate = 0.7 * (1 - share_below(52.0, mean, deviation)) - 1.4 * share_below(35.0, mean, deviation)
+--     local rate = 14.0 * (1 - share_below(50.0, mean, deviation)) - 28.0 * share_below(45.0, mean, deviation)
 --     elevated = elevated + 0.5 * (rate + (last_rate or rate)) * held_s
 --     elevated = max(0.0, min(100.0, elevated))
 --     last_risk, last_rate = risk, rate

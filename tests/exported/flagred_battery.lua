@@ -135,10 +135,12 @@ return load_all, 1000
 -- 
 -- -- The sum is nil where the commands are unknown.
 -- function read_commands()
---   local low_us, scale, command = low_us, scale, command
+--   -- Locals take fewer instructions.
+--   local low_us, scale, command, functions, channels = low_us, scale, command, functions, SRV_Channels
+--   local margin = margin
 --   local total = 0.0
 --   for i = 1, motors do
---     local pwm = SRV_Channels:get_output_pwm(functions[i])
+--     local pwm = channels:get_output_pwm(functions[i])
 --     if not pwm then
 --       sum = nil
 --       return
@@ -156,9 +158,10 @@ return load_all, 1000
 --   sum = total
 -- end
 -- 
--- function deviation_of(list)
---   local mean, square = 0.0, 0.0
---   for i = 1, motors do
+-- -- `sum` is that of the list; nil adds it up.
+-- function deviation_of(list, sum)
+--   local mean, square = sum or 0.0, 0.0
+--   for i = 1, sum and 0 or motors do
 --     mean = mean + list[i]
 --   end
 --   mean = mean / motors
@@ -697,11 +700,11 @@ return load_all, 1000
 -- function observe()
 --   local inputs, value, windows = inputs, value, windows
 --   local mean_of_margin = sum and mean_of(margin) or nil
---   local deviation_of_command = sum and deviation_of(command) or nil
---   local mean_of_command = sum and mean_of(command) or nil
+--   local deviation_of_command = sum and deviation_of(command, sum) or nil
+--   local mean_command = sum and sum / motors or nil
 --   local signal_1 = battery:capacity_remaining_pct(0)
 --   inputs[1].x = mean_of_margin -- margin
---   inputs[2].x = mean_of_command -- spread
+--   inputs[2].x = mean_command -- spread
 --   inputs[2].within = sum and deviation_of_command * deviation_of_command or 0.0
 --   value[3] = signal_1 -- battery
 --   take_sample(windows[1], held_s)

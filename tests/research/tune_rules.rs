@@ -1,122 +1,84 @@
-//! Tunes the rules to fly with, and judges them on vehicles that they were not tuned on.
+//! Tunes candidates for the rules to fly with, judges them on vehicles that they were not tuned on, and writes the chosen one.
 //!
-//! `scripts/learn-flagred DATA` makes the rows and runs it. Prints how well the risk ranks the steps before an attitude
-//! error, with 95 % intervals over flights, and how often it is high where it should not be; writes the rule set that is
-//! tuned on all rows.
+//! `scripts/learn-flagred DATA` makes the rows and runs it. Prints the areas of each candidate, then of the chosen one with
+//! 95 % intervals over flights, how often it is high where it should not be, and every real vehicle, judged by rules that do
+//! not know it.
 
-use std::{error::Error, fs, io::Write, path::Path};
+use std::{collections::BTreeMap, error::Error, fs, io::Write, path::Path};
 
 use flagred::gap::{Filling, GapSettings};
 use flagred_tests::tuning::{
-    AREAS, Data, EXCESSES, FOLDS, Row, Set, Votes, folds, judge, read, tune, tune_without,
+    AREAS, CANDIDATES, Data, EXCESSES, Row, Set, Votes, candidate, folds, judge, read, tune,
+    tune_without, with_step,
 };
 
-fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
+/// A real vehicle counts on its own from so many critical and so many other steps on.
+const ENOUGH: usize = 20;
+
+type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
+
+fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [template, real, sitl2, sitl3, upsets, rule_set] = &arguments[..] else {
+    let [
+        template,
+        real,
+        real2,
+        sitl2,
+        sitl3,
+        upsets,
+        upsets2,
+        rule_set,
+    ] = &arguments[..]
+    else {
         return Err(
-            "usage: tune_rules TEMPLATE.yaml REAL.csv SITL2.csv SITL3.csv UPSETS.csv OUT.yaml"
+            "usage: tune_rules TEMPLATE.yaml REAL.csv REAL2.csv SITL2.csv SITL3.csv UPSETS.csv UPSETS2.csv OUT.yaml"
                 .into(),
         );
     };
     let text = fs::read_to_string(template)?;
     let model =
         fuzzy::yaml::parse(&text).map_err(|findings| format!("{template}: {findings:?}"))?;
-    let template = Votes::new(&model.model)?;
     let data = Data {
-        sets: [(Set::Real, real), (Set::Sitl2, sitl2), (Set::Sitl3, sitl3)]
-            .map(|(set, path)| (set, Path::new(path))),
-        upsets: Path::new(upsets),
+        sets: [
+            (Set::Real, real),
+            (Set::Real2, real2),
+            (Set::Sitl2, sitl2),
+            (Set::Sitl3, sitl3),
+        ]
+        .map(|(set, path)| (set, Path::new(path))),
+        upsets: [upsets, upsets2].map(Path::new),
     };
-    let rows = read(&data, &template.names())?;
-    let folds = folds(&rows);
-    let (tuned, left_out) = rayon::join(
-        || tune(&template, &rows.iter().collect::<Vec<&Row>>()),
-        || tune_without(&template, &rows, &folds),
-    );
-    let known: Vec<f64> = rows.iter().map(|row| tuned.risk_pct(&row.inputs)).collect();
-    let unknown = |row: &Row| left_out[folds[row.vehicle.as_str()]].risk_pct(&row.inputs);
-    let unknown: Vec<f64> = rows.iter().map(unknown).collect();
-
-    let model = tuned.rule_set(&rows);
-    // The engine says the same, and nowhere is a gap that a monitor would fill.
-    let engine = fuzzy::Engine::new(&model)?;
-    let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
-    for (row, risk_pct) in rows.iter().zip(&known) {
-        let outcome = engine.evaluate(&row.inputs)?[0];
-        let differs = |value: f64| (value - risk_pct).abs() > 1e-6;
-        if outcome.value().is_none_or(differs) || filling.is_gap(outcome.coverage) {
-            return Err(format!(
-                "the rule set gives {outcome:?} at {:?}, not {risk_pct}",
-                row.inputs
-            )
-            .into());
-        }
-    }
     let mut out = std::io::stdout().lock();
     writeln!(
         out,
-        "| steps | ROC area, vehicles left out | all vehicles known | steps | critical, % |\n|---|---|---|---|---|"
+        "| inputs beside at_limit | {} |\n|---|{}",
+        AREAS.map(|area| area.name).join(" | "),
+        "---|".repeat(AREAS.len())
     )?;
-    for area in &AREAS {
-        let ranking = judge(area, &rows, &unknown);
-        let (areas, intervals) = ranking
-            .areas()
-            .zip(ranking.bootstrap(300, 1))
-            .ok_or("nothing was critical")?;
-        let known = judge(area, &rows, &known)
-            .areas()
-            .ok_or("nothing was critical")?;
-        writeln!(
-            out,
-            "| {} | {:.3} [{:.3}, {:.3}] | {:.3} | {} | {:.1} |",
-            area.name,
-            areas.roc,
-            intervals.roc.low,
-            intervals.roc.high,
-            known.roc,
-            ranking.len(),
-            100.0 * ranking.critical() as f64 / ranking.len() as f64
-        )?;
+    let mut chosen = None;
+    for inputs in CANDIDATES {
+        let candidate = Candidate::new(&data, &candidate(&model.model, inputs))?;
+        let cells = AREAS.iter().map(|area| {
+            let ranking = judge(area, &candidate.rows, &candidate.unknown);
+            ranking.areas().map_or(f64::NAN, |areas| areas.roc)
+        });
+        let cells: Vec<String> = cells.map(|area| format!("{area:.3}")).collect();
+        writeln!(out, "| {} | {} |", inputs.join(", "), cells.join(" | "))?;
+        chosen.get_or_insert(candidate);
     }
-    writeln!(
-        out,
-        "\n| steps | risk above | vehicles left out, % of steps | all vehicles known |\n|---|---|---|---|"
-    )?;
-    for excess in &EXCESSES {
-        let share = |risks: &[f64]| {
-            let of = rows
-                .iter()
-                .zip(risks)
-                .filter(|(row, _)| (excess.holds)(row));
-            let risks: Vec<f64> = of.map(|(_, risk)| *risk).collect();
-            let above = risks
-                .iter()
-                .filter(|risk| **risk > excess.above_pct)
-                .count();
-            100.0 * above as f64 / risks.len() as f64
-        };
-        writeln!(
-            out,
-            "| {} | {} | {:.1} | {:.1} |",
-            excess.name,
-            excess.above_pct,
-            share(&unknown),
-            share(&known)
-        )?;
-    }
+    let chosen = chosen.ok_or("no candidate")?;
+    chosen.print(&mut out)?;
+    let model = with_step(chosen.rule_set()?, &model.model)?;
     let head = text
         .split_inclusive('\n')
         .take_while(|line| line.starts_with('#'));
-    let flights = rows
-        .iter()
-        .map(|row| row.flight)
-        .max()
-        .map_or(0, |last| last + 1);
+    let rows = &chosen.rows;
+    let flights = rows.iter().map(|row| row.flight).max();
     let provenance = format!(
-        "#\n# Learned by `scripts/learn-flagred` from {} rows of {flights} flights of {} vehicles, {FOLDS} folds of vehicles left out to judge it.\n",
+        "#\n# Learned by `scripts/learn-flagred` from {} rows of {} flights of {} vehicles; judged on vehicles left out.\n",
         rows.len(),
-        folds.len(),
+        flights.map_or(0, |last| last + 1),
+        folds(rows).len(),
     );
     let rules = fuzzy::yaml::to_string(&model);
     fs::write(
@@ -124,4 +86,127 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
         format!("{}{provenance}{rules}", head.collect::<String>()),
     )?;
     Ok(())
+}
+
+/// A tuned candidate.
+struct Candidate {
+    rows: Vec<Row>,
+    tuned: Votes,
+    /// The risk at each row by rules that do not know its vehicle, in %.
+    unknown: Vec<f64>,
+}
+
+impl Candidate {
+    fn new(data: &Data<'_>, template: &fuzzy::Model) -> Result<Candidate> {
+        let template = Votes::new(template)?;
+        let rows = read(data, &template.names())?;
+        let (tuned, (unknown, _)) = rayon::join(
+            || tune(&template, &rows.iter().collect::<Vec<&Row>>()),
+            || tune_without(&template, &rows, &folds(&rows)),
+        );
+        Ok(Candidate {
+            tuned,
+            unknown,
+            rows,
+        })
+    }
+
+    /// The rule set. The engine says the same, and nowhere is a gap that a monitor would fill.
+    fn rule_set(&self) -> Result<fuzzy::Model> {
+        let model = self.tuned.rule_set(&self.rows);
+        let engine = fuzzy::Engine::new(&model)?;
+        let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+        for row in &self.rows {
+            let risk_pct = self.tuned.risk_pct(&row.inputs);
+            let outcome = engine.evaluate(&row.inputs)?[0];
+            let differs = |value: f64| (value - risk_pct).abs() > 1e-6;
+            if outcome.value().is_none_or(differs) || filling.is_gap(outcome.coverage) {
+                return Err(format!(
+                    "the rule set gives {outcome:?} at {:?}, not {risk_pct}",
+                    row.inputs
+                )
+                .into());
+            }
+        }
+        Ok(model)
+    }
+
+    fn print(&self, out: &mut impl Write) -> Result<()> {
+        writeln!(
+            out,
+            "\n| steps | ROC area, vehicles left out | steps | critical, % |\n|---|---|---|---|"
+        )?;
+        for area in &AREAS {
+            let ranking = judge(area, &self.rows, &self.unknown);
+            let (areas, intervals) = ranking
+                .areas()
+                .zip(ranking.bootstrap(300, 1))
+                .ok_or("nothing was critical")?;
+            writeln!(
+                out,
+                "| {} | {:.3} [{:.3}, {:.3}] | {} | {:.1} |",
+                area.name,
+                areas.roc,
+                intervals.roc.low,
+                intervals.roc.high,
+                ranking.len(),
+                100.0 * ranking.critical() as f64 / ranking.len() as f64
+            )?;
+        }
+        writeln!(
+            out,
+            "\n| steps | risk above | vehicles left out, % of steps |\n|---|---|---|"
+        )?;
+        for excess in &EXCESSES {
+            let of = self.rows.iter().zip(&self.unknown);
+            let risks: Vec<f64> = of
+                .filter(|(row, _)| (excess.holds)(row))
+                .map(|(_, risk)| *risk)
+                .collect();
+            let above = risks.iter().filter(|risk| **risk > excess.above_pct);
+            let share = 100.0 * above.count() as f64 / risks.len() as f64;
+            writeln!(
+                out,
+                "| {} | {} | {share:.1} |",
+                excess.name, excess.above_pct
+            )?;
+        }
+        self.print_vehicles(out)
+    }
+
+    /// Each real vehicle.
+    fn print_vehicles(&self, out: &mut impl Write) -> Result<()> {
+        writeln!(
+            out,
+            "\n| real vehicle | ROC area | steps | critical |\n|---|---|---|---|"
+        )?;
+        let mut vehicles: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for (i, row) in self.rows.iter().enumerate() {
+            if row.set.is_real() {
+                vehicles.entry(&row.vehicle).or_default().push(i);
+            }
+        }
+        let mut areas = Vec::new();
+        for (vehicle, places) in &vehicles {
+            let rows: Vec<Row> = places.iter().map(|i| self.rows[*i].clone()).collect();
+            let risks: Vec<f64> = places.iter().map(|i| self.unknown[*i]).collect();
+            let ranking = judge(&AREAS[0], &rows, &risks);
+            let critical = ranking.critical();
+            let is_enough = critical >= ENOUGH && ranking.len() - critical >= ENOUGH;
+            let area = ranking.areas().filter(|_| is_enough);
+            areas.extend(area.map(|area| area.roc));
+            let area = area.map_or("-".to_owned(), |area| format!("{:.3}", area.roc));
+            writeln!(out, "| {vehicle} | {area} | {} | {critical} |", rows.len())?;
+        }
+        areas.sort_by(f64::total_cmp);
+        let mean = areas.iter().sum::<f64>() / areas.len().max(1) as f64;
+        if let (Some(least), Some(most)) = (areas.first(), areas.last()) {
+            writeln!(
+                out,
+                "\nOf {} vehicles with at least {ENOUGH} critical and {ENOUGH} other steps: mean {mean:.3}, from {least:.3} to {most:.3}.",
+                areas.len()
+            )?;
+        }
+        Ok(())
+    }
 }

@@ -115,9 +115,16 @@ fn weights_whose_sums_overflow_are_refused_as_by_tune() {
     }
 }
 
-/// The shipped profile has an input `spread`, which is not the spread of the motor commands of the summary.
+/// A profile may have an input `spread`, which is not the spread of the motor commands of the summary.
 #[test]
 fn a_column_of_a_dataset_is_one_quantity_with_and_without_a_profile() {
+    let folder = Folder::new();
+    let rules = "fuzzy: 1\nname: uneven\ninputs: {spread: {range: [0, 0.5], partition: {even: 0, uneven: 0.1}}}
+outputs: {risk: {range: [0, 100], partition: [low, high]}}
+rules: [IF spread IS even THEN risk IS low, IF spread IS uneven THEN risk IS high]\n";
+    folder.file("uneven.yaml", rules);
+    let profile = "flagred: 1\nname: uneven\nrules: uneven.yaml\ninputs: {spread: {mean: {std: motor_command_less_yaw}}}\n";
+    let profile = folder.file("profile.yaml", profile);
     let rows = |more: &[&str]| {
         let output = flagred()
             .args(["dataset", "--window", "2", STEADY])
@@ -137,7 +144,7 @@ fn a_column_of_a_dataset_is_one_quantity_with_and_without_a_profile() {
             .map(|cells| (cells[t_s].to_owned(), cells[value].to_owned()))
             .collect()
     };
-    let (plain, with_profile) = (rows(&[]), rows(&["--profile", "flagred"]));
+    let (plain, with_profile) = (rows(&[]), rows(&["--profile", &profile]));
     let of_profile = column(&with_profile, "input_spread");
     for name in ["margin", "spread"] {
         let (plain, with_profile) = (column(&plain, name), column(&with_profile, name));

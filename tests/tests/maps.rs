@@ -30,10 +30,9 @@ fn a_picture_of_every_rule_set() {
             "flagred" | "flagred-battery" => (
                 201,
                 &[
-                    ("load", 0.5),
                     ("at_limit", 0.0),
                     ("throttle_activity", 0.25),
-                    ("spread", 0.25),
+                    ("swing_per_room", 0.3),
                     ("battery", 50.0),
                 ],
             ),
@@ -83,12 +82,11 @@ fn without_a_word_the_picture_shows_where_the_rules_to_fly_with_decide() {
 
     // What was asked for needs no note.
     let asked = [
-        "--fix=throttle_activity=0.012",
-        "--fix=load=0.5",
-        "--fix=spread=0.25",
+        "--fix=throttle_activity=0.008",
+        "--fix=swing_per_room=0.05",
         "--fix=at_limit=0",
     ];
-    let axes = ["--x=unsteady_now:0..0.073", "--y=unsteady_lately:0..0.056"];
+    let axes = ["--x=unsteady_now:0..0.04", "--y=unsteady_lately:0..0.056"];
     let (_, same, notes) = map(&[&[FLAGRED, "--points", "26"][..], &asked, &axes].concat());
     assert_eq!((same, notes.as_str()), (text, ""));
 }
@@ -129,7 +127,7 @@ fn a_table_of_all_cells() {
     assert!(at(0.02, 0.01) >= 75.0);
 
     let (code, text, _) = map(&[FLAGRED, "--csv", "--points", "5"]);
-    assert_eq!((code, text.lines().count()), (Some(0), 1 + 5usize.pow(6)));
+    assert_eq!((code, text.lines().count()), (Some(0), 1 + 5usize.pow(5)));
 }
 
 /// Without a profile a map is what `flagred eval` gives, cell by cell, also where the rules hardly fire.
@@ -158,15 +156,14 @@ fn the_map_of_a_rule_set_is_what_eval_gives() {
     }
     assert!((1..15 * 5).contains(&empty), "{empty} cells have no value");
     let rows = [FLAGRED, "--csv", "--points", "3", "--fill", "none"];
-    assert_eq!(map(&rows).1.lines().count(), 1 + 3usize.pow(6));
+    assert_eq!(map(&rows).1.lines().count(), 1 + 3usize.pow(5));
 }
 
 #[test]
 fn pictures_are_well_formed_and_complete() {
     let fixed = [
         "--fix=throttle_activity=0",
-        "--fix=load=0.5",
-        "--fix=spread=0.01",
+        "--fix=swing_per_room=0",
         "--fix=at_limit=0",
         "--x",
         "unsteady_now:0..0.08",
@@ -199,16 +196,15 @@ fn pictures_are_well_formed_and_complete() {
             [&[FLAGRED][..], &fixed].concat(),
             vec![
                 "unsteady_lately",
-                "flagred: risk [%] at throttle_activity = 0, load = 0.5, spread = 0.01, at_limit = 0",
+                "flagred: risk [%] at throttle_activity = 0, swing_per_room = 0, at_limit = 0",
             ],
         ),
         (
             vec![
                 FLAGRED,
                 "--fix=throttle_activity=0",
-                "--fix=load=0.5",
-                "--fix=spread=0.01",
                 "--fix=at_limit=0",
+                "--fix=swing_per_room=0",
                 "--fix=unsteady_now=0",
             ],
             vec!["unsteady_lately"],

@@ -41,6 +41,6 @@ fn a_sample_allocates_nothing_whatever_happens() {
         assert_eq!(counted.count_total, 0, "{name}");
         // Something happened: the paper's rules call this flight harmless, ours do not.
         assert!(known > 9000, "{name}: {known}");
-        assert_eq!(changes > 2, name == "flagred", "{name}: {changes}");
+        assert_eq!(changes > 1, name == "flagred", "{name}: {changes}");
     }
 }

@@ -180,21 +180,21 @@ test('a click on the map is explained as by the command line', async (t) => {
 });
 
 test('held inputs, axes and pictures are chosen, and the address tells them', async (t) => {
-  const { page, context } = await room(t, '?start=flagred&x=unsteady_lately&y=load&show=surface');
+  const { page, context } = await room(t, '?start=flagred&x=unsteady_lately&y=throttle_activity&show=surface');
   assert.equal(await page.getByLabel('Input across').inputValue(), 'unsteady_lately');
   assert.equal(await page.getByLabel('Show').inputValue(), 'surface');
   await page.getByLabel('Show').selectOption('rules');
   await page.locator('.legend.rules li').first().waitFor();
-  await page.getByLabel('Input up').selectOption('spread');
+  await page.getByLabel('Input up').selectOption('swing_per_room');
   await page.getByLabel('at_limit, as a number').fill('0.25');
   await page.getByLabel('at_limit, as a number').press('Enter');
-  await page.waitForFunction(() => location.hash.includes('y=spread') && location.hash.includes('0.25'));
+  await page.waitForFunction(() => location.hash.includes('y=swing_per_room') && location.hash.includes('0.25'));
   const link = page.url();
   const other = await context.newPage();
   await other.goto(link);
   await other.locator('.legend.rules li').first().waitFor();
   assert.equal(await other.getByLabel('at_limit, as a number').inputValue(), '0.25');
-  assert.equal(await other.getByLabel('Input up').inputValue(), 'spread');
+  assert.equal(await other.getByLabel('Input up').inputValue(), 'swing_per_room');
   // Another address in the same page.
   await other.evaluate(() => (location.hash = '#/rules?start=flagred-paper&x=spread&y=margin&at=0.125,0.25'));
   await other.waitForFunction(() => document.querySelector('[aria-label="margin, as a number"]')?.value === '0.125');

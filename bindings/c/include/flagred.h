@@ -118,7 +118,7 @@ typedef struct flagred_finding {
     int32_t motor;              /* the index of the motor that is the cause: near a limit, or out of balance; else -1 */
     int32_t or_motor;           /* the other motor that it may be as well, where the commands do not tell which; else -1 */
     int32_t at_high_limit;      /* 0: nearer to the lower limit; 1: to the upper limit. Out of balance: below, above */
-    int32_t cause;              /* what raised the risk, as an index of flagred_NAME_causes ("unsteady_now violent") in the
+    int32_t cause;              /* what raised the risk, as an index of flagred_NAME_causes ("unsteady_lately stormy") in the
                                    exported profile; -1 where no rule did */
     int32_t cause_rule;         /* the index of the rule; -1 */
     int32_t cause_input;        /* the index of the input of the profile; -1 */

@@ -214,7 +214,7 @@ rules:
         let about = (0..6).map(|input| is_of_limits((plan.channels, plan.inputs), input, 0));
         assert_eq!(
             about.collect::<Vec<_>>(),
-            [false, false, false, false, false, true]
+            [false, false, false, false, true, true]
         );
     }
 }

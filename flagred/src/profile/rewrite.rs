@@ -218,7 +218,7 @@ mod tests {
         wanted.warn.raise.risk_pct = Some(10.0);
         let refused = Profile::rewritten(text, &wanted).unwrap_err().to_string();
         assert!(
-            refused.contains("held until 45, which is above 10"),
+            refused.contains("held until 43, which is above 10"),
             "{refused}"
         );
         assert!(Profile::rewritten("name: x", &verdict(text)).is_err());

@@ -55,6 +55,7 @@ impl Observed {
             Signal::MotorCommand => now.commands.to_vec(),
             Signal::MotorCommandLessYaw => now.less_yaw.to_vec(),
             Signal::MotorMargin => now.commands.iter().map(|e| e.min(1.0 - e)).collect(),
+            Signal::MotorMarginHighSide => now.commands.iter().map(|e| 1.0 - e).collect(),
             Signal::Named(name) => return one(signal(name)),
             Signal::Difference { a, b } if a.ends_with("_deg") => {
                 let (sin, cos) = (signal(a) - signal(b)).to_radians().sin_cos();

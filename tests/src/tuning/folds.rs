@@ -5,41 +5,38 @@ use std::collections::{BTreeMap, BTreeSet};
 use flagred::evaluation::{Prediction, Ranking};
 use rayon::prelude::*;
 
-use super::{
-    objective::Area,
-    rows::{Row, Set},
-    search::tune,
-    votes::Votes,
-};
+use super::{objective::Area, rows::Row, search::tune, votes::Votes};
 
-/// The number of folds.
-pub const FOLDS: usize = 5;
-
-/// The fold of each vehicle: real and simulated vehicles are dealt out in turn, in a random order that is always the same.
+/// The fold of each vehicle. Each real vehicle is one; simulated vehicles are dealt out to them in turn, in a random order
+/// that is always the same.
 pub fn folds(rows: &[Row]) -> BTreeMap<&str, usize> {
-    let mut random = fastrand::Rng::with_seed(1);
-    let is_real = |row: &&Row| row.set == Set::Real;
-    let mut folds = BTreeMap::new();
-    for real in [true, false] {
-        let rows = rows.iter().filter(|row| is_real(row) == real);
+    let vehicles = |are_real: bool| -> Vec<&str> {
+        let rows = rows.iter().filter(|row| row.set.is_real() == are_real);
         let vehicles: BTreeSet<&str> = rows.map(|row| row.vehicle.as_str()).collect();
-        let mut vehicles: Vec<&str> = vehicles.into_iter().collect();
-        random.shuffle(&mut vehicles);
-        let dealt = vehicles.into_iter().zip((0..FOLDS).cycle());
-        folds.extend(dealt);
-    }
-    folds
+        vehicles.into_iter().collect()
+    };
+    let (real, mut simulated) = (vehicles(true), vehicles(false));
+    fastrand::Rng::with_seed(1).shuffle(&mut simulated);
+    let folds = 0..real.len().max(1);
+    let dealt = simulated.into_iter().zip(folds.clone().cycle());
+    real.into_iter().zip(folds).chain(dealt).collect()
 }
 
-/// For each fold, rules that know none of its vehicles.
-pub fn tune_without(template: &Votes, rows: &[Row], folds: &BTreeMap<&str, usize>) -> Vec<Votes> {
-    let without = |fold: usize| {
-        let known = rows
-            .iter()
-            .filter(|row| folds.get(row.vehicle.as_str()) != Some(&fold));
+/// The risk at each row by rules that know no vehicle of its fold, in %, and these rules for each fold.
+pub fn tune_without(
+    template: &Votes,
+    rows: &[Row],
+    folds: &BTreeMap<&str, usize>,
+) -> (Vec<f64>, Vec<Votes>) {
+    let fold = |row: &Row| folds[row.vehicle.as_str()];
+    let last = folds.values().max().copied().unwrap_or_default();
+    let without = |left_out: usize| {
+        let known = rows.iter().filter(|row| fold(row) != left_out);
         tune(template, &known.collect::<Vec<&Row>>())
     };
-    (0..FOLDS).into_par_iter().map(without).collect()
+    let tuned: Vec<Votes> = (0..=last).into_par_iter().map(without).collect();
+    let risk_pct = |row: &Row| tuned[fold(row)].risk_pct(&row.inputs);
+    (rows.iter().map(risk_pct).collect(), tuned)
 }
 
 /// The rows of an area ranked by risk; a group is a flight.

@@ -4,13 +4,15 @@
 //! the centroid over terms of equal width with product and sum. A template names the inputs, their terms and the rules;
 //! peaks, consequents and weights are tuned.
 
+mod candidates;
 mod folds;
 mod objective;
 mod rows;
 mod search;
 mod votes;
 
-pub use folds::{FOLDS, folds, judge, tune_without};
+pub use candidates::{CANDIDATES, candidate, with_step};
+pub use folds::{folds, judge, tune_without};
 pub use objective::{AREAS, Area, EXCESSES, Excess};
 pub use rows::{Data, Row, Set, read};
 pub use search::tune;

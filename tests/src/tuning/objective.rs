@@ -1,5 +1,7 @@
 //! What tuned rules are to be good at.
 
+use std::collections::HashMap;
+
 use super::{
     rows::{Row, Set},
     votes::{Input, Sum, Votes},
@@ -12,52 +14,51 @@ pub struct Area {
     pub name: &'static str,
     /// Whether a row is one of them.
     pub holds: fn(&Row) -> bool,
-    /// The area that is wanted.
-    pub target: f64,
-    /// What each 1 of area below the target costs.
-    slope: f64,
+    /// How much it counts.
+    weight: f64,
 }
 
-/// What 1 of any area is worth, above the target too.
-const WORTH: f64 = 0.3;
-
-/// The areas that count.
-pub const AREAS: [Area; 6] = [
+/// The areas that count. Real vehicles are few, and half their flights are of one: they have two fifths of the weight.
+pub const AREAS: [Area; 8] = [
     Area {
         name: "real",
-        holds: |row| row.set == Set::Real,
-        target: 0.87,
-        slope: 3.0,
+        holds: |row| row.set.is_real(),
+        weight: 2.0,
     },
     Area {
         name: "real, quiet for 5 s",
-        holds: |row| row.set == Set::Real && row.is_quiet_5_s,
-        target: 0.71,
-        slope: 3.0,
+        holds: |row| row.set.is_real() && row.is_quiet_5_s,
+        weight: 2.0,
     },
     Area {
         name: "sitl2 without manoeuvres",
         holds: |row| row.set == Set::Sitl2 && row.kind != "manoeuvre",
-        target: 0.91,
-        slope: 3.0,
+        weight: 1.0,
     },
     Area {
         name: "sitl2 without manoeuvres, quiet for 10 s",
         holds: |row| row.set == Set::Sitl2 && row.kind != "manoeuvre" && row.is_quiet_10_s,
-        target: 0.82,
-        slope: 1.0,
+        weight: 1.0,
     },
     Area {
         name: "sitl3",
         holds: |row| row.set == Set::Sitl3,
-        target: 0.84,
-        slope: 3.0,
+        weight: 1.0,
+    },
+    Area {
+        name: "sitl3, quiet for 5 s",
+        holds: |row| row.set == Set::Sitl3 && row.is_quiet_5_s,
+        weight: 1.0,
     },
     Area {
         name: "sitl3, gusts and rising wind",
         holds: |row| row.set == Set::Sitl3 && matches!(row.kind.as_str(), "gusts" | "rising"),
-        target: 0.89,
-        slope: 3.0,
+        weight: 1.0,
+    },
+    Area {
+        name: "sitl2 and sitl3",
+        holds: |row| !row.set.is_real(),
+        weight: 1.0,
     },
 ];
 
@@ -78,9 +79,9 @@ pub struct Excess {
 pub const EXCESSES: [Excess; 3] = [
     Excess {
         name: "ordinary real flights",
-        holds: |row| row.set == Set::Real && row.kind == "ordinary",
+        holds: |row| row.set.is_real() && row.kind == "ordinary",
         above_pct: 50.0,
-        cost: 0.03,
+        cost: 0.015,
     },
     Excess {
         name: "sitl3 hover, yaw, mission and pilot, not critical",
@@ -89,13 +90,13 @@ pub const EXCESSES: [Excess; 3] = [
             row.set == Set::Sitl3 && kinds.contains(&row.kind.as_str()) && !row.is_critical
         },
         above_pct: 50.0,
-        cost: 0.03,
+        cost: 0.015,
     },
     Excess {
         name: "sitl2 calm",
         holds: |row| row.set == Set::Sitl2 && row.kind == "calm",
         above_pct: 30.0,
-        cost: 0.02,
+        cost: 0.01,
     },
 ];
 
@@ -106,6 +107,8 @@ pub(super) struct Problem {
     given: Vec<(f64, Sum)>,
     /// The rows of each of [`AREAS`]: those that became critical and the others.
     areas: Vec<[Vec<u32>; 2]>,
+    /// What each row counts: the root of its vehicle's rows divided by their number, so that long logs do not decide alone.
+    weights: Vec<f64>,
     /// The rows of each of [`EXCESSES`].
     excesses: Vec<Vec<u32>>,
 }
@@ -121,7 +124,13 @@ impl Problem {
             [true, false]
                 .map(|critical| which(&|row| (area.holds)(row) && row.is_critical == critical))
         };
+        let mut of_vehicle: HashMap<(Set, &str), f64> = HashMap::new();
+        for row in rows {
+            *of_vehicle.entry((row.set, &row.vehicle)).or_default() += 1.0;
+        }
+        let weight = |row: &&Row| 1.0 / of_vehicle[&(row.set, row.vehicle.as_str())].sqrt();
         Problem {
+            weights: rows.iter().map(weight).collect(),
             columns: votes.inputs.iter().map(column).collect(),
             given: rows.iter().map(|row| votes.given(&row.inputs)).collect(),
             areas: AREAS.iter().map(area).collect(),
@@ -138,9 +147,9 @@ impl Problem {
         let risks: Vec<f64> = self.given.iter().zip(sums).map(risk).collect();
         let mut score = 0.0;
         for (area, rows) in AREAS.iter().zip(&self.areas) {
-            let roc = roc(&risks, rows);
-            score += area.slope * (roc - area.target).min(0.0) + WORTH * roc;
+            score += area.weight * self.roc(&risks, rows);
         }
+        score /= AREAS.iter().map(|area| area.weight).sum::<f64>();
         for (excess, rows) in EXCESSES.iter().zip(&self.excesses) {
             let over = rows
                 .iter()
@@ -149,23 +158,25 @@ impl Problem {
         }
         score
     }
-}
 
-/// The area under the ROC curve, risks in steps of 0.05 %; 0 without both kinds of rows.
-fn roc(risks: &[f64], [critical, others]: &[Vec<u32>; 2]) -> f64 {
-    const STEPS: usize = 2000;
-    let count = |rows: &[u32]| {
-        let mut counts = [0_u32; STEPS];
-        for row in rows {
-            let step = (risks[*row as usize] * (STEPS as f64 / 100.0)) as usize;
-            counts[step.min(STEPS - 1)] += 1;
+    /// The area under the ROC curve, risks in steps of 0.05 %; 0 without both kinds of rows.
+    fn roc(&self, risks: &[f64], [critical, others]: &[Vec<u32>; 2]) -> f64 {
+        const STEPS: usize = 2000;
+        let count = |rows: &[u32]| {
+            let mut counts = [0.0; STEPS];
+            for row in rows {
+                let step = (risks[*row as usize] * (STEPS as f64 / 100.0)) as usize;
+                counts[step.min(STEPS - 1)] += self.weights[*row as usize];
+            }
+            counts
+        };
+        let (critical, others) = (count(critical), count(others));
+        let all = critical.iter().sum::<f64>() * others.iter().sum::<f64>();
+        let (mut below, mut pairs) = (0.0, 0.0);
+        for (critical, others) in critical.iter().zip(others) {
+            pairs += critical * (below + others / 2.0);
+            below += others;
         }
-        counts
-    };
-    let (mut below, mut pairs) = (0.0, 0.0);
-    for (critical, others) in count(critical).iter().zip(count(others)) {
-        pairs += f64::from(*critical) * (below + f64::from(others) / 2.0);
-        below += f64::from(others);
+        if all > 0.0 { pairs / all } else { 0.0 }
     }
-    pairs / (critical.len().max(1) as f64 * others.len().max(1) as f64)
 }

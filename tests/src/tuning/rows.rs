@@ -11,10 +11,19 @@ use super::Failure;
 pub enum Set {
     /// Real flights.
     Real,
+    /// More of them, of other vehicles.
+    Real2,
     /// Simulated flights in changing wind.
     Sitl2,
     /// Simulated flights with noise, yaw, other gains and faults.
     Sitl3,
+}
+
+impl Set {
+    /// Whether its flights are real.
+    pub fn is_real(self) -> bool {
+        matches!(self, Set::Real | Set::Real2)
+    }
 }
 
 /// A moment of a flight, and what came after it.
@@ -41,10 +50,10 @@ pub struct Row {
 /// Tables to read.
 pub struct Data<'a> {
     /// The rows of each set.
-    pub sets: [(Set, &'a Path); 3],
-    /// A table of flights with columns `id` and `upsets` (`TIME=KIND;..`): what comes after an upset, in the same time in
+    pub sets: [(Set, &'a Path); 4],
+    /// Tables of real flights with columns `id` and `upsets` (`TIME=KIND;..`): what comes after an upset, in the same time in
     /// the air, is left out.
-    pub upsets: &'a Path,
+    pub upsets: [&'a Path; 2],
 }
 
 /// Reads the rows of all sets with the named inputs.
@@ -53,7 +62,10 @@ pub struct Data<'a> {
 ///
 /// A file cannot be read, or lacks a column.
 pub fn read(data: &Data<'_>, inputs: &[&str]) -> Result<Vec<Row>, Failure> {
-    let upsets = upsets(data.upsets)?;
+    let mut upsets = HashMap::new();
+    for path in data.upsets {
+        upsets.extend(upsets_of(path)?);
+    }
     let mut rows = Vec::new();
     let mut flights: HashMap<String, u32> = HashMap::new();
     for (set, path) in data.sets {
@@ -84,10 +96,10 @@ pub fn read(data: &Data<'_>, inputs: &[&str]) -> Result<Vec<Row>, Failure> {
             let number = |column: usize| cell(column).parse::<f64>();
             let (from_s, t_s) = (number(air)?, number(time)?);
             let id = flight_id(cell(file));
-            if set == Set::Real
+            if set.is_real()
                 && upsets
                     .get(id)
-                    .ok_or_else(|| format!("{}: no flight `{id}`", data.upsets.display()))?
+                    .ok_or_else(|| format!("no table of real flights has `{id}`"))?
                     .iter()
                     .any(|upset_s| (from_s..=t_s).contains(upset_s))
             {
@@ -123,7 +135,7 @@ fn flight_id(file: &str) -> &str {
 }
 
 /// The times of the upsets of each flight, in seconds.
-fn upsets(path: &Path) -> Result<HashMap<String, Vec<f64>>, Failure> {
+fn upsets_of(path: &Path) -> Result<HashMap<String, Vec<f64>>, Failure> {
     let mut table = csv::Reader::from_path(path)?;
     let mut upsets = HashMap::new();
     for record in table.deserialize::<HashMap<String, String>>() {

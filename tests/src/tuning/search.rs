@@ -8,7 +8,7 @@ use super::{
     votes::{Input, Sum, Vote, Votes},
 };
 
-/// Weights that a rule may have; a rule of none is dropped.
+/// Weights that a rule may be given; a rule of none is dropped.
 const WEIGHTS: [f64; 8] = [0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0];
 
 /// The first digits of round numbers.
@@ -46,6 +46,8 @@ enum Part {
     Peak,
     Consequent,
     Weight,
+    /// All weights.
+    Weights,
 }
 
 fn descend(mut votes: Votes, problem: &Problem, seed: u64) -> (Votes, f64) {
@@ -63,6 +65,10 @@ fn descend(mut votes: Votes, problem: &Problem, seed: u64) -> (Votes, f64) {
     let mut best = problem.score(total(&sums, usize::MAX).into_iter());
     let mut coordinates: Vec<(usize, Part, usize)> = Vec::new();
     for (i, input) in votes.inputs.iter().enumerate() {
+        if !input.is_tuned() {
+            continue;
+        }
+        coordinates.push((i, Part::Weights, 0));
         for term in 0..input.peaks.len() {
             coordinates.push((i, Part::Peak, term));
             if input.votes[term].is_some() {
@@ -77,7 +83,7 @@ fn descend(mut votes: Votes, problem: &Problem, seed: u64) -> (Votes, f64) {
         for &(i, part, term) in &coordinates {
             let others = total(&sums, i);
             let range = votes.range(&votes.inputs[i]);
-            for changed in changes(&votes.inputs[i], part, term, range, consequents.len()) {
+            for changed in changes(&votes.inputs[i], part, term, range, &consequents) {
                 let own = of_input(&changed, &problem.columns[i]);
                 let all = others.iter().zip(&own).map(|(a, b)| Sum {
                     values: a.values + b.values,
@@ -116,7 +122,7 @@ fn changes(
     part: Part,
     term: usize,
     range: (f64, f64),
-    consequents: usize,
+    consequents: &[f64],
 ) -> Vec<Input> {
     let with = |change: &dyn Fn(&mut Input)| {
         let mut changed = input.clone();
@@ -131,7 +137,7 @@ fn changes(
                 .collect()
         }
         (Part::Consequent, Some(vote)) => {
-            let others = (0..consequents).filter(|consequent| *consequent != vote.consequent);
+            let others = (0..consequents.len()).filter(|consequent| *consequent != vote.consequent);
             let others = others.map(|consequent| Vote { consequent, ..vote });
             others
                 .map(|vote| with(&|changed| changed.votes[term] = Some(vote)))
@@ -144,9 +150,29 @@ fn changes(
                 .map(|vote| with(&|changed| changed.votes[term] = Some(vote)))
                 .collect()
         }
+        (Part::Weights, _) => [-1, 1]
+            .into_iter()
+            .map(|step| {
+                with(&|changed| {
+                    for vote in changed.votes.iter_mut().flatten() {
+                        vote.weight = next(vote.weight, step);
+                    }
+                })
+            })
+            .collect(),
         (_, None) => Vec::new(),
     };
-    all.into_iter().filter(Input::is_sound).collect()
+    let is_sound = |input: &Input| input.is_sound(consequents);
+    all.into_iter().filter(is_sound).collect()
+}
+
+/// The weight one step up or down; none stays none.
+fn next(weight: f64, step: isize) -> f64 {
+    let place = WEIGHTS.iter().position(|known| *known == weight);
+    let next = place
+        .filter(|place| *place > 0)
+        .and_then(|place| WEIGHTS.get(place.saturating_add_signed(step)));
+    next.copied().unwrap_or(weight)
 }
 
 /// The round numbers around a peak and inside the range.

@@ -11,7 +11,8 @@ use super::rows::Row;
 /// The rules of a template: what each says may be tuned, and those that stay as they were written.
 ///
 /// A rule of two or more propositions, `input IS term AND other IS term`, is a vote of its first input and tuned; what
-/// stands behind the first proposition is the same in all votes. Other rules stay.
+/// stands behind the first proposition is the same in all votes. Votes without a written weight and the terms of their input
+/// stay, and so do all other rules.
 #[derive(Debug, Clone)]
 pub struct Votes {
     model: Model,
@@ -89,13 +90,29 @@ impl Input {
         take(right, part);
     }
 
-    /// Whether the peaks rise, no consequent falls from one term to the next, and a vote counts.
-    pub(super) fn is_sound(&self) -> bool {
-        let mut votes = self.votes.iter().flatten();
-        let consequents = votes.clone().map(|vote| vote.consequent);
+    /// Whether it is tuned.
+    pub(super) fn is_tuned(&self) -> bool {
+        self.votes.iter().flatten().any(|vote| vote.weight < 1.0)
+    }
+
+    /// Whether the peaks rise, a vote counts, and the risk never falls as the input rises, whatever the other votes come to:
+    /// from term to term a vote does not add less to what pulls up, and does not take less from what pulls down.
+    pub(super) fn is_sound(&self, consequents: &[f64]) -> bool {
+        let low = consequents.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = consequents
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
+        let pulls = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            let pull = |vote: &Option<Vote>| {
+                vote.map_or(0.0, |vote| vote.weight * of(consequents[vote.consequent]))
+            };
+            self.votes.iter().map(pull).collect()
+        };
         self.peaks.is_sorted_by(|a, b| a < b)
-            && consequents.is_sorted()
-            && votes.any(|vote| vote.weight > 0.0)
+            && pulls(&|peak| peak - low).is_sorted_by(|a, b| *a <= b + 1e-9)
+            && pulls(&|peak| high - peak).is_sorted_by(|a, b| *a >= b - 1e-9)
+            && self.votes.iter().flatten().any(|vote| vote.weight > 0.0)
     }
 }
 
@@ -165,10 +182,11 @@ impl Votes {
                 return Err(format!("a second rule of this term: {text}"));
             }
         }
-        match votes.inputs.iter().all(Input::is_sound) {
+        let is_sound = |input: &Input| input.is_sound(&votes.consequents);
+        match votes.inputs.iter().all(is_sound) {
             true => Ok(votes),
             false => {
-                Err("the consequents of an input fall, or its rules have no weight".to_owned())
+                Err("the risk falls as an input rises, or its rules have no weight".to_owned())
             }
         }
     }

@@ -98,6 +98,7 @@ fn along(estimator: &Estimator) -> usize {
         0..=2 => 203,
         3 => 53,
         4 => 19,
+        5 => 8,
         _ => 7,
     }
 }

@@ -11,7 +11,7 @@ const CONDITIONS: usize = 100;
 const INSTRUCTIONS: usize = 9_900;
 /// `SCR_HEAP_SIZE` is 204,800 by default on boards with much memory. With pointers of 64 bits, as in the simulator, ArduPilot
 /// itself takes 25,000 of it, and loading a script takes 11,000 more than it keeps.
-const HEAP_BYTES: usize = 165_000;
+const HEAP_BYTES: usize = 166_000;
 
 /// How large the parts of a script are that depend on the profile.
 #[derive(Debug, Default)]

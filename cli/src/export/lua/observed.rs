@@ -74,6 +74,13 @@ impl Script {
             Observed::HighSide => "high_side",
             _ => "command",
         };
+        // The room above the highest motor needs no list of its own.
+        if (channel.observed, channel.motors) == (Observed::HighSide, Motors::Min) {
+            self.uses("highest_of");
+            let room = "sum and 1 - highest_of(command) or nil".to_owned();
+            let value = self.computed("least_room".into(), room);
+            return (counted(&value, channel.threshold, squared), None);
+        }
         if !self.lists.contains(&list) {
             self.lists.push(list);
         }
@@ -123,16 +130,27 @@ impl Script {
 
     /// A value that all motors have together; nil where the commands are unknown.
     fn of_list(&mut self, function: &'static str, list: &str, limit: Option<f64>) -> String {
-        if !self.functions.contains(&function) {
-            self.functions.push(function);
+        // The sum of the commands is known.
+        if (function, list) == ("mean_of", "command") {
+            return self.computed("mean_command".into(), "sum and sum / motors or nil".into());
         }
+        self.uses(function);
         let (mut name, mut given) = (format!("{function}_{list}"), list.to_owned());
         if let Some(limit) = limit {
             let limit = number(limit);
             let _ = write!(name, "_{}", limit.replace(['.', '-', '+'], "_"));
             let _ = write!(given, ", {limit}");
         }
+        if (function, list) == ("deviation_of", "command") {
+            given.push_str(", sum");
+        }
         self.computed(name, format!("sum and {function}({given}) or nil"))
+    }
+
+    fn uses(&mut self, function: &'static str) {
+        if !self.functions.contains(&function) {
+            self.functions.push(function);
+        }
     }
 
     fn computed(&mut self, name: String, expression: String) -> String {

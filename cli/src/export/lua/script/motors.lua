@@ -63,11 +63,15 @@ end
 
 -- The sum is nil where the commands are unknown.
 function read_commands()
-  local low_us, scale, command = low_us, scale, command
+  -- Locals take fewer instructions.
+  local low_us, scale, command, functions, channels = low_us, scale, command, functions, SRV_Channels
+-- @if margin
+  local margin = margin
+-- @end
   local total = 0.0
 -- @put clear_efforts
   for i = 1, motors do
-    local pwm = SRV_Channels:get_output_pwm(functions[i])
+    local pwm = channels:get_output_pwm(functions[i])
     if not pwm then
       sum = nil
 -- @put forget_efforts
@@ -95,16 +99,18 @@ function read_commands()
   end
   sum = total
 -- @if less_yaw
+  local less_yaw, yaw_factor, yaw_effort = less_yaw, yaw_factor, yaw_effort
   for i = 1, motors do
-    less_yaw[i] = has_geometry and command[i] - yaw_factor[i] * yaw_effort or command[i]
+    less_yaw[i] = yaw_effort and command[i] - yaw_factor[i] * yaw_effort or command[i]
   end
 -- @end
 end
 -- @if deviation_of
 
-function deviation_of(list)
-  local mean, square = 0.0, 0.0
-  for i = 1, motors do
+-- `sum` is that of the list; nil adds it up.
+function deviation_of(list, sum)
+  local mean, square = sum or 0.0, 0.0
+  for i = 1, sum and 0 or motors do
     mean = mean + list[i]
   end
   mean = mean / motors
