@@ -245,18 +245,15 @@ pub struct Input {
 impl Input {
     /// The other inputs that its value is made of.
     pub(crate) fn others(&self) -> impl Iterator<Item = usize> {
-        let ratio = self.ratio.into_iter();
-        ratio.flat_map(|ratio| [ratio.plus, Some(ratio.per)].into_iter().flatten())
+        self.ratio.into_iter().map(|ratio| ratio.per)
     }
 }
 
-/// What makes an input `(x + plus) / max(per, at_least)` of its statistic `x` and of other inputs, by their places. These are
-/// statistics alone.
+/// What makes an input `x / max(per, at_least)` of its statistic `x` and of another input, by its index. That is not a ratio
+/// itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ratio {
-    /// What is added to the statistic.
-    pub plus: Option<usize>,
-    /// What the sum is divided by.
+    /// The index of the input to divide by.
     pub per: usize,
     /// The least that it is divided by, above 0.
     pub at_least: f64,
@@ -265,10 +262,6 @@ pub struct Ratio {
 impl Ratio {
     /// The value of an input, from the statistics of all of them; NaN where one is unknown. `None` where there is no such input.
     pub(crate) fn of(&self, statistics: &[f64], input: usize) -> Option<f64> {
-        let plus = match self.plus {
-            Some(plus) => *statistics.get(plus)?,
-            None => 0.0,
-        };
         let per = *statistics.get(self.per)?;
         // The larger of a number and NaN would be the number.
         let per = if per < self.at_least {
@@ -276,6 +269,6 @@ impl Ratio {
         } else {
             per
         };
-        Some((statistics.get(input)? + plus) / per)
+        Some(statistics.get(input)? / per)
     }
 }

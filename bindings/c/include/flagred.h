@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_FORMAT 8
+#define FLAGRED_FORMAT 9
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -374,7 +374,7 @@ typedef struct flagred_stage {
 typedef struct flagred_source {
     double number, at_least;
     uint32_t channel, statistic;
-    uint32_t plus, per; /* sources; UINT32_MAX: none */
+    uint32_t per; /* a source; UINT32_MAX: none */
 } flagred_source;
 
 typedef struct flagred_threshold {

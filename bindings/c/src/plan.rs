@@ -35,7 +35,6 @@ struct CSource {
     at_least: f64,
     channel: u32,
     statistic: u32,
-    plus: u32,
     per: u32,
 }
 
@@ -200,7 +199,6 @@ impl CSource {
             channel: self.channel as usize,
             statistic: statistic.ok_or(Status::DamagedPlan)?,
             ratio: (self.per != NONE).then_some(channel::Ratio {
-                plus: (self.plus != NONE).then_some(self.plus as usize),
                 per: self.per as usize,
                 at_least: self.at_least,
             }),

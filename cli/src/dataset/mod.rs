@@ -181,7 +181,7 @@ fn with_margin_and_spread(mut profile: Profile, cut: Cut) -> Profile {
                 .inputs
                 .iter_mut()
                 .filter_map(|input| input.ratio.as_mut());
-            let named = ratios.flat_map(|ratio| ratio.plus.iter_mut().chain([&mut ratio.per]));
+            let named = ratios.map(|ratio| &mut ratio.per);
             for other in named.filter(|other| *other == name) {
                 other.clone_from(&renamed);
             }

@@ -262,19 +262,15 @@ fn channel(channel: &Channel) -> String {
 
 fn source(input: &Input) -> String {
     let (statistic, parameter) = input.statistic.code();
-    // Without a ratio, nothing is added and nothing divided by.
-    let (at_least, plus, per) = input.ratio.map_or((0.0, None, None), |ratio| {
-        (ratio.at_least, ratio.plus, Some(ratio.per))
-    });
-    let place =
-        |place: Option<usize>| place.map_or("UINT32_MAX".to_owned(), |place| place.to_string());
+    let at_least = input.ratio.map_or(0.0, |ratio| ratio.at_least);
+    let per = input
+        .ratio
+        .map_or("UINT32_MAX".to_owned(), |ratio| ratio.per.to_string());
     format!(
-        "{{{}, {}, {}, {statistic}, {}, {}}}",
+        "{{{}, {}, {}, {statistic}, {per}}}",
         number(parameter),
         number(at_least),
-        input.channel,
-        place(plus),
-        place(per)
+        input.channel
     )
 }
 

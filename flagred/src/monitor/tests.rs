@@ -110,7 +110,7 @@ fn risk_at(assessments: &[Update], t_s: f64) -> Result<f64, Unknown> {
     at.risk.map(|estimate| estimate.risk_pct)
 }
 
-/// `(x + plus) / max(per, at_least)`, with inputs that the rules do not have; unknown where one of them is.
+/// `x / max(per, at_least)`, with an input that the rules do not have; unknown where that is.
 #[test]
 fn a_ratio_is_of_other_inputs() {
     let text = "flagred: 1
@@ -119,8 +119,7 @@ rules: test
 window_s: 2
 inputs:
   per: {last: battery_v}
-  margin: {mean: motor_margin, plus: lift, per: per, at_least: 0.5}
-  lift: {mean: motor_command}
+  margin: {mean: motor_margin, per: per, at_least: 0.5}
 ";
     let profile: Profile = text.parse().unwrap();
     let estimator = Estimator::new(&profile, &rules(false)).unwrap();
@@ -128,9 +127,9 @@ inputs:
     let plan = estimator.plan().unwrap();
     let mut memory = OwnedMemory::new(&plan, 2);
     for (per, expected) in [
-        (2.0, Some((0.2 + 0.2) / 2.0)),
-        (0.1, Some((0.2 + 0.2) / 0.5)),
-        (0.0, Some((0.2 + 0.2) / 0.5)),
+        (2.0, Some(0.2 / 2.0)),
+        (0.1, Some(0.2 / 0.5)),
+        (0.0, Some(0.2 / 0.5)),
         (f64::NAN, None),
     ] {
         let mut monitor = Monitor::new(&estimator, craft).unwrap();

@@ -105,12 +105,10 @@ pub struct ProfileInput {
     pub ratio: Option<Ratio>,
 }
 
-/// What makes an input a ratio: `(x + plus) / max(per, at_least)` of what its source gives and of other inputs of the profile.
-/// These are no ratios themselves, and the rule set need not have them.
+/// What makes an input a ratio: `x / max(per, at_least)` of the value `x` of its source and of another input of the profile,
+/// which is not a ratio itself. The rule set need not have that input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ratio {
-    /// The input that is added.
-    pub plus: Option<String>,
     /// The input to divide by.
     pub per: String,
     /// The least to divide by, above 0.
@@ -134,7 +132,6 @@ impl Profile {
         for (input, of) in inputs.iter_mut().zip(&self.inputs) {
             let Some(ratio) = &of.ratio else { continue };
             input.ratio = Some(channel::Ratio {
-                plus: ratio.plus.as_ref().map(place).transpose()?,
                 per: place(&ratio.per)?,
                 at_least: ratio.at_least,
             });
@@ -145,7 +142,7 @@ impl Profile {
     /// Whether a ratio is made of the input of this name.
     pub(crate) fn is_part(&self, name: &str) -> bool {
         let mut ratios = self.inputs.iter().filter_map(|input| input.ratio.as_ref());
-        ratios.any(|ratio| ratio.per == name || ratio.plus.as_deref() == Some(name))
+        ratios.any(|ratio| ratio.per == name)
     }
 
     /// The names of the signals beside the motors that it needs, each once.

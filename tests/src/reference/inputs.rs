@@ -117,17 +117,7 @@ pub fn values(
         let value = of(&input.name)?;
         Some(match &input.ratio {
             None => value,
-            Some(Ratio {
-                plus,
-                per,
-                at_least,
-            }) => {
-                let plus = match plus {
-                    Some(name) => of(name)?,
-                    None => 0.0,
-                };
-                (value + plus) / of(per)?.max(*at_least)
-            }
+            Some(Ratio { per, at_least }) => value / of(per)?.max(*at_least),
         })
     });
     with_ratio.collect()

@@ -212,7 +212,7 @@ fn an_action_on_a_strength_of_no_output_raises_nothing() {
 /// A profile with every signal of motors, every statistic that a script has, and every notice, and the file of it.
 pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
     const SOURCES: [&str; 13] = [
-        "{std_less_noise: {std: motor_command_less_yaw}, plus: x6, per: x9, at_least: 0.02}",
+        "{std_less_noise: {std: motor_command_less_yaw}, per: x9, at_least: 0.02}",
         "{std_less_noise: {mean: motor_command_less_yaw}, window_s: 9}",
         "{noise: {max: motor_command}}",
         "{noise: yaw_effort}",

@@ -211,7 +211,6 @@ fn source(input: &channel::Input) -> CSource {
         at_least: input.ratio.map_or(0.0, |ratio| ratio.at_least),
         channel: input.channel as u32,
         statistic,
-        plus: place(input.ratio.and_then(|ratio| ratio.plus)),
         per: place(input.ratio.map(|ratio| ratio.per)),
     }
 }

@@ -152,15 +152,8 @@ pub(super) fn fill(
 
 /// Makes a value a ratio.
 fn quotient(value: &str, ratio: &Ratio) -> String {
-    let (plus, sum) = match ratio.plus {
-        Some(plus) => {
-            let plus = format!("value[{}]", plus + 1);
-            (format!(" and {plus}"), format!("({value} + {plus})"))
-        }
-        None => (String::new(), value.to_owned()),
-    };
     let (per, least) = (format!("value[{}]", ratio.per + 1), number(ratio.at_least));
-    format!("  {value} = {value}{plus} and {per} and {sum} / max({per}, {least})")
+    format!("  {value} = {value} and {per} and {value} / max({per}, {least})")
 }
 
 /// The kind of a row, and how its value is read.

@@ -27,7 +27,7 @@ const STATISTICS: [(&str, Statistic); 10] = [
 ];
 
 /// The keys of a ratio.
-const RATIO: [&str; 3] = ["plus", "per", "at_least"];
+const RATIO: [&str; 2] = ["per", "at_least"];
 
 type OfNumber = fn(f64) -> Statistic;
 
@@ -169,25 +169,20 @@ fn input(
     })
 }
 
-/// `plus: OTHER, per: OTHER, at_least: NUMBER`.
+/// `per: OTHER, at_least: NUMBER`.
 fn ratio(fields: &Fields, entry: &Entry, entries: &[Entry], found: &mut Found) -> Option<Ratio> {
-    let plus = match fields.get("plus") {
-        Some(node) => other(node, entry, entries, found).map(Some),
-        None => Some(None),
-    };
     let help = "write for example `per: room, at_least: 0.02`, with an input `room` beside it";
     let per = fields.require("per", help, found);
     let least = fields.require("at_least", help, found);
     let per = per.and_then(|node| other(node, entry, entries, found));
     let at_least = least.map(|_| number(fields, "at_least", 1.0, Least::Above0, found));
     Some(Ratio {
-        plus: plus?,
         per: per?,
         at_least: at_least?,
     })
 }
 
-/// The name of another input that a ratio is made of.
+/// The name of the input that a ratio divides by.
 fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Option<String> {
     let name = &node.words("an input of a ratio", found)?.text;
     let is_ratio = |other: &Entry| match &other.value.value {

@@ -274,12 +274,12 @@ name: wrong
 rules: flagred
 inputs:
   room: {mean: {min: motor_margin_high_side}}
-  good: {std: motor_command, plus: room, per: room, at_least: 0.02}
+  good: {std: motor_command, per: room, at_least: 0.02}
   nobody: {std: motor_command, per: rom, at_least: 0.02}
   itself: {std: motor_command, per: itself, at_least: 0.02}
-  again: {std: motor_command, plus: good, per: room, at_least: 0.02}
+  again: {std: motor_command, per: good, at_least: 0.02}
   bottomless: {std: motor_command, per: room}
-  undivided: {std: motor_command, plus: room}
+  undivided: {std: motor_command, at_least: 0.02}
   flat: {std: motor_command, per: room, at_least: 0}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
