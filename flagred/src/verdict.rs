@@ -150,7 +150,7 @@ pub struct VerdictSettings {
     pub clear_after_s: f64,
     /// In the first seconds in the air only FAIL is raised; WARN does not count as reached.
     pub quiet_after_take_off_s: f64,
-    /// What is raised in the last seconds before touching down is taken back; a FAIL only in the last half of them.
+    /// A WARN that is raised in the last seconds before touch-down is taken back, unless FAIL is being reached at touch-down.
     pub quiet_before_landing_s: f64,
     /// While their mean effective command is below this, the motors idle: before take-off and after landing the vehicle
     /// is on the ground, also where the land detector lags. Motors that begin to idle within 2 s after a risk that reaches

@@ -207,19 +207,21 @@ impl Alert {
         });
     }
 
-    /// Ends the flight, or what was seen of it. A landing takes back what was raised just before it.
+    /// Ends the flight, or what was seen of it. A landing takes back a WARN that was raised just before it, unless FAIL is
+    /// being reached: that is not a landing.
     pub(crate) fn end(&mut self, t_s: f64, landed: bool) -> Step {
         let change = (self.level > Level::Good).then_some(Level::Good);
         self.level = Level::Good;
+        let [_, reaches_fail] = self.reached_since_s.map(|since_s| since_s.is_some());
         self.reached_since_s = [None; 2];
-        let quiet_s = self.settings.quiet_before_landing_s;
-        let finding = self.end_finding();
-        // A FAIL just before the ground may be the fall itself.
-        let quiet_s = |finding: &Finding| match finding.level {
-            Level::Fail => quiet_s / 2.0,
-            _ => quiet_s,
+        let is_landing = |finding: &Finding| {
+            landed
+                && !reaches_fail
+                && finding.level < Level::Fail
+                && t_s - finding.raised_s < self.settings.quiet_before_landing_s
         };
-        let ended = finding.filter(|f| !landed || t_s - f.raised_s >= quiet_s(f));
+        let ended = self.finding.filter(|finding| !is_landing(finding));
+        self.end_finding();
         Step { change, ended }
     }
 
@@ -427,13 +429,19 @@ mod tests {
     }
 
     #[test]
-    fn a_landing_takes_back_what_was_raised_just_before_it() {
-        // Raised at 0.5 s. A WARN is taken back for 2 s, a FAIL for 1 s.
-        for (elevated_pct, taken_back_s) in [(60.0, 2.0), (90.0, 1.0)] {
-            let (_, _, mut flown) = run(&[(1.0, 0.0, elevated_pct)]);
-            let mut later = flown.clone();
-            assert_eq!(flown.end(0.4 + taken_back_s, true).ended, None);
-            assert!(later.end(0.6 + taken_back_s, true).ended.is_some());
+    fn a_landing_takes_back_a_warn_that_was_raised_just_before_it() {
+        // Raised at 0.5 s, taken back for 2 s.
+        let (_, _, mut flown) = run(&[(1.0, 0.0, 60.0)]);
+        let mut later = flown.clone();
+        assert_eq!(flown.end(2.4, true).ended, None);
+        assert!(later.end(2.6, true).ended.is_some());
+        // A FAIL, and a WARN while FAIL is reached, are not a landing.
+        for steps in [
+            &[(1.0, 0.0, 90.0)][..],
+            &[(1.0, 0.0, 60.0), (0.3, 0.0, 90.0)],
+        ] {
+            let (_, _, mut flown) = run(steps);
+            assert!(flown.end(1.4, true).ended.is_some());
         }
         // A link that is lost is no landing.
         let (_, _, mut flown) = run(&[(2.0, 0.0, 90.0)]);

@@ -46,6 +46,8 @@ pub struct Levels {
     /// The level now.
     pub level: Level,
     held_s: f64,
+    /// Whether FAIL is being reached, for however long.
+    reaches_fail: bool,
     all: Vec<Trouble>,
 }
 
@@ -55,6 +57,7 @@ impl Levels {
         Levels {
             level: Level::Good,
             held_s: f64::NAN,
+            reaches_fail: false,
             all: Vec::new(),
         }
     }
@@ -72,6 +75,7 @@ impl Levels {
             };
             reached(&of.raise, now) && !is_quiet
         };
+        self.reaches_fail = raises(Level::Fail, &settings.fail, now);
         let is_held = |(level, of): &&(Level, &LevelSettings)| {
             raises(*level, of, now) || reached(&of.until, now)
         };
@@ -115,15 +119,14 @@ impl Levels {
 
     /// Ends the flight: the vehicle landed, or nothing is known any more. Gives the times of trouble.
     pub fn end(&mut self, settings: &VerdictSettings, landed_s: Option<f64>) -> Vec<Trouble> {
-        let Levels { level, mut all, .. } = std::mem::take(self);
-        // A landing takes back what is open and was raised just before it.
-        let quiet_s = |trouble: &Trouble| match trouble.level {
-            Level::Fail => settings.quiet_before_landing_s / 2.0,
-            _ => settings.quiet_before_landing_s,
+        let ended = std::mem::take(self);
+        let mut all = ended.all;
+        // A landing takes back a WARN that is open and was raised just before it, unless FAIL is being reached.
+        let is_late = |open: &Trouble| {
+            landed_s.is_some_and(|t_s| t_s - open.raised_s < settings.quiet_before_landing_s)
         };
-        let raised_before_s = |open: &Trouble| landed_s.map(|landed_s| landed_s - open.raised_s);
-        let is_open = level > Level::Good;
-        all.pop_if(|open| is_open && raised_before_s(open).is_some_and(|s| s < quiet_s(open)));
+        let is_warn = ended.level > Level::Good && !ended.reaches_fail;
+        all.pop_if(|open| is_warn && open.level == Level::Warn && is_late(open));
         all
     }
 }
