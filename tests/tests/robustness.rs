@@ -33,14 +33,14 @@ fn coarse_logs_wrong_limits_and_faults() {
          of or not as with all samples, share of steps without a risk"
     );
     let table = [
-        ("as flown, 25 Hz", AS_FLOWN, 0.90, 0.001),
+        ("as flown, 25 Hz", AS_FLOWN, 0.89, 0.001),
         (
             "12.5 Hz",
             Replay {
                 every: 2,
                 ..AS_FLOWN
             },
-            0.90,
+            0.89,
             0.5,
         ),
         (
@@ -49,7 +49,7 @@ fn coarse_logs_wrong_limits_and_faults() {
                 every: 3,
                 ..AS_FLOWN
             },
-            0.90,
+            0.89,
             1.0,
         ),
         (
@@ -234,13 +234,17 @@ fn the_elevated_risk_is_that_of_any_rate() {
     let data = reference_data();
     let flights = simulated::flights(&data);
     let estimator = estimator();
+    let warn = estimator.profile().verdict.warn.raise;
+    let threshold_pct = warn.elevated_risk_pct.unwrap();
     let differences = on_all_cores(&flights, |flight| {
         let risks = flight.replay(&estimator, AS_FLOWN).risks;
         let as_flown = elevated(&estimator, &risks, 25);
         [1, 10, 400].map(|rate_hz| {
             let other = elevated(&estimator, &risks, rate_hz);
             let pairs = other.iter().zip(&as_flown);
-            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+            pairs
+                .map(|(a, b)| (a - b).abs() / threshold_pct)
+                .fold(0.0, f64::max)
         })
     });
     for (i, rate_hz) in [1, 10, 400].into_iter().enumerate() {
@@ -249,14 +253,18 @@ fn the_elevated_risk_is_that_of_any_rate() {
         let largest = of_rate[of_rate.len() - 1];
         let of_most = of_rate[of_rate.len() * 95 / 100];
         println!(
-            "{rate_hz} Hz against 25 Hz: largest difference of a flight, median {:.2}, 95 % {of_most:.2}, of all {largest:.2} points",
+            "{rate_hz} Hz against 25 Hz: largest difference of a flight, as a share of the threshold of WARN: median {:.2}, 95 % {of_most:.2}, of all {largest:.2}",
             of_rate[of_rate.len() / 2]
         );
-        // Where the risk jumps, a second without a sample leaves open when; no way of adding up knows it either.
-        assert!(of_most < 2.0, "{rate_hz} Hz: {of_most}");
+        // A risk that jumps within a second without a sample may have jumped at any time of it.
+        let most = if rate_hz == 1 {
+            (0.5, 1.0)
+        } else {
+            (0.1, 0.25)
+        };
         assert!(
-            largest < if rate_hz == 1 { 3.5 } else { 0.5 },
-            "{rate_hz} Hz: {largest}"
+            of_most < most.0 && largest < most.1,
+            "{rate_hz} Hz: {of_most}, {largest}"
         );
     }
 }

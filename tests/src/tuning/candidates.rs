@@ -39,7 +39,7 @@ pub fn candidate(model: &Model, inputs: &[&str]) -> Model {
 }
 
 /// What the learned votes count beside that of a step.
-const BESIDE_STEP: f64 = 0.58;
+const BESIDE_STEP: f64 = 0.66;
 
 /// The rules with a vote that only raises: a sudden change is what shows a motor that fails on a craft with room to spare. Like
 /// what `swing_per_room` says it is chosen, because the flights to learn from have few such faults.
@@ -55,7 +55,7 @@ pub fn with_step(mut model: Model, template: &Model) -> Result<Model, String> {
     let input = named.find(|input| input.name == "unsteady_now");
     let mut input = input.cloned().ok_or("no input `unsteady_now`")?;
     input.terms.clear();
-    let input = input.partition_at([("calm", 0.01), ("violent", 0.03)]);
+    let input = input.partition_at([("calm", 0.01), ("violent", 0.036)]);
     let mut rules = template.rules.iter();
     let rule = rules.find(|rule| rule.rule.to_string().contains("unsteady_now IS violent"));
     let mut rule = rule
