@@ -12,22 +12,22 @@ pub(crate) use layers::Layered;
 use maxima::{Highest, Maxima};
 pub(crate) use partition::Partition;
 use piece::{Integrals, Piece, unit};
-use polyline::{Polylines, Workspace};
 pub(crate) use prepared::Prepared;
 use singletons::Singletons;
 use weighted::Consequents;
+use workspace::Workspace;
 
+mod calculus;
 mod curves;
 mod layers;
 mod maxima;
 mod partition;
 mod piece;
-pub(crate) mod polyline;
 mod prepared;
 mod sampled;
 mod singletons;
-mod sloped;
 pub(crate) mod weighted;
+pub(crate) mod workspace;
 
 /// The operators that activate and aggregate consequents.
 #[derive(Debug, Clone, Copy)]
@@ -77,7 +77,6 @@ pub(crate) struct Defuzzify {
 /// How the value is computed.
 #[derive(Debug, Clone)]
 pub(crate) enum Method {
-    Lines(Polylines),
     /// The centroid of the maximum over a partition.
     Partition(Partition),
     Curves(Curves),
@@ -150,7 +149,6 @@ impl Method {
         if let Some(sampling) = output.samples {
             return Method::Sampled(sampling, Curves::new(terms, low, high));
         }
-        let lines = Polylines::new(terms, low, high).filter(|_| Polylines::can(joint));
         let about = (low + 0.5 * (high - low), unit(high - low));
         let is_centroid_of = |implication: Implication, aggregation: Aggregation| {
             output.defuzzifier == Defuzzifier::Centroid
@@ -159,23 +157,23 @@ impl Method {
         let cuts = is_centroid_of(Implication::Minimum, Aggregation::Maximum);
         let scales = is_centroid_of(Implication::Product, Aggregation::Maximum);
         if (cuts || scales)
-            && let Some(lines) = &lines
-            && let Some(partition) = Partition::new(lines, terms.len(), about, scales)
+            && let Some(partition) = Partition::new(terms, (low, high), about, scales)
         {
             return Method::Partition(partition);
         }
+        let is_straight = |term: &Term| term.membership_function.corners().is_some();
+        let all_straight = terms.iter().all(is_straight);
         let prepared = Prepared::new(terms, (low, high), joint, output.defuzzifier);
-        match (prepared, lines) {
-            (Some(prepared), _) if is_centroid_of(Implication::Product, Aggregation::Sum) => {
+        match prepared {
+            Some(prepared) if is_centroid_of(Implication::Product, Aggregation::Sum) => {
                 Method::Moments(prepared.moments(about.1))
             }
-            (Some(prepared), Some(_)) if cuts => match Layered::new(&prepared, about) {
+            Some(prepared) if cuts && all_straight => match Layered::new(&prepared, about) {
                 Some(layered) => Method::Layered(layered),
                 None => Method::Prepared(prepared),
             },
-            (Some(prepared), _) => Method::Prepared(prepared),
-            (None, Some(lines)) => Method::Lines(lines),
-            (None, None) => Method::Curves(Curves::new(terms, low, high)),
+            Some(prepared) => Method::Prepared(prepared),
+            None => Method::Curves(Curves::new(terms, low, high)),
         }
     }
 }
@@ -238,7 +236,6 @@ impl Defuzzify {
     /// Whether a term is 0 all over the range.
     pub(crate) fn is_empty(&self, term: usize) -> bool {
         match &self.method {
-            Method::Lines(lines) => lines.is_empty(term),
             Method::Curves(curves) | Method::Sampled(_, curves) => curves.is_empty(term),
             Method::Partition(partition) => partition.is_empty(term),
             Method::Prepared(prepared) => prepared.is_empty(term),
@@ -263,7 +260,7 @@ impl Defuzzify {
                     curves.degree(strengths, self.joint, x)
                 })
             }
-            Method::Lines(_) | Method::Curves(_) => self.exact(strengths, workspace),
+            Method::Curves(_) => self.exact(strengths, workspace),
             Method::Singletons(singletons) => {
                 singletons.value(strengths, self.joint, self.defuzzifier)
             }
@@ -337,7 +334,6 @@ impl Defuzzify {
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
         match &self.method {
-            Method::Lines(lines) => lines.pieces(strengths, self.joint, workspace, visit),
             Method::Curves(curves) => curves.pieces(strengths, self.joint, workspace, visit),
             Method::Partition(_)
             | Method::Prepared(_)

@@ -8,6 +8,7 @@ use crate::table::flank::Measure;
 use crate::table::{Flank, FuzzySet, Kind, Knot, Moment, Section, SetDefuzzifier, SetTerm, Strand};
 use crossings::Couple;
 use stretches::{Stretch, curved, knots, straight};
+pub(super) use stretches::{corners, limits};
 
 mod crossings;
 mod stretches;
@@ -132,8 +133,8 @@ impl Prepared {
     /// Adds the flanks of a term.
     fn term(&mut self, term: &Term, low: f64, high: f64, measure: Measure) -> Option<()> {
         let first_flank = self.flanks.len();
-        let stretches = match term.membership_function.corners() {
-            Some(corners) => straight(corners, term.height, low, high),
+        let stretches = match corners(term) {
+            Some(corners) => straight(&corners, low, high),
             None => curved(term, low, high),
         };
         for stretch in stretches {

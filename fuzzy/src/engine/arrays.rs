@@ -197,7 +197,7 @@ impl OwnedTable {
     fn output(&mut self, output: &CompiledOutput) {
         let defuzzify = &output.defuzzify;
         let (form, (first, end)) = match &defuzzify.method {
-            Method::Lines(_) | Method::Curves(_) | Method::Sampled(..) | Method::Singletons(_) => {
+            Method::Curves(_) | Method::Sampled(..) | Method::Singletons(_) => {
                 (ClosedForm::NONE, (0, 0))
             }
             Method::Partition(partition) => {

@@ -3,7 +3,7 @@
 use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
-use crate::defuzzify::polyline::Workspace;
+use crate::defuzzify::workspace::Workspace;
 use crate::defuzzify::{Defuzzify, Strengths};
 use crate::model::{Model, NoRuleFires};
 use crate::table::{self, Buffers, Partial, Strongest, Table};
@@ -139,7 +139,7 @@ impl Scratch {
     /// Bounds the steps of further integrations: those that would take more end early, and their values mean nothing.
     pub(crate) fn bound_steps(&mut self, most: u64) {
         for workspace in self.workspaces() {
-            workspace.steps = crate::defuzzify::polyline::Steps { taken: 0, most };
+            workspace.steps = crate::defuzzify::workspace::Steps { taken: 0, most };
         }
     }
 
