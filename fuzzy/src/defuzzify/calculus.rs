@@ -216,16 +216,7 @@ mod tests {
 
     #[test]
     fn aggregations_as_by_differences() {
-        for aggregation in [
-            Aggregation::Maximum,
-            Aggregation::Sum,
-            Aggregation::ProbabilisticSum,
-            Aggregation::BoundedSum,
-            Aggregation::Drastic,
-            Aggregation::Einstein,
-            Aggregation::Hamacher,
-            Aggregation::NilpotentMaximum,
-        ] {
+        for aggregation in Aggregation::ALL {
             for x in DEGREES {
                 for y in DEGREES.map(|y| y + 0.001) {
                     let at = |t: f64| aggregation.of(x + 2.0 * t, y - 0.7 * t);

@@ -111,12 +111,9 @@ impl Curves {
         4 * crossing * crossing
     }
 
-    /// Whether a term is 0 all over the range.
-    pub(crate) fn is_empty(&self, term: usize) -> bool {
-        let Some(shape) = self.terms.get(term) else {
-            return true;
-        };
-        let inside = |x: f64| shape.membership(x) > 0.0;
+    /// Whether all terms are 0 all over the range.
+    pub(crate) fn is_empty(&self) -> bool {
+        let inside = |x: f64| self.terms.iter().any(|term| term.membership(x) > 0.0);
         let mut intervals = self.cuts.iter().zip(self.cuts.iter().skip(1));
         intervals.all(|((a, _), (b, _))| !inside(*a) && !inside(0.5 * (a + b)) && !inside(*b))
     }
@@ -374,7 +371,7 @@ impl Curves {
     }
 }
 
-fn is_formula(term: &Term) -> bool {
+pub(super) fn is_formula(term: &Term) -> bool {
     matches!(
         term.membership_function,
         MembershipFunction::Function { .. }

@@ -14,6 +14,8 @@ pub(crate) struct Partition {
     pairs: Vec<Pair>,
     /// The index of each term from left to right.
     ranks: Vec<usize>,
+    /// Whether terms are scaled by their firing strengths, else cut.
+    pub(crate) scales: bool,
 }
 
 impl Partition {
@@ -50,6 +52,7 @@ impl Partition {
         let mut partition = Partition {
             pairs: vec![Pair::default(); terms.div_ceil(2)],
             ranks,
+            scales,
         };
         for Interval { from, to, alive } in &intervals {
             let (length, m) = (to - from, from + 0.5 * (to - from) - origin);
@@ -111,12 +114,6 @@ impl Partition {
     /// The number of firing strengths that are read. The last ones are always 0.
     pub(crate) fn strengths(&self) -> usize {
         2 * self.pairs.len() + 1
-    }
-
-    /// Whether a term is 0 all over the range.
-    pub(crate) fn is_empty(&self, term: usize) -> bool {
-        let area = |rank: usize| self.pairs[rank / 2].area[0][rank % 2];
-        self.ranks.get(term).is_none_or(|rank| area(*rank) <= 0.0)
     }
 
     /// The coefficients of the polynomials.

@@ -9,7 +9,7 @@ use crate::table::numeric::gauss;
 use crate::table::{Flank, Knot};
 
 /// A part of a term that only rises, only falls or is level.
-pub(super) struct Stretch {
+pub(crate) struct Stretch {
     /// Its ends, and the cuts between.
     pub(super) cuts: Vec<f64>,
     pub(super) left: f64,
@@ -18,7 +18,7 @@ pub(super) struct Stretch {
 }
 
 /// The corners of a term; `None` if it is curved.
-pub(in crate::defuzzify) fn corners(term: &Term) -> Option<Vec<(f64, f64)>> {
+pub(crate) fn corners(term: &Term) -> Option<Vec<(f64, f64)>> {
     let mut corners = term.membership_function.corners()?;
     for corner in &mut corners {
         corner.1 *= term.height;
@@ -26,7 +26,8 @@ pub(in crate::defuzzify) fn corners(term: &Term) -> Option<Vec<(f64, f64)>> {
     Some(corners)
 }
 
-pub(super) fn straight(corners: &[(f64, f64)], low: f64, high: f64) -> Vec<Stretch> {
+/// The stretches of a straight term within the range, without those where it is 0.
+pub(crate) fn straight(corners: &[(f64, f64)], low: f64, high: f64) -> Vec<Stretch> {
     let mut cuts: Vec<f64> = corners.iter().map(|corner| corner.0).collect();
     cuts.retain(|x| low < *x && *x < high);
     cuts.insert(0, low);

@@ -362,7 +362,7 @@ fn of_arrays(engine: &Engine, inputs: &[f64]) -> Option<Vec<Outcome>> {
     if table
         .outputs
         .iter()
-        .any(|output| output.form == table::ClosedForm::NONE)
+        .any(|output| output.form() == table::ClosedForm::Integrated)
     {
         return None;
     }
