@@ -247,7 +247,7 @@ impl Table<'_> {
     /// };
     /// let mut outcomes = [Outcome::UNDEFINED];
     /// table.evaluate(&mut scratch, &[27.5], &mut outcomes);
-    /// assert_eq!(outcomes[..], engine.evaluate(&[27.5])?);
+    /// assert_eq!(outcomes[..], engine.evaluate(&[27.5])?[..]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn evaluate(&self, scratch: &mut Scratch<'_>, inputs: &[f64], outcomes: &mut [Outcome]) {
