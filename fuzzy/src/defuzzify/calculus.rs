@@ -1,5 +1,5 @@
-//! What the integrator must know of each operator: its derivative, where it has kinks and steps, and whether straight lines
-//! stay straight between them.
+//! Properties of the operators that the integrator needs: their derivatives, where they have kinks and steps, and whether
+//! straight lines stay straight between these.
 
 use crate::model::{Aggregation, Implication};
 use crate::table::LEAST_STRENGTH;

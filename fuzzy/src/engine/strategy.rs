@@ -146,7 +146,7 @@ impl Merging {
     }
 }
 
-/// What an implication makes of a term.
+/// The effect of an implication on a term.
 enum Activated {
     /// It is cut off at the firing strength.
     Cut,
