@@ -78,7 +78,7 @@ pub(crate) fn rules_for(engine: &Engine, mut outputs: Range<usize>) -> Result<Ru
         (Some(chain), _) => outputs.find_map(|output| chain.open(output).next()),
         (None, table) => outputs.find(|output| {
             let of = table.and_then(|table| table.outputs.get(*output));
-            of.is_none_or(|of| of.form == ClosedForm::NONE)
+            of.is_none_or(|of| of.form() == ClosedForm::Integrated)
         }),
     };
     match (open, chain.map(|chain| chain.table).or(table)) {

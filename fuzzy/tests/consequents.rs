@@ -153,7 +153,7 @@ fn batches_have_the_bits_of_single_calls() {
     let points: Vec<f64> = (0..=100).map(|i| f64::from(i) / 100.0).collect();
     let outcomes = engine.evaluate_batch(&[&points]).unwrap();
     for (x, batch) in points.iter().zip(outcomes.chunks(2)) {
-        assert_eq!(engine.evaluate(&[*x]).unwrap(), batch, "at {x}");
+        assert_eq!(engine.evaluate(&[*x]).unwrap()[..], *batch, "at {x}");
     }
 }
 

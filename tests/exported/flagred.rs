@@ -138,7 +138,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 ],
                 blocks: &[],
                 outputs: &[
-                    Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5, clamps: 0 },
+                    Output { low: 0.0, high: 100.0, default_value: NaN, form: 2, first: 0, end: 5, first_strength: 0, end_strength: 5, clamps: 0 },
                 ],
                 pairs: &[],
                 layered_sets: &[],

@@ -90,9 +90,9 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
         ],
         blocks: &[],
         outputs: &[
-            Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(6), first: 0, end: 1, first_strength: 0, end_strength: 4, clamps: 0 },
-            Output { low: 0.0, high: 1.0, default_value: NaN, form: ClosedForm(6), first: 1, end: 2, first_strength: 4, end_strength: 6, clamps: 0 },
-            Output { low: 0.0, high: 10.0, default_value: NaN, form: ClosedForm(9), first: 0, end: 1, first_strength: 6, end_strength: 10, clamps: 0 },
+            Output { low: 0.0, high: 100.0, default_value: NaN, form: 6, first: 0, end: 1, first_strength: 0, end_strength: 4, clamps: 0 },
+            Output { low: 0.0, high: 1.0, default_value: NaN, form: 6, first: 1, end: 2, first_strength: 4, end_strength: 6, clamps: 0 },
+            Output { low: 0.0, high: 10.0, default_value: NaN, form: 9, first: 0, end: 1, first_strength: 6, end_strength: 10, clamps: 0 },
         ],
         pairs: &[],
         layered_sets: &[LayeredSet { first_base: 0, end_base: 9, first_layer: 0, end_layer: 5 }],
@@ -112,8 +112,8 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
         consequents: &[],
         coefficients: &[],
         sets: &[
-            FuzzySet { unit: 64.0, defuzzifier: SetDefuzzifier(0), sum: 0, first_section: 0, end_section: 13, first_term: 0, end_term: 4 },
-            FuzzySet { unit: 1.0, defuzzifier: SetDefuzzifier(3), sum: 0, first_section: 13, end_section: 19, first_term: 4, end_term: 6 },
+            FuzzySet { unit: 64.0, defuzzifier: 0, sum: 0, first_section: 0, end_section: 13, first_term: 0, end_term: 4 },
+            FuzzySet { unit: 1.0, defuzzifier: 3, sum: 0, first_section: 13, end_section: 19, first_term: 4, end_term: 6 },
         ],
         set_terms: &[
             SetTerm { highest: 1.0, first_flank: 0, end_flank: 1 },

@@ -80,7 +80,7 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
         ],
         blocks: &[],
         outputs: &[
-            Output { low: 0.0, high: 30.0, default_value: NaN, form: ClosedForm(1), first: 0, end: 2, first_strength: 0, end_strength: 5, clamps: 0 },
+            Output { low: 0.0, high: 30.0, default_value: NaN, form: 1, first: 0, end: 2, first_strength: 0, end_strength: 5, clamps: 0 },
         ],
         pairs: &[
             Pair { area: [[10.0, 10.0], [-5.0, -5.0]], moment: [[-100.0, 0.0], [50.0, 0.0], [0.0, 0.0]], width: [0.0, 0.0], middle: [0.0, 0.0] },

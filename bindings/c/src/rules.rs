@@ -92,27 +92,11 @@ fn hedges(codes: &[u32]) -> Result<&[Hedge], Status> {
 }
 
 pub(crate) fn conjunction(code: u32) -> Result<Conjunction, Status> {
-    Ok(match code {
-        0 => Conjunction::Minimum,
-        1 => Conjunction::Product,
-        2 => Conjunction::BoundedDifference,
-        3 => Conjunction::Drastic,
-        4 => Conjunction::Einstein,
-        5 => Conjunction::Hamacher,
-        6 => Conjunction::NilpotentMinimum,
-        _ => return Err(Status::DamagedPlan),
-    })
+    let found = Conjunction::ALL.get(code as usize).copied();
+    found.ok_or(Status::DamagedPlan)
 }
 
 pub(crate) fn disjunction(code: u32) -> Result<Disjunction, Status> {
-    Ok(match code {
-        0 => Disjunction::Maximum,
-        1 => Disjunction::ProbabilisticSum,
-        2 => Disjunction::BoundedSum,
-        3 => Disjunction::Drastic,
-        4 => Disjunction::Einstein,
-        5 => Disjunction::Hamacher,
-        6 => Disjunction::NilpotentMaximum,
-        _ => return Err(Status::DamagedPlan),
-    })
+    let found = Disjunction::ALL.get(code as usize).copied();
+    found.ok_or(Status::DamagedPlan)
 }

@@ -119,7 +119,11 @@ impl Search<'_> {
             * match self.and {
                 Conjunction::Minimum => degrees.fold(1.0, f64::min),
                 Conjunction::Product => degrees.product(),
-                _ => 0.0,
+                Conjunction::BoundedDifference
+                | Conjunction::Drastic
+                | Conjunction::Einstein
+                | Conjunction::Hamacher
+                | Conjunction::NilpotentMinimum => 0.0,
             }
     }
 }

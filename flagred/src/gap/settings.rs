@@ -87,7 +87,11 @@ impl GapSettings {
             _ if !is_plain(model) => f64::MIN_POSITIVE,
             Conjunction::Minimum => 0.5,
             Conjunction::Product => libm::pow(0.5, model.inputs.len() as f64),
-            _ => f64::MIN_POSITIVE,
+            Conjunction::BoundedDifference
+            | Conjunction::Drastic
+            | Conjunction::Einstein
+            | Conjunction::Hamacher
+            | Conjunction::NilpotentMinimum => f64::MIN_POSITIVE,
         };
         self.coverage_below
             .unwrap_or_else(|| match model.inputs.iter().all(sums_to_one) {

@@ -35,8 +35,14 @@ const STRENGTHS: [f64; 7] = [1.0, 0.9, 0.75, 0.5, 0.25, 0.1, 0.01];
 #[must_use]
 pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
     let found = model.outputs.iter().find(|o| o.variable.name == output)?;
-    if let Defuzzifier::WeightedSum | Defuzzifier::Tsukamoto = found.defuzzifier {
-        return None;
+    match found.defuzzifier {
+        Defuzzifier::WeightedSum | Defuzzifier::Tsukamoto => return None,
+        Defuzzifier::Centroid
+        | Defuzzifier::Bisector
+        | Defuzzifier::SmallestOfMaxima
+        | Defuzzifier::MeanOfMaxima
+        | Defuzzifier::LargestOfMaxima
+        | Defuzzifier::WeightedAverage => {}
     }
     let concluded = |term: &str| {
         let consequents = model.rules.iter().flat_map(|rule| &rule.rule.consequents);

@@ -12,7 +12,7 @@ use alloc::{
 use super::shown;
 use crate::{
     Engine,
-    model::{MembershipFunction, Model, Output, Term, Variable},
+    model::{Defuzzifier, MembershipFunction, Model, Output, Term, Variable},
     rule::{Condition, Rule, is_plain_name},
 };
 
@@ -120,8 +120,14 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[Unreached]) 
         ..
     } = output;
     let method = match defuzzifier {
-        crate::model::Defuzzifier::Bisector => "bisector",
-        _ => "centroid",
+        Defuzzifier::Bisector => "bisector",
+        Defuzzifier::Centroid
+        | Defuzzifier::SmallestOfMaxima
+        | Defuzzifier::MeanOfMaxima
+        | Defuzzifier::LargestOfMaxima
+        | Defuzzifier::WeightedAverage
+        | Defuzzifier::WeightedSum
+        | Defuzzifier::Tsukamoto => "centroid",
     };
     let range = widened(model, output, unreached).map(|[low, high]| {
         let range = format!("range: [{}, {}]", shown(low), shown(high));

@@ -1,12 +1,14 @@
-//! The aggregated set where a term is curved. It is cut where membership functions are not smooth or turn, where they meet
-//! plateaus and where they cross, and integrated between the cuts.
+//! The integrator: any terms under any operators. The aggregated set is cut where membership functions are not smooth or turn,
+//! where they meet plateaus and where they cross. Between the cuts a straight piece has a formula, and a curved one is
+//! integrated by Gauss-Legendre.
 
 use alloc::vec::Vec;
 
+use super::calculus::{Sloped, Smooth, activate, aggregate, between_levels, keeps_lines};
 use super::maxima::{EQUAL, monotone};
 use super::piece::{Curve, Piece};
-use super::polyline::{STEPS_OF_A_CURVE, Workspace};
-use super::sloped::{Sloped, activate, aggregate};
+use super::prepared::{corners, limits};
+use super::workspace::{STEPS_OF_A_CURVE, Workspace};
 use super::{Joint, Strengths};
 use crate::model::{Aggregation, Implication, MembershipFunction, Term};
 
@@ -14,6 +16,9 @@ mod kinks;
 
 /// A formula may have a kink anywhere: it is integrated between so many even cuts. What is narrower may be missed.
 const EVENLY: u32 = 256;
+
+/// There is memory for the crossings of so many terms that all cross each other.
+const MOST_CROSSING: usize = 64;
 
 /// The terms of one output and the cuts of its range.
 #[derive(Debug, Clone)]
@@ -23,8 +28,18 @@ pub(crate) struct Curves {
     cuts: Vec<(f64, Option<usize>)>,
     /// The highest degree of each term within the range.
     highest: Vec<f64>,
+    /// The corners of each straight term.
+    corners: Vec<Option<Vec<(f64, f64)>>>,
     /// Whether a term is a formula, whose kinks are not known.
     has_formula: bool,
+}
+
+/// A term on a stretch between two cuts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Run {
+    term: usize,
+    /// `None` if it is curved.
+    line: Option<Line>,
 }
 
 /// A term under a firing strength, on a stretch.
@@ -33,8 +48,33 @@ pub(super) struct Part {
     term: usize,
     strength: f64,
     implication: Implication,
-    /// Its degree, where that is the same all over the stretch.
-    level: Option<f64>,
+    /// Its degrees, if it is known to be straight all over the stretch.
+    line: Option<Line>,
+}
+
+/// A straight line over a stretch, by its degrees just inside the ends.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    from: f64,
+    to: f64,
+    left: f64,
+    right: f64,
+}
+
+impl Line {
+    fn at(&self, x: f64) -> f64 {
+        if x <= self.from {
+            self.left
+        } else if x >= self.to {
+            self.right
+        } else {
+            self.left + (self.right - self.left) * ((x - self.from) / (self.to - self.from))
+        }
+    }
+
+    fn is_level(&self) -> bool {
+        self.left == self.right
+    }
 }
 
 impl Curves {
@@ -60,21 +100,20 @@ impl Curves {
             terms: terms.to_vec(),
             cuts,
             highest,
+            corners: terms.iter().map(corners).collect(),
             has_formula: terms.iter().any(is_formula),
         }
     }
 
-    /// The most cuts of an evaluation.
+    /// The most cuts between two cuts of an evaluation, besides those of its activations.
     pub(crate) fn workspace(&self) -> usize {
-        self.cuts.len() + 4 * self.terms.len() * self.terms.len()
+        let crossing = self.terms.len().min(MOST_CROSSING);
+        4 * crossing * crossing
     }
 
-    /// Whether a term is 0 all over the range.
-    pub(crate) fn is_empty(&self, term: usize) -> bool {
-        let Some(shape) = self.terms.get(term) else {
-            return true;
-        };
-        let inside = |x: f64| shape.membership(x) > 0.0;
+    /// Whether all terms are 0 all over the range.
+    pub(crate) fn is_empty(&self) -> bool {
+        let inside = |x: f64| self.terms.iter().any(|term| term.membership(x) > 0.0);
         let mut intervals = self.cuts.iter().zip(self.cuts.iter().skip(1));
         intervals.all(|((a, _), (b, _))| !inside(*a) && !inside(0.5 * (a + b)) && !inside(*b))
     }
@@ -103,76 +142,134 @@ impl Curves {
         workspace: &mut Workspace,
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
-        let all_known = self.kinks(strengths, joint, workspace);
-        let (cuts, parts, steps) = (&workspace.cuts, &mut workspace.parts, &mut workspace.steps);
+        let is_active = |term: usize| strengths.of(term).iter().any(|h| *h > 0.0);
+        let mut cuts = self.cuts.iter();
+        let mut from = cuts.next().map_or(0.0, |cut| cut.0);
+        for &(to, term) in cuts {
+            if to > from && term.is_none_or(is_active) {
+                self.stretch(strengths, joint, (from, to), workspace, visit);
+                from = to;
+            }
+        }
+    }
+
+    /// The same on a stretch that holds no cut of an active term.
+    fn stretch(
+        &self,
+        strengths: Strengths<'_>,
+        joint: Joint,
+        (from, to): (f64, f64),
+        workspace: &mut Workspace,
+        visit: &mut dyn FnMut(&Piece<'_>),
+    ) {
+        self.runs(strengths, (from, to), &mut workspace.runs);
+        let all_known = self.kinks(strengths, joint, (from, to), workspace);
+        let Workspace {
+            cuts,
+            runs,
+            parts,
+            steps,
+            ..
+        } = workspace;
+        let smooth = Smooth::of(joint.aggregation);
+        let has_steps = all_known && smooth.has_steps;
+        // The branch of an operator with a step is the same all over a piece.
+        let aggregation = match has_steps {
+            true => smooth.aggregation,
+            false => joint.aggregation,
+        };
         for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
             let width = to - from;
             if width <= 0.0 {
                 continue;
             }
-            let middle = from + 0.5 * width;
-            self.parts(strengths, joint.implication, (from, to), all_known, parts);
+            self.parts(
+                strengths,
+                joint.implication,
+                (from, to),
+                all_known,
+                (runs, parts),
+            );
             if !steps.take(strengths.strengths.len() + parts.len() * STEPS_OF_A_CURVE) {
                 return;
             }
-            let degree = self.joined(parts, joint.aggregation, middle);
-            let has_step = all_known
-                && matches!(
-                    joint.aggregation,
-                    Aggregation::Drastic | Aggregation::NilpotentMaximum
-                );
-            if parts.iter().all(|part| part.level.is_some()) || has_step && degree == 1.0 {
-                visit(&Piece {
-                    from,
-                    to,
-                    left: degree,
-                    right: degree,
-                    curve: None,
-                });
-                continue;
+            let is_level = |part: &Part| part.line.is_some_and(|line| line.is_level());
+            let are_level = parts.iter().all(is_level);
+            if are_level || has_steps {
+                let degree = self.joined(parts, joint.aggregation, from + 0.5 * width);
+                if are_level || degree == 1.0 {
+                    visit(&Piece {
+                        from,
+                        to,
+                        left: degree,
+                        right: degree,
+                        curve: None,
+                    });
+                    continue;
+                }
             }
-            // The branch of an operator with a step is the same all over the piece.
-            let aggregation = match has_step {
-                true => Aggregation::Maximum,
-                false => joint.aggregation,
-            };
+            let is_straight = parts.iter().all(|part| part.line.is_some())
+                && (smooth.keeps_lines || parts.len() == 1);
             let at = |part: f64| from + width * part;
             // Just inside, past a step at the cut.
             let inside = |x: f64| x.max(from.next_up()).min(to.next_down());
+            let curve = Curve {
+                degree: &|part| self.joined(parts, aggregation, at(part)),
+                slope: &|part| self.slope(parts, aggregation, inside(at(part)), width),
+            };
             visit(&Piece {
                 from,
                 to,
-                left: self.joined(parts, aggregation, inside(from)),
-                right: self.joined(parts, aggregation, inside(to)),
-                curve: Some(Curve {
-                    degree: &|part| self.joined(parts, aggregation, at(part)),
-                    slope: &|part| self.slope(parts, aggregation, inside(at(part)), width),
-                }),
+                left: self.joined_at(parts, aggregation, from, inside(from)),
+                right: self.joined_at(parts, aggregation, to, inside(to)),
+                curve: (!is_straight).then_some(curve),
             });
         }
     }
 
-    /// Fills `parts` with the activated terms on a stretch, without those that are 0 there. Where the kinks of all terms are
-    /// known, each has one form all over the stretch.
+    /// Fills `runs` with the active terms on a stretch between two cuts, without straight ones that are 0 there.
+    fn runs(&self, strengths: Strengths<'_>, (from, to): (f64, f64), runs: &mut Vec<Run>) {
+        runs.clear();
+        for (term, corners) in self.corners.iter().enumerate() {
+            if strengths.of(term).iter().all(|h| *h <= 0.0) {
+                continue;
+            }
+            let line = corners.as_ref().map(|corners| {
+                let (left, right) = limits(corners, from, to);
+                Line {
+                    from,
+                    to,
+                    left,
+                    right,
+                }
+            });
+            if line.is_none_or(|line| line.left > 0.0 || line.right > 0.0) {
+                runs.push(Run { term, line });
+            }
+        }
+    }
+
+    /// Fills `parts` with the activated terms on a part of the stretch of `runs`, without those that are 0 there. Where the
+    /// kinks of all terms are known, each has one form all over it.
     fn parts(
         &self,
         strengths: Strengths<'_>,
         implication: Implication,
         (from, to): (f64, f64),
         all_known: bool,
-        parts: &mut Vec<Part>,
+        (runs, parts): (&[Run], &mut Vec<Part>),
     ) {
         parts.clear();
-        for term in 0..self.terms.len() {
-            for &strength in strengths.of(term).iter().filter(|h| **h > 0.0) {
+        for run in runs {
+            for &strength in strengths.of(run.term).iter().filter(|h| **h > 0.0) {
                 let part = Part {
-                    term,
+                    term: run.term,
                     strength,
                     implication,
-                    level: None,
+                    line: None,
                 };
                 if all_known {
-                    parts.extend(self.on_piece(part, from + 0.5 * (to - from), to - from));
+                    parts.extend(self.on_piece(part, run, (from, to)));
                 } else {
                     parts.push(part);
                 }
@@ -180,38 +277,65 @@ impl Curves {
         }
     }
 
-    /// An activated term on a piece of this width around `middle`, where its implication has neither a kink nor a step; `None`
-    /// where it is 0.
-    fn on_piece(&self, part: Part, middle: f64, width: f64) -> Option<Part> {
-        let membership = sloped(self.terms.get(part.term)?, middle, width);
+    /// An activated term on a piece where its implication has neither a kink nor a step; `None` where it is 0.
+    fn on_piece(&self, part: Part, run: &Run, (from, to): (f64, f64)) -> Option<Part> {
+        let ends = run.line.map(|line| (line.at(from), line.at(to)));
+        let membership = match ends {
+            Some((left, right)) => Sloped {
+                degree: 0.5 * (left + right),
+                slope: right - left,
+            },
+            None => {
+                let width = to - from;
+                sloped(self.terms.get(part.term)?, from + 0.5 * width, width)
+            }
+        };
         let mut here = activate(part.implication, part.strength, membership);
         if here.degree <= 0.0 {
             return None;
         }
         let mut part = part;
-        // Where they are not level.
-        if let Implication::Drastic | Implication::NilpotentMinimum = part.implication {
-            part.implication = Implication::Minimum;
-        }
+        part.implication = between_levels(part.implication);
         if part.implication == Implication::Minimum && !self.cuts_off(part.term, part.strength) {
             (part.strength, here) = (1.0, membership);
         }
-        part.level = (here.slope == 0.0).then_some(here.degree);
+        let degrees = match ends {
+            _ if here.slope == 0.0 => Some((here.degree, here.degree)),
+            Some((left, right)) if keeps_lines(part.implication) => {
+                let activated = |degree: f64| part.implication.of(part.strength, degree);
+                Some((activated(left), activated(right)))
+            }
+            Some(_) | None => None,
+        };
+        part.line = degrees.map(|(left, right)| Line {
+            from,
+            to,
+            left,
+            right,
+        });
         Some(part)
     }
 
     /// The degree of the aggregated set of parts.
     fn joined(&self, parts: &[Part], aggregation: Aggregation, x: f64) -> f64 {
+        self.joined_at(parts, aggregation, x, x)
+    }
+
+    /// The same at the end `x` of a piece. Lines have their degrees there, curves are evaluated just `inside`.
+    fn joined_at(&self, parts: &[Part], aggregation: Aggregation, x: f64, inside: f64) -> f64 {
         let (mut degree, mut known) = (0.0, None);
         for part in parts {
-            let activated = part.level.unwrap_or_else(|| {
-                let membership = match known {
-                    Some((term, membership)) if term == part.term => membership,
-                    _ => self.membership(part.term, x),
-                };
-                known = Some((part.term, membership));
-                part.implication.of(part.strength, membership)
-            });
+            let activated = match part.line {
+                Some(line) => line.at(x),
+                None => {
+                    let membership = match known {
+                        Some((term, membership)) if term == part.term => membership,
+                        Some(_) | None => self.membership(part.term, inside),
+                    };
+                    known = Some((part.term, membership));
+                    part.implication.of(part.strength, membership)
+                }
+            };
             degree = aggregation.of(degree, activated);
         }
         degree
@@ -221,14 +345,15 @@ impl Curves {
     fn slope(&self, parts: &[Part], aggregation: Aggregation, x: f64, width: f64) -> f64 {
         let mut set = Sloped::default();
         for part in parts {
-            let activated = match (part.level, self.terms.get(part.term)) {
+            let activated = match (part.line, self.terms.get(part.term)) {
+                (Some(line), _) => Sloped {
+                    degree: line.at(x),
+                    slope: (line.right - line.left) / (line.to - line.from),
+                },
                 (None, Some(term)) => {
                     activate(part.implication, part.strength, sloped(term, x, width))
                 }
-                (level, _) => Sloped {
-                    degree: level.unwrap_or(0.0),
-                    slope: 0.0,
-                },
+                (None, None) => Sloped::default(),
             };
             set = aggregate(aggregation, set, activated);
         }
@@ -246,7 +371,7 @@ impl Curves {
     }
 }
 
-fn is_formula(term: &Term) -> bool {
+pub(super) fn is_formula(term: &Term) -> bool {
     matches!(
         term.membership_function,
         MembershipFunction::Function { .. }

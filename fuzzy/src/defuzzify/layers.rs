@@ -31,7 +31,7 @@ struct Part {
 impl Layered {
     /// The layers of a set whose sections are those of the minimum, with moments `about` this origin in this unit of length;
     /// `None` where a term is curved, or there would be too many.
-    pub(super) fn new(prepared: &Prepared, about: (f64, f64)) -> Option<Self> {
+    pub(crate) fn new(prepared: &Prepared, about: (f64, f64)) -> Option<Self> {
         let is_straight = prepared.flanks.iter().all(|f| f.kind == Kind::PIECEWISE);
         if !is_straight {
             return None;
@@ -58,12 +58,6 @@ impl Layered {
             bases: bases.bases,
             layers,
         })
-    }
-
-    /// Whether a term is 0 all over the range.
-    pub(super) fn is_empty(&self, term: usize) -> bool {
-        let mut layers = self.layers.iter();
-        !layers.any(|four| four.strength as usize == term)
     }
 }
 

@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use super::piece::Piece;
-use crate::model::{Defuzzifier, MembershipFunction};
-use crate::table::{Kind, SetDefuzzifier, numeric::root, set::Maxima as Values};
+use crate::model::MembershipFunction;
+use crate::table::{Kind, OfMaxima, numeric::root, set::Maxima as Values};
 
 /// Degrees as close to each other as this, relative to the higher one, are equal: rounding changes them by less.
 pub(super) const EQUAL: f64 = 1e-12;
@@ -114,18 +114,9 @@ impl Maxima {
     }
 
     /// The value; `None` of a set that is 0 everywhere.
-    pub(crate) fn value(mut self, defuzzifier: Defuzzifier) -> Option<f64> {
+    pub(crate) fn value(mut self, which: OfMaxima) -> Option<f64> {
         self.close(false);
-        self.values.value(match defuzzifier {
-            Defuzzifier::SmallestOfMaxima => SetDefuzzifier::SMALLEST_OF_MAXIMA,
-            Defuzzifier::LargestOfMaxima => SetDefuzzifier::LARGEST_OF_MAXIMA,
-            Defuzzifier::MeanOfMaxima
-            | Defuzzifier::Centroid
-            | Defuzzifier::Bisector
-            | Defuzzifier::WeightedAverage
-            | Defuzzifier::WeightedSum
-            | Defuzzifier::Tsukamoto => SetDefuzzifier::MEAN_OF_MAXIMA,
-        })
+        self.values.value(which)
     }
 }
 

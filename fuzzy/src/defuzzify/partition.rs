@@ -4,7 +4,8 @@
 
 use alloc::{vec, vec::Vec};
 
-use super::polyline::Polylines;
+use super::prepared::{corners, limits};
+use crate::model::Term;
 use crate::table::Pair;
 
 #[derive(Debug, Clone)]
@@ -13,20 +14,24 @@ pub(crate) struct Partition {
     pairs: Vec<Pair>,
     /// The index of each term from left to right.
     ranks: Vec<usize>,
+    /// Whether terms are scaled by their firing strengths, else cut.
+    pub(crate) scales: bool,
 }
 
 impl Partition {
-    /// Terms that are scaled by their firing strengths, or cut at them; `None` where they are no partition. Moments are measured
+    /// Terms that are scaled by their firing strengths, or cut at them; `None` if they are not a partition. Moments are measured
     /// from `origin`, areas in lengths of `unit`.
     pub(crate) fn new(
-        lines: &Polylines,
-        terms: usize,
+        terms: &[Term],
+        (low, high): (f64, f64),
         (origin, unit): (f64, f64),
         scales: bool,
     ) -> Option<Self> {
+        let intervals = intervals(terms, low, high)?;
+        let terms = terms.len();
         // A term that is 0 all over the range comes last.
         let mut middles = vec![f64::INFINITY; terms];
-        for (from, to, alive) in lines.intervals() {
+        for Interval { from, to, alive } in &intervals {
             for line in alive {
                 // The middle of its highest interval, or the end of the range next to its top.
                 let x = 0.5 * (from + to) + 0.5 * (to - from) * (line.right - line.left);
@@ -47,8 +52,9 @@ impl Partition {
         let mut partition = Partition {
             pairs: vec![Pair::default(); terms.div_ceil(2)],
             ranks,
+            scales,
         };
-        for (from, to, alive) in lines.intervals() {
+        for Interval { from, to, alive } in &intervals {
             let (length, m) = (to - from, from + 0.5 * (to - from) - origin);
             let w = length / unit;
             let (mut falling, mut rising) = (None, None);
@@ -110,23 +116,55 @@ impl Partition {
         2 * self.pairs.len() + 1
     }
 
-    /// Whether a term is 0 all over the range.
-    pub(crate) fn is_empty(&self, term: usize) -> bool {
-        let area = |rank: usize| self.pairs[rank / 2].area[0][rank % 2];
-        self.ranks.get(term).is_none_or(|rank| area(*rank) <= 0.0)
-    }
-
     /// The coefficients of the polynomials.
     pub(crate) fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
 }
 
+/// A part of the range on which every term is straight, with the terms over 0 on it.
+struct Interval {
+    from: f64,
+    to: f64,
+    alive: Vec<Line>,
+}
+
+/// A term on an interval: its degrees just inside the interval's ends.
+struct Line {
+    term: usize,
+    left: f64,
+    right: f64,
+}
+
+/// Cuts the range at every corner of every term; `None` if a term is curved.
+fn intervals(terms: &[Term], low: f64, high: f64) -> Option<Vec<Interval>> {
+    let corners: Vec<_> = terms.iter().map(corners).collect::<Option<_>>()?;
+    let mut cuts: Vec<f64> = corners.iter().flatten().map(|corner| corner.0).collect();
+    cuts.retain(|x| low < *x && *x < high);
+    cuts.extend([low, high]);
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    let interval = |(&from, &to): (&f64, &f64)| {
+        let lines = corners.iter().enumerate().map(|(term, corners)| {
+            let (left, right) = limits(corners, from, to);
+            Line { term, left, right }
+        });
+        let alive = lines.filter(|line| line.left > 0.0 || line.right > 0.0);
+        Interval {
+            from,
+            to,
+            alive: alive.collect(),
+        }
+    };
+    Some(cuts.iter().zip(cuts.iter().skip(1)).map(interval).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::defuzzify::curves::Curves;
     use crate::defuzzify::piece::Integrals;
-    use crate::defuzzify::polyline::Workspace;
+    use crate::defuzzify::workspace::Workspace;
     use crate::defuzzify::{Joint, Strengths};
     use crate::model::{Aggregation, Implication, MembershipFunction, Variable};
     use crate::table::centroid;
@@ -189,11 +227,11 @@ mod tests {
                 prop_oneof![Just(0.0), Just(0.5), Just(1.0), 0.0..=1.0, 1e-12..1e-9], 5),
         ) {
             let variable = &partitions()[which];
-            let lines = Polylines::new(&variable.terms, variable.low, variable.high).unwrap();
+            let (low, high) = (variable.low, variable.high);
             let count = variable.terms.len();
             let origin = 0.5 * (variable.low + variable.high);
             let strengths = &strengths[..count];
-            let partition = Partition::new(&lines, count, (origin, 1.0), scales).unwrap();
+            let partition = Partition::new(&variable.terms, (low, high), (origin, 1.0), scales).unwrap();
             let mut ranked = vec![[0.0]; partition.strengths()];
             for (strength, rank) in strengths.iter().zip(partition.ranks()) {
                 ranked[*rank] = [*strength];
@@ -208,7 +246,9 @@ mod tests {
                 aggregation: Aggregation::Maximum,
             };
             let strengths = Strengths { strengths, offsets: &offsets };
-            lines.pieces(strengths, joint, &mut Workspace::new(count, 0), &mut |piece| slow.add(piece));
+            let curves = Curves::new(&variable.terms, low, high);
+            let mut workspace = Workspace::new(count, 5 * count + curves.workspace());
+            curves.pieces(strengths, joint, &mut workspace, &mut |piece| slow.add(piece));
             match (fast, slow.centroid()) {
                 (Some(fast), Some(slow)) => {
                     prop_assert!((fast - slow).abs() <= 1e-12 * (variable.high - variable.low));

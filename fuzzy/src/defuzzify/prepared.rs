@@ -2,12 +2,14 @@
 
 use alloc::vec::Vec;
 
-use super::{Joint, piece::power_of_two};
-use crate::model::{Aggregation, Defuzzifier, Implication, MembershipFunction, Term};
+use super::{curves::is_formula, piece::power_of_two};
+use crate::model::{MembershipFunction, Term};
 use crate::table::flank::Measure;
 use crate::table::{Flank, FuzzySet, Kind, Knot, Moment, Section, SetDefuzzifier, SetTerm, Strand};
 use crossings::Couple;
-use stretches::{Stretch, curved, knots, straight};
+pub(super) use stretches::limits;
+use stretches::{Stretch, curved, knots};
+pub(crate) use stretches::{corners, straight};
 
 mod crossings;
 mod stretches;
@@ -16,6 +18,8 @@ mod stretches;
 #[derive(Debug, Clone)]
 pub(crate) struct Prepared {
     pub(crate) set: FuzzySet,
+    /// Whether terms are scaled by their firing strengths, else cut.
+    pub(crate) scales: bool,
     /// One for each term of the output.
     pub(crate) terms: Vec<SetTerm>,
     pub(crate) sections: Vec<Section>,
@@ -31,48 +35,15 @@ const MOST_FLANKS: usize = 512;
 const MOST_KNOTS: usize = 1024;
 
 impl Prepared {
-    /// `None` where the operators and the defuzzifier have no such form, or it would be too large.
+    /// The set of terms that are scaled by their firing strengths or cut at them, and whose sum or maximum is taken; `None` if a
+    /// term is a formula, or the set would be too large.
     pub(crate) fn new(
         terms: &[Term],
         (low, high): (f64, f64),
-        joint: Joint,
-        defuzzifier: Defuzzifier,
+        (scales, sum): (bool, bool),
+        defuzzifier: SetDefuzzifier,
     ) -> Option<Self> {
-        use SetDefuzzifier as To;
-        let sum = match joint.aggregation {
-            Aggregation::Maximum => false,
-            Aggregation::Sum => true,
-            Aggregation::ProbabilisticSum
-            | Aggregation::BoundedSum
-            | Aggregation::Drastic
-            | Aggregation::Einstein
-            | Aggregation::Hamacher
-            | Aggregation::NilpotentMaximum => return None,
-        };
-        let defuzzifier = match defuzzifier {
-            Defuzzifier::Centroid => To::CENTROID,
-            Defuzzifier::Bisector => To::BISECTOR,
-            Defuzzifier::SmallestOfMaxima if !sum => To::SMALLEST_OF_MAXIMA,
-            Defuzzifier::MeanOfMaxima if !sum => To::MEAN_OF_MAXIMA,
-            Defuzzifier::LargestOfMaxima if !sum => To::LARGEST_OF_MAXIMA,
-            Defuzzifier::SmallestOfMaxima
-            | Defuzzifier::MeanOfMaxima
-            | Defuzzifier::LargestOfMaxima
-            | Defuzzifier::WeightedAverage
-            | Defuzzifier::WeightedSum
-            | Defuzzifier::Tsukamoto => return None,
-        };
-        let has_form = matches!(
-            joint.implication,
-            Implication::Minimum | Implication::Product
-        );
-        let is_formula = |term: &Term| {
-            matches!(
-                term.membership_function,
-                MembershipFunction::Function { .. }
-            )
-        };
-        if !has_form || terms.len() > MOST_TERMS || terms.iter().any(is_formula) {
+        if terms.len() > MOST_TERMS || terms.iter().any(is_formula) {
             return None;
         }
         let measure = Measure {
@@ -82,13 +53,14 @@ impl Prepared {
         let mut prepared = Prepared {
             set: FuzzySet {
                 unit: measure.unit,
-                defuzzifier,
+                defuzzifier: defuzzifier.code(),
                 sum: u32::from(sum),
                 first_section: 0,
                 end_section: 0,
                 first_term: 0,
                 end_term: 0,
             },
+            scales,
             terms: Vec::new(),
             sections: Vec::new(),
             strands: Vec::new(),
@@ -99,7 +71,7 @@ impl Prepared {
             prepared.term(term, low, high, measure)?;
         }
         if !sum {
-            let cuts = prepared.cuts(terms, low, high, joint.implication);
+            let cuts = prepared.cuts(terms, low, high);
             prepared.sections(&cuts, measure)?;
         }
         Some(prepared)
@@ -119,11 +91,6 @@ impl Prepared {
         self.terms.iter().map(of).collect()
     }
 
-    /// Whether a term is 0 all over the range.
-    pub(crate) fn is_empty(&self, term: usize) -> bool {
-        self.terms.get(term).is_none_or(|term| term.highest <= 0.0)
-    }
-
     fn flanks_of(&self, term: &SetTerm) -> &[Flank] {
         let span = term.first_flank as usize..term.end_flank as usize;
         self.flanks.get(span).unwrap_or_default()
@@ -132,8 +99,8 @@ impl Prepared {
     /// Adds the flanks of a term.
     fn term(&mut self, term: &Term, low: f64, high: f64, measure: Measure) -> Option<()> {
         let first_flank = self.flanks.len();
-        let stretches = match term.membership_function.corners() {
-            Some(corners) => straight(corners, term.height, low, high),
+        let stretches = match corners(term) {
+            Some(corners) => straight(&corners, low, high),
             None => curved(term, low, high),
         };
         for stretch in stretches {
@@ -189,7 +156,7 @@ impl Prepared {
     }
 
     /// Where sections end: at the ends of flanks, where two terms cross (minimum), and where the ratio of two turns (product).
-    fn cuts(&self, terms: &[Term], low: f64, high: f64, implication: Implication) -> Vec<f64> {
+    fn cuts(&self, terms: &[Term], low: f64, high: f64) -> Vec<f64> {
         let mut cuts: Vec<f64> = self.flanks.iter().flat_map(|f| [f.from, f.to]).collect();
         cuts.extend([low, high]);
         let seeds: Vec<Vec<f64>> = terms
@@ -202,7 +169,7 @@ impl Prepared {
                     for b in self.flanks_of(other) {
                         let pair = Couple::new(a, b);
                         if pair.from < pair.to {
-                            pair.cuts([&seeds[i], &seeds[j]], implication, &mut cuts);
+                            pair.cuts([&seeds[i], &seeds[j]], self.scales, &mut cuts);
                         }
                     }
                 }

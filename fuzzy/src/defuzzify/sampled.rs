@@ -1,24 +1,20 @@
 //! Sampled defuzzification, which reproduces other programs with their error.
 
-use crate::model::{Defuzzifier, Sampling, SamplingRule};
+use crate::model::{Sampling, SamplingRule};
+use crate::table::{OfMaxima, SetDefuzzifier};
 
 impl Sampling {
     /// The value of a set given by its degree at `x`; `None` where every sample is 0.
     pub(crate) fn value(
         self,
-        defuzzifier: Defuzzifier,
+        defuzzifier: SetDefuzzifier,
         (low, high): (f64, f64),
         degree: impl Fn(f64) -> f64,
     ) -> Option<f64> {
         match defuzzifier {
-            Defuzzifier::SmallestOfMaxima
-            | Defuzzifier::MeanOfMaxima
-            | Defuzzifier::LargestOfMaxima => self.maxima(defuzzifier, low, high, degree),
-            Defuzzifier::Bisector => self.bisector(low, high, degree),
-            Defuzzifier::Centroid
-            | Defuzzifier::WeightedAverage
-            | Defuzzifier::WeightedSum
-            | Defuzzifier::Tsukamoto => {
+            SetDefuzzifier::Maxima(which) => self.maxima(which, low, high, degree),
+            SetDefuzzifier::Bisector => self.bisector(low, high, degree),
+            SetDefuzzifier::Centroid => {
                 let (mut area, mut moment) = (0.0, 0.0);
                 for i in 0..self.samples {
                     let (x, weight) = self.sample(i, low, high);
@@ -66,7 +62,7 @@ impl Sampling {
 
     fn maxima(
         self,
-        defuzzifier: Defuzzifier,
+        which: OfMaxima,
         low: f64,
         high: f64,
         degree: impl Fn(f64) -> f64,
@@ -85,15 +81,10 @@ impl Sampling {
                 count += 1.0;
             }
         }
-        (count > 0.0).then_some(match defuzzifier {
-            Defuzzifier::SmallestOfMaxima => smallest,
-            Defuzzifier::LargestOfMaxima => largest,
-            Defuzzifier::MeanOfMaxima
-            | Defuzzifier::Centroid
-            | Defuzzifier::Bisector
-            | Defuzzifier::WeightedAverage
-            | Defuzzifier::WeightedSum
-            | Defuzzifier::Tsukamoto => sum / count,
+        (count > 0.0).then_some(match which {
+            OfMaxima::Smallest => smallest,
+            OfMaxima::Largest => largest,
+            OfMaxima::Mean => sum / count,
         })
     }
 }

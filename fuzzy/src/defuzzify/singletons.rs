@@ -3,19 +3,18 @@
 use alloc::vec::Vec;
 
 use super::{Joint, Strengths};
-use crate::model::{Defuzzifier, Output};
+use crate::model::Output;
+use crate::table::{OfMaxima, SetDefuzzifier};
 
 /// The terms of one output as places, from left to right.
 #[derive(Debug, Clone)]
 pub(crate) struct Singletons {
     /// The place, the index of the term and its height.
     terms: Vec<(f64, usize, f64)>,
-    low: f64,
-    high: f64,
 }
 
 impl Singletons {
-    /// `None` where a term is no singleton.
+    /// `None` if a term is not a singleton.
     pub(super) fn new(output: &Output) -> Option<Self> {
         if !output.is_discrete() {
             return None;
@@ -26,17 +25,7 @@ impl Singletons {
         };
         let mut terms: Vec<(f64, usize, f64)> = terms.map(place).collect::<Option<_>>()?;
         terms.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        Some(Singletons {
-            terms,
-            low: output.variable.low,
-            high: output.variable.high,
-        })
-    }
-
-    /// Whether a term lies outside the range.
-    pub(super) fn is_empty(&self, term: usize) -> bool {
-        let place = self.terms.iter().find(|(_, index, _)| *index == term);
-        place.is_none_or(|(x, ..)| !(self.low..=self.high).contains(x))
+        Some(Singletons { terms })
     }
 
     /// The centroid `sum(x y) / sum(y)` over the places x with their aggregated degrees y, or the smallest, mean or largest of
@@ -45,7 +34,7 @@ impl Singletons {
         &self,
         strengths: Strengths<'_>,
         joint: Joint,
-        defuzzifier: Defuzzifier,
+        defuzzifier: SetDefuzzifier,
     ) -> Option<f64> {
         let places = || {
             self.terms.chunk_by(|a, b| a.0 == b.0).filter_map(|terms| {
@@ -66,17 +55,16 @@ impl Singletons {
         let highest = places().map(|(_, degree)| degree).fold(0.0, f64::max);
         let mut top = places().filter(|(_, degree)| *degree == highest);
         Some(match defuzzifier {
-            Defuzzifier::SmallestOfMaxima => top.next()?.0,
-            Defuzzifier::LargestOfMaxima => top.next_back()?.0,
-            Defuzzifier::MeanOfMaxima => {
+            SetDefuzzifier::Maxima(OfMaxima::Smallest) => top.next()?.0,
+            SetDefuzzifier::Maxima(OfMaxima::Largest) => top.next_back()?.0,
+            SetDefuzzifier::Maxima(OfMaxima::Mean) => {
                 let count = top.clone().count() as f64;
                 top.map(|(x, _)| x / count).sum()
             }
-            Defuzzifier::Centroid
-            | Defuzzifier::Bisector
-            | Defuzzifier::WeightedAverage
-            | Defuzzifier::WeightedSum
-            | Defuzzifier::Tsukamoto => places().map(|(x, degree)| x * (degree / total)).sum(),
+            // Singletons have no area to halve; a model that asks for that is refused.
+            SetDefuzzifier::Centroid | SetDefuzzifier::Bisector => {
+                places().map(|(x, degree)| x * (degree / total)).sum()
+            }
         })
     }
 }

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::model::MembershipFunction;
+use crate::model::{MembershipFunction, Term};
 use crate::table::{Coefficient, Consequent, Point};
 
 /// The consequents of the terms of an output, with spans in their own coefficients and code.
@@ -14,12 +14,17 @@ pub(crate) struct Consequents {
 }
 
 impl Consequents {
-    /// Adds the consequent of a term of a valid model, in which `input` finds every name. A singleton is a constant.
-    pub(crate) fn push(
-        &mut self,
-        shape: &MembershipFunction,
-        input: impl Fn(&str) -> Option<usize>,
-    ) {
+    /// The consequents of the terms of a valid model, in which `input` finds every name.
+    pub(crate) fn new(terms: &[Term], input: impl Fn(&str) -> Option<usize>) -> Self {
+        let mut consequents = Consequents::default();
+        for term in terms {
+            consequents.push(&term.membership_function, &input);
+        }
+        consequents
+    }
+
+    /// Adds the consequent of a term. A singleton is a constant.
+    fn push(&mut self, shape: &MembershipFunction, input: impl Fn(&str) -> Option<usize>) {
         let (first, first_code) = (self.coefficients.len(), self.code.len());
         let constant = match shape {
             MembershipFunction::Constant { value: constant }

@@ -6,9 +6,7 @@ use super::literal::Literals;
 use super::rules::{Draft, Firing, may_be_programs};
 use super::{CompiledOutput, Input as Range};
 use crate::defuzzify::{Method, Prepared};
-use crate::model::{
-    Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, NoRuleFires, Term,
-};
+use crate::model::{Conjunction, Disjunction, MembershipFunction, NoRuleFires, Term};
 use crate::table::{
     Action, Axis, Base, Block, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension,
     Edge, Ends, Flank, FuzzySet, Hedge, Input, Knot, LayeredSet, Layers, Line, Moment, Node,
@@ -195,22 +193,19 @@ impl OwnedTable {
     }
 
     fn output(&mut self, output: &CompiledOutput) {
-        let defuzzify = &output.defuzzify;
-        let (form, (first, end)) = match &defuzzify.method {
-            Method::Lines(_) | Method::Curves(_) | Method::Sampled(..) | Method::Singletons(_) => {
-                (ClosedForm::NONE, (0, 0))
-            }
+        let (form, (first, end)) = match &output.method {
+            Method::Integrated(_) => (ClosedForm::Integrated, (0, 0)),
             Method::Partition(partition) => {
-                let form = match defuzzify.implication() {
-                    Implication::Product => ClosedForm::SCALED_PARTITION,
-                    _ => ClosedForm::PARTITION,
+                let form = match partition.scales {
+                    true => ClosedForm::ScaledPartition,
+                    false => ClosedForm::Partition,
                 };
                 (form, extend(&mut self.pairs, partition.pairs()))
             }
             Method::Prepared(prepared) => {
-                let form = match defuzzify.implication() {
-                    Implication::Product => ClosedForm::SCALED,
-                    _ => ClosedForm::CUT,
+                let form = match prepared.scales {
+                    true => ClosedForm::Scaled,
+                    false => ClosedForm::Cut,
                 };
                 (form, self.set(prepared, &output.offsets))
             }
@@ -225,10 +220,10 @@ impl OwnedTable {
                     first_layer,
                     end_layer,
                 };
-                (ClosedForm::LAYERS, extend(&mut self.layered_sets, &[set]))
+                (ClosedForm::Layers, extend(&mut self.layered_sets, &[set]))
             }
-            Method::Moments(moments) => (ClosedForm::MOMENTS, extend(&mut self.moments, moments)),
-            Method::Places(terms) => {
+            Method::Moments(moments) => (ClosedForm::Moments, extend(&mut self.moments, moments)),
+            Method::Tsukamoto(terms) => {
                 let first = self.curves.len() as u32;
                 let counts = output.offsets.iter().zip(output.offsets.iter().skip(1));
                 for (term, (start, end)) in terms.iter().zip(counts) {
@@ -236,27 +231,24 @@ impl OwnedTable {
                         self.curve(0, term, &[]);
                     }
                 }
-                (ClosedForm::TSUKAMOTO, (first, self.curves.len() as u32))
+                (ClosedForm::Tsukamoto, (first, self.curves.len() as u32))
             }
-            Method::Weighted(weighted) => {
-                let (first, _) = extend(&mut self.coefficients, &weighted.coefficients);
-                let (first_code, _) = extend(&mut self.points, &weighted.code);
-                let mut consequents = weighted.consequents.clone();
+            Method::Sugeno {
+                consequents,
+                is_sum,
+            } => {
+                let (first, _) = extend(&mut self.coefficients, &consequents.coefficients);
+                let (first_code, _) = extend(&mut self.points, &consequents.code);
+                let mut consequents = consequents.consequents.clone();
                 for consequent in &mut consequents {
                     consequent.first += first;
                     consequent.end += first;
                     consequent.first_code += first_code;
                     consequent.end_code += first_code;
                 }
-                let form = match defuzzify.defuzzifier {
-                    Defuzzifier::WeightedSum => ClosedForm::WEIGHTED_SUM,
-                    Defuzzifier::WeightedAverage
-                    | Defuzzifier::Centroid
-                    | Defuzzifier::Bisector
-                    | Defuzzifier::SmallestOfMaxima
-                    | Defuzzifier::MeanOfMaxima
-                    | Defuzzifier::LargestOfMaxima
-                    | Defuzzifier::Tsukamoto => ClosedForm::WEIGHTED_AVERAGE,
+                let form = match is_sum {
+                    true => ClosedForm::WeightedSum,
+                    false => ClosedForm::WeightedAverage,
                 };
                 (form, extend(&mut self.consequents, &consequents))
             }
@@ -270,7 +262,7 @@ impl OwnedTable {
                     f64::NAN
                 }
             },
-            form,
+            form: form as u32,
             first,
             end,
             first_strength: output.strengths.start as u32,

@@ -293,7 +293,7 @@ impl Stage {
     ) {
         match &self.batch {
             Some(arrays) => self.dispatch::<false>(arrays, memory, columns, rows, results),
-            None if self.has_cells_alone => {
+            None if table::has_cells_alone(&self.arrays) => {
                 self.dispatch::<true>(&self.arrays, memory, columns, rows, results);
             }
             None => self.dispatch::<false>(&self.arrays, memory, columns, rows, results),

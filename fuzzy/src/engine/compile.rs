@@ -6,16 +6,16 @@ use super::arrays::OwnedTable;
 use super::chain::Chain;
 use super::literal::{Literal, Literals};
 use super::rules::{Draft, Firing};
+use super::strategy::{Merging, Single, method};
 use super::{CompiledOutput, Engine, Input, NamedOutput, Stage};
-use crate::defuzzify::weighted::Consequents;
-use crate::defuzzify::{Defuzzify, Merging, Method};
+use crate::defuzzify::Method;
 use crate::diagnostic::Findings;
 use crate::model::{
-    Activation, Defuzzifier, MembershipFunction, Model, NoRuleFires, Output, Term, Variable,
-    chain::stages, document::Spans,
+    Activation, MembershipFunction, Model, NoRuleFires, Output, Term, Variable, chain::stages,
+    document::Spans,
 };
 use crate::rule::{Condition, Hedge, Proposition};
-use crate::table::{Action, Op, Step, has_cells_alone};
+use crate::table::{Action, Op, Step};
 use crate::validate::validate;
 
 impl Engine {
@@ -302,9 +302,7 @@ impl<'m> Compiler<'m> {
         let arrays = OwnedTable::new(firing, &inputs, &literals, &drafts, &outputs);
         Stage {
             batch: OwnedTable::programs_alone(firing, &inputs, &formulas, &drafts, &outputs),
-            has_cells_alone: has_cells_alone(&arrays),
-            #[cfg(feature = "simd")]
-            vectors: super::vectors::Vectors::new(&arrays).map(Box::new),
+            single: Single::of(&arrays),
             arrays,
             outputs,
         }
@@ -320,14 +318,14 @@ impl<'m> Compiler<'m> {
     ) -> CompiledOutput {
         let variable = &output.variable;
         let operators = self.model.operators_of_output(output);
-        let merging = Merging::of(output.defuzzifier, operators);
+        let method = method(output, operators, |name| self.inputs.get(name).copied());
+        let merging = Merging::of(&method, operators);
         let actions = || drafts.iter().flat_map(|draft| &draft.actions);
         let here = |action: &&Action| action.output as usize == index;
         let mut counts = vec![0; variable.terms.len()];
         for action in actions().filter(here) {
             counts[action.strength as usize] += 1;
         }
-        let defuzzify = self.defuzzify(output);
         if merging != Merging::Apart {
             counts.fill(1);
         }
@@ -335,9 +333,15 @@ impl<'m> Compiler<'m> {
         for count in counts {
             offsets.push(offsets.last().copied().unwrap_or(0) + count);
         }
-        let mut next = match defuzzify.ranks() {
-            Some((_, ranks)) => ranks.to_vec(),
-            None => offsets.clone(),
+        let last = offsets.last().copied().unwrap_or(0);
+        let (mut next, count) = match &method {
+            Method::Partition(partition) => (partition.ranks().to_vec(), partition.strengths()),
+            Method::Layered(_)
+            | Method::Moments(_)
+            | Method::Prepared(_)
+            | Method::Integrated(_)
+            | Method::Sugeno { .. }
+            | Method::Tsukamoto(_) => (offsets.clone(), last),
         };
         for action in drafts.iter_mut().flat_map(|draft| &mut draft.actions) {
             if action.output as usize == index {
@@ -349,8 +353,6 @@ impl<'m> Compiler<'m> {
                 }
             }
         }
-        let last = offsets.last().copied().unwrap_or(0);
-        let count = defuzzify.ranks().map_or(last, |(count, _)| count);
         CompiledOutput {
             low: variable.low,
             high: variable.high,
@@ -358,25 +360,8 @@ impl<'m> Compiler<'m> {
             strengths: first_strength..first_strength + count,
             offsets,
             clamps: output.clamp,
-            defuzzify,
+            method,
         }
-    }
-
-    fn defuzzify(&self, output: &Output) -> Defuzzify {
-        let operators = self.model.operators_of_output(output);
-        if !output.defuzzifier.is_weighted() {
-            return Defuzzify::fuzzy(output, operators);
-        }
-        if output.defuzzifier == Defuzzifier::Tsukamoto {
-            let terms = output.variable.terms.clone();
-            return Defuzzify::weighted(output, operators, Method::Places(terms));
-        }
-        let input = |name: &str| self.inputs.get(name).copied();
-        let mut consequents = Consequents::default();
-        for term in &output.variable.terms {
-            consequents.push(&term.membership_function, input);
-        }
-        Defuzzify::weighted(output, operators, Method::Weighted(consequents))
     }
 }
 

@@ -1,15 +1,29 @@
 //! The compiled model: immutable, evaluated without allocation.
+//!
+//! From a model to an answer, with the rules `IF heat IS low THEN speed IS slow` and `IF heat IS high THEN speed IS fast` over
+//! three triangles each, from 0 to 10:
+//!
+//! 1. `compile` gives each proposition a number: `heat IS low` is literal 0, `heat IS high` literal 1. Rules become drafts of
+//!    indices, and each output gets firing strengths: 0 to 2 for `slow`, `medium` and `fast`.
+//! 2. `strategy` chooses how the output is computed and how rules fire. Here the output is a partition, and all rules are in
+//!    a table of one axis with two cells.
+//! 3. `rules` and `arrays` lay all that out as the arrays of a [`Table`]; its [module](table) shows them for this example.
+//! 4. An evaluation at 8 finds the degrees of the two literals alive there (0 and 0.6), raises the firing strengths to
+//!    (0, 0, 0.6) and has `table/closed.rs` compute the centroid 8.14.
 
 use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
-use crate::defuzzify::polyline::Workspace;
-use crate::defuzzify::{Defuzzify, Strengths};
+use smallvec::{SmallVec, smallvec};
+
+use crate::defuzzify::workspace::Workspace;
+use crate::defuzzify::{Integrated, Method, Strengths};
 use crate::model::{Model, NoRuleFires};
 use crate::table::{self, Buffers, Partial, Strongest, Table};
 use aligned::Rows;
 use arrays::OwnedTable;
 use chain::Chain;
+use strategy::Single;
 
 mod aligned;
 mod arrays;
@@ -24,16 +38,15 @@ mod named;
 mod raising;
 mod rules;
 mod sequence;
+mod strategy;
 #[cfg(feature = "simd")]
 mod vectors;
-
-#[cfg(feature = "simd")]
-use vectors::Vectors;
 
 pub(crate) use crate::table::operators;
 pub use crate::table::{Outcome, State};
 pub use error::EvaluateError;
 pub use explanation::{Degree, ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share};
+pub use named::NamedOutcomes;
 pub use raising::Said;
 pub use sequence::Sequence;
 
@@ -68,6 +81,9 @@ pub struct Engine {
     chain: Option<Box<Chain>>,
 }
 
+/// The outcomes of an evaluation, one for each output in the order of the model; up to 8 without an allocation.
+pub type Outcomes = SmallVec<[Outcome; 8]>;
+
 /// Outputs that are evaluated at once.
 #[derive(Debug, Clone)]
 struct Stage {
@@ -76,11 +92,8 @@ struct Stage {
     arrays: OwnedTable,
     /// The same rules, all of them as programs, where a batch is faster with them.
     batch: Option<OwnedTable>,
-    /// [`table::has_cells_alone`] of `arrays`.
-    has_cells_alone: bool,
-    /// The same rules for single evaluations, where vectors make them faster.
-    #[cfg(feature = "simd")]
-    vectors: Option<Box<Vectors>>,
+    /// How the rules fire on a single row.
+    single: Single,
 }
 
 #[derive(Debug, Clone)]
@@ -108,7 +121,7 @@ struct CompiledOutput {
     offsets: Vec<usize>,
     /// Whether a value outside the range is clamped to it.
     clamps: bool,
-    defuzzify: Defuzzify,
+    method: Method,
 }
 
 /// Working memory of an evaluation: made once by [`Engine::scratch`], then reused.
@@ -139,7 +152,7 @@ impl Scratch {
     /// Bounds the steps of further integrations: those that would take more end early, and their values mean nothing.
     pub(crate) fn bound_steps(&mut self, most: u64) {
         for workspace in self.workspaces() {
-            workspace.steps = crate::defuzzify::polyline::Steps { taken: 0, most };
+            workspace.steps = crate::defuzzify::workspace::Steps { taken: 0, most };
         }
     }
 
@@ -220,14 +233,15 @@ impl Engine {
 
     /// The compiled arrays, to be evaluated without this engine or written out: see [`table`]. `None` where an output
     /// [reads](Model::reads) another one, because a table has one stage. Outputs whose set is
-    /// [`ClosedForm::NONE`](table::ClosedForm::NONE) have no closed form, and only the engine knows their values.
+    /// [`ClosedForm::Integrated`](table::ClosedForm::Integrated) have no closed form, and only the engine knows their values.
     pub fn table(&self) -> Option<Table<'_>> {
         self.chain.is_none().then(|| self.first.arrays.table())
     }
 
     /// Evaluates one value for each input, in the order of the model, and gives one outcome for each output.
     ///
-    /// It allocates memory, which takes longer than a small evaluation: in a loop use [`Engine::evaluate_with`].
+    /// It allocates working memory, which takes longer than a small evaluation, except for the rule sets that the feature `simd`
+    /// evaluates as a plane. In a loop use [`Engine::evaluate_with`].
     ///
     /// A value outside its input's range is clamped to it, and the outcome says so.
     /// A value that is NaN or infinite makes every outcome [`State::InputNotFinite`].
@@ -252,9 +266,13 @@ impl Engine {
     /// assert!(engine.evaluate(&[45.0])?[0].clamped);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn evaluate(&self, inputs: &[f64]) -> Result<Vec<Outcome>, EvaluateError> {
-        let mut outcomes = vec![Outcome::default(); self.outputs.len()];
-        self.evaluate_with(&mut self.scratch(), inputs, &mut outcomes)?;
+    pub fn evaluate(&self, inputs: &[f64]) -> Result<Outcomes, EvaluateError> {
+        let mut outcomes: Outcomes = smallvec![Outcome::default(); self.outputs.len()];
+        self.fits(inputs, &outcomes)?;
+        if self.chain.is_some() || !self.first.single.by_plane(inputs, &mut outcomes) {
+            self.outcomes(&mut self.scratch(), inputs, &mut outcomes);
+        }
+        self.must_fire(&outcomes)?;
         Ok(outcomes)
     }
 
@@ -336,7 +354,8 @@ impl Stage {
     fn scratch<const L: usize>(&self, arrays: &OwnedTable) -> StageScratch<L> {
         let sizes = arrays.sizes;
         let strengths = sizes.strengths as usize;
-        let cuts = self.outputs.iter().map(|output| output.defuzzify.cuts());
+        let integrated = self.outputs.iter().filter_map(CompiledOutput::integrated);
+        let cuts = integrated.map(Integrated::cuts);
         StageScratch {
             table: Buffers {
                 values: Rows::new(arrays.inputs.len()),
@@ -356,27 +375,24 @@ impl Stage {
 
     #[inline(always)]
     fn outcomes(&self, scratch: &mut StageScratch, inputs: &[f64], outcomes: &mut [Outcome]) {
-        #[cfg(feature = "simd")]
-        match (self.vectors.as_deref(), inputs.try_into(), &mut *outcomes) {
-            (Some(Vectors::Plane(plane)), Ok(inputs), [outcome]) => {
-                return plane.evaluate(inputs, outcome);
+        match &self.single {
+            #[cfg(feature = "simd")]
+            Single::Plane(_) => {
+                self.single.by_plane(inputs, outcomes);
             }
-            (Some(Vectors::Uniform(uniform)), ..) => {
-                return self.outcomes_by(scratch, inputs, outcomes, |_, buffers| {
+            #[cfg(feature = "simd")]
+            Single::Vectors(uniform) => {
+                self.outcomes_by(scratch, inputs, outcomes, |_, buffers| {
                     let strongest = uniform.fire(&buffers.values, &mut buffers.strengths);
                     buffers.strongest.fill(strongest);
                 });
             }
-            _ => {}
-        }
-        if self.has_cells_alone {
-            self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
+            Single::Cells => self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
                 table::fire::<_, _, _, _, 1, true>(arrays, buffers);
-            });
-        } else {
-            self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
+            }),
+            Single::Rules => self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
                 table::fire_row(arrays, buffers);
-            });
+            }),
         }
     }
 
@@ -403,7 +419,22 @@ impl Stage {
             strengths,
             offsets: &output.offsets,
         };
-        output.defuzzify.value(strengths, workspace)
+        output.integrated()?.value(strengths, workspace)
+    }
+}
+
+impl CompiledOutput {
+    /// The integrator of an output without a closed form.
+    fn integrated(&self) -> Option<&Integrated> {
+        match &self.method {
+            Method::Integrated(integrated) => Some(integrated),
+            Method::Partition(_)
+            | Method::Layered(_)
+            | Method::Moments(_)
+            | Method::Prepared(_)
+            | Method::Sugeno { .. }
+            | Method::Tsukamoto(_) => None,
+        }
     }
 }
 

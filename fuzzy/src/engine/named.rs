@@ -1,16 +1,72 @@
 //! Evaluation by the names of inputs and outputs.
 
-use alloc::{collections::BTreeMap, string::String, sync::Arc, vec, vec::Vec};
+use alloc::{string::String, sync::Arc};
+use core::ops::Index;
 
-use super::{Engine, EvaluateError, Outcome};
+use smallvec::{SmallVec, smallvec};
+
+use super::{Engine, EvaluateError, NamedOutput, Outcome, Outcomes};
 #[cfg(feature = "serde")]
 use crate::fields::Fields;
+
+/// The outcomes of an evaluation by the names of the outputs, in the order of the model. Like a map it is indexed by a name, and
+/// indexing panics if there is no output of this name; [`NamedOutcomes::get`] does not.
+#[derive(Clone)]
+pub struct NamedOutcomes<'e> {
+    outputs: &'e [NamedOutput],
+    outcomes: Outcomes,
+}
+
+impl NamedOutcomes<'_> {
+    /// The outcome of an output; `None` if the rule set has no output of this name.
+    pub fn get(&self, name: &str) -> Option<&Outcome> {
+        let mut named = self.iter();
+        named
+            .find(|(output, _)| *output == name)
+            .map(|(_, outcome)| outcome)
+    }
+
+    /// The name and the outcome of each output.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&str, &Outcome)> {
+        let names = self.outputs.iter().map(|output| &*output.name);
+        names.zip(&self.outcomes)
+    }
+}
+
+impl Index<&str> for NamedOutcomes<'_> {
+    type Output = Outcome;
+
+    #[expect(clippy::panic, reason = "the contract of indexing")]
+    fn index(&self, name: &str) -> &Outcome {
+        self.get(name)
+            .unwrap_or_else(|| panic!("the rule set has no output `{name}`"))
+    }
+}
+
+impl PartialEq for NamedOutcomes<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.iter().eq(other.iter())
+    }
+}
+
+impl core::fmt::Debug for NamedOutcomes<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_map().entries(self.iter()).finish()
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for NamedOutcomes<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.iter())
+    }
+}
 
 impl Engine {
     /// Evaluates values by the names of the inputs, in any order, and gives outcomes by the names of the outputs.
     ///
     /// # Errors
-    /// As [`Engine::evaluate`]; a name that is no input, an input without a value or with two.
+    /// As [`Engine::evaluate`]; a name that is not an input, an input without a value or with two.
     ///
     /// # Example
     /// ```
@@ -35,31 +91,28 @@ impl Engine {
     pub fn evaluate_named<'a>(
         &self,
         inputs: impl IntoIterator<Item = (&'a str, f64)>,
-    ) -> Result<BTreeMap<&str, Outcome>, EvaluateError> {
-        let mut values: Vec<Option<f64>> = vec![None; self.inputs.len()];
+    ) -> Result<NamedOutcomes<'_>, EvaluateError> {
+        let mut values: SmallVec<[f64; 8]> = smallvec![f64::NAN; self.inputs.len()];
+        let mut is_given: SmallVec<[bool; 8]> = smallvec![false; self.inputs.len()];
         for (name, value) in inputs {
-            let known = self.inputs.iter().zip(&mut values);
-            let mut named = known.filter(|(input, _)| *input.name == *name);
-            let Some((input, slot)) = named.next() else {
+            let Some(index) = self.input(name) else {
                 let name = String::from(name);
                 return Err(EvaluateError::UnknownInput { name });
             };
-            if slot.replace(value).is_some() {
-                let name = Arc::clone(&input.name);
+            if core::mem::replace(&mut is_given[index], true) {
+                let name = Arc::clone(&self.inputs[index].name);
                 return Err(EvaluateError::RepeatedInput { name });
             }
+            values[index] = value;
         }
-        let value = |(input, value): (&super::Input, Option<f64>)| {
-            let name = || Arc::clone(&input.name);
-            value.ok_or_else(|| EvaluateError::MissingInput { name: name() })
-        };
-        let values: Vec<f64> = self
-            .inputs
-            .iter()
-            .zip(values)
-            .map(value)
-            .collect::<Result<_, _>>()?;
-        Ok(self.output_names().zip(self.evaluate(&values)?).collect())
+        if let Some(index) = is_given.iter().position(|given| !given) {
+            let name = Arc::clone(&self.inputs[index].name);
+            return Err(EvaluateError::MissingInput { name });
+        }
+        Ok(NamedOutcomes {
+            outputs: &self.outputs,
+            outcomes: self.evaluate(&values)?,
+        })
     }
 
     /// [`Engine::evaluate_named`] of a struct or map of numbers: fields are inputs.
@@ -93,7 +146,7 @@ impl Engine {
     pub fn evaluate_struct<T: serde::Serialize + ?Sized>(
         &self,
         inputs: &T,
-    ) -> Result<BTreeMap<&str, Outcome>, EvaluateError> {
+    ) -> Result<NamedOutcomes<'_>, EvaluateError> {
         let fields = inputs.serialize(Fields::default());
         let fields = fields.map_err(|why| EvaluateError::NoFields { message: why.0 })?;
         self.evaluate_named(fields.iter().map(|(name, value)| (name.as_str(), *value)))

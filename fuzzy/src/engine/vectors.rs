@@ -11,24 +11,8 @@ mod plane;
 mod regions;
 mod uniform;
 
-use plane::Plane;
-use uniform::Uniform;
-
-/// How a table is evaluated.
-#[derive(Debug, Clone)]
-pub(super) enum Vectors {
-    Plane(Plane),
-    Uniform(Uniform),
-}
-
-impl Vectors {
-    /// `None` where vectors are of no use.
-    pub(super) fn new(table: &OwnedTable) -> Option<Self> {
-        let plane = || Some(Vectors::Plane(Plane::new(table)?));
-        let uniform = || Some(Vectors::Uniform(Uniform::new(table)?));
-        plane().or_else(uniform)
-    }
-}
+pub(super) use plane::Plane;
+pub(super) use uniform::Uniform;
 
 /// The most intervals of an input, less one.
 const MOST_CUTS: usize = 8;
@@ -76,7 +60,11 @@ impl And {
         match table.and() {
             Conjunction::Minimum => Some(And::Minimum),
             Conjunction::Product => Some(And::Product),
-            _ => None,
+            Conjunction::BoundedDifference
+            | Conjunction::Drastic
+            | Conjunction::Einstein
+            | Conjunction::Hamacher
+            | Conjunction::NilpotentMinimum => None,
         }
     }
 

@@ -8,7 +8,7 @@ use crate::{
     tree::Node,
 };
 
-pub(super) const CONJUNCTIONS: [(&str, Conjunction); 7] = [
+pub(super) const CONJUNCTIONS: [(&str, Conjunction); Conjunction::ALL.len()] = [
     ("minimum", Conjunction::Minimum),
     ("product", Conjunction::Product),
     ("bounded_difference", Conjunction::BoundedDifference),
@@ -18,7 +18,7 @@ pub(super) const CONJUNCTIONS: [(&str, Conjunction); 7] = [
     ("nilpotent_minimum", Conjunction::NilpotentMinimum),
 ];
 
-pub(super) const DISJUNCTIONS: [(&str, Disjunction); 7] = [
+pub(super) const DISJUNCTIONS: [(&str, Disjunction); Disjunction::ALL.len()] = [
     ("maximum", Disjunction::Maximum),
     ("probabilistic_sum", Disjunction::ProbabilisticSum),
     ("bounded_sum", Disjunction::BoundedSum),
@@ -28,7 +28,7 @@ pub(super) const DISJUNCTIONS: [(&str, Disjunction); 7] = [
     ("nilpotent_maximum", Disjunction::NilpotentMaximum),
 ];
 
-pub(super) const AGGREGATIONS: [(&str, Aggregation); 8] = [
+pub(super) const AGGREGATIONS: [(&str, Aggregation); Aggregation::ALL.len()] = [
     ("maximum", Aggregation::Maximum),
     ("probabilistic_sum", Aggregation::ProbabilisticSum),
     ("bounded_sum", Aggregation::BoundedSum),
@@ -39,7 +39,7 @@ pub(super) const AGGREGATIONS: [(&str, Aggregation); 8] = [
     ("nilpotent_maximum", Aggregation::NilpotentMaximum),
 ];
 
-pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); 8] = [
+pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); Defuzzifier::ALL.len()] = [
     ("centroid", Defuzzifier::Centroid),
     ("bisector", Defuzzifier::Bisector),
     ("smallest_of_maxima", Defuzzifier::SmallestOfMaxima),

@@ -159,6 +159,47 @@ pub enum Defuzzifier {
     Tsukamoto,
 }
 
+impl Defuzzifier {
+    /// All defuzzifiers.
+    pub const ALL: [Defuzzifier; 8] = [
+        Defuzzifier::Centroid,
+        Defuzzifier::Bisector,
+        Defuzzifier::SmallestOfMaxima,
+        Defuzzifier::MeanOfMaxima,
+        Defuzzifier::LargestOfMaxima,
+        Defuzzifier::WeightedAverage,
+        Defuzzifier::WeightedSum,
+        Defuzzifier::Tsukamoto,
+    ];
+
+    /// Whether its terms are numbers and functions, as Takagi-Sugeno consequents are, rather than fuzzy sets.
+    pub(crate) fn takes_numbers(self) -> bool {
+        match self {
+            Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => true,
+            Defuzzifier::Centroid
+            | Defuzzifier::Bisector
+            | Defuzzifier::SmallestOfMaxima
+            | Defuzzifier::MeanOfMaxima
+            | Defuzzifier::LargestOfMaxima
+            | Defuzzifier::Tsukamoto => false,
+        }
+    }
+
+    /// Whether it weights numbers, one for each rule: Takagi-Sugeno or Tsukamoto.
+    pub(crate) fn is_weighted(self) -> bool {
+        match self {
+            Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum | Defuzzifier::Tsukamoto => {
+                true
+            }
+            Defuzzifier::Centroid
+            | Defuzzifier::Bisector
+            | Defuzzifier::SmallestOfMaxima
+            | Defuzzifier::MeanOfMaxima
+            | Defuzzifier::LargestOfMaxima => false,
+        }
+    }
+}
+
 /// Sampled integration, for parity with other programs only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sampling {

@@ -293,7 +293,7 @@ impl<'a> Chain<'a> {
         let all = self
             .parts()
             .flat_map(|(table, place)| table.outputs.iter().zip(place.outputs));
-        let open = all.filter(|(of, _)| of.form == super::ClosedForm::NONE);
+        let open = all.filter(|(of, _)| of.form() == super::ClosedForm::Integrated);
         open.map(|(_, output)| *output)
             .filter(move |output| is_read(*output))
             .map(|output| output as usize)

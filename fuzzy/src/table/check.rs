@@ -101,27 +101,28 @@ impl Table<'_> {
         for output in self.outputs {
             let strengths = output.end_strength.saturating_sub(output.first_strength) as usize;
             let numbers = output.end.saturating_sub(output.first) as usize;
-            let length = match output.form {
-                ClosedForm::PARTITION | ClosedForm::SCALED_PARTITION => self.pairs.len(),
-                ClosedForm::LAYERS => self.layered_sets.len(),
-                ClosedForm::MOMENTS => self.moments.len(),
-                ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM => self.consequents.len(),
-                ClosedForm::TSUKAMOTO => self.curves.len(),
-                ClosedForm::CUT | ClosedForm::SCALED => self.sets.len(),
-                _ => 0,
+            let form = output.form();
+            let length = match form {
+                ClosedForm::Partition | ClosedForm::ScaledPartition => self.pairs.len(),
+                ClosedForm::Layers => self.layered_sets.len(),
+                ClosedForm::Moments => self.moments.len(),
+                ClosedForm::WeightedAverage | ClosedForm::WeightedSum => self.consequents.len(),
+                ClosedForm::Tsukamoto => self.curves.len(),
+                ClosedForm::Cut | ClosedForm::Scaled => self.sets.len(),
+                ClosedForm::Integrated => 0,
             };
             let of_all = self.sizes.strengths as usize;
             require(
                 within(output.first_strength, output.end_strength, of_all)
                     && within(output.first, output.end, length)
-                    && (output.form != ClosedForm::PARTITION || 2 * numbers < strengths),
+                    && (form != ClosedForm::Partition || 2 * numbers < strengths),
                 "outputs",
             )?;
-            if output.form == ClosedForm::LAYERS {
+            if form == ClosedForm::Layers {
                 require(numbers == 1, "outputs")?;
                 self.check_layers(&self.layered_sets[output.first as usize], strengths)?;
             }
-            if let ClosedForm::CUT | ClosedForm::SCALED = output.form {
+            if let ClosedForm::Cut | ClosedForm::Scaled = form {
                 require(numbers == 1, "outputs")?;
                 self.check_set(&self.sets[output.first as usize], strengths)?;
             }

@@ -9,34 +9,49 @@ use super::{Arrays, Curve, Output, Point};
 use crate::formula::evaluate;
 use crate::rows::{join, set};
 
-/// The closed form of a defuzzifier.
-#[doc(hidden)] // Exported data.
+/// How a table computes the value of an output from its firing strengths.
+#[doc(hidden)] // The codes of exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(transparent)]
-pub struct ClosedForm(pub u32);
+pub enum ClosedForm {
+    /// None: an [`Engine`](crate::Engine) integrates the aggregated set.
+    Integrated,
+    /// The centroid of minimum and maximum over a partition: [`Pair`]s.
+    Partition,
+    /// The centroid of a sum of products: [`Moment`]s.
+    Moments,
+    /// Takagi-Sugeno, `sum(w z) / sum(w)`: [`Consequent`]s.
+    WeightedAverage,
+    /// Takagi-Sugeno, `sum(w z)`: [`Consequent`]s.
+    WeightedSum,
+    /// Tsukamoto, `sum(w z) / sum(w)` with `z` where a term has the degree `w`: [`Curve`]s, one for each firing strength.
+    Tsukamoto,
+    /// A [`FuzzySet`](super::FuzzySet) of terms that are cut off: the implication is the minimum.
+    Cut,
+    /// A [`FuzzySet`](super::FuzzySet) of terms that are scaled: the implication is the product.
+    Scaled,
+    /// The centroid of product and maximum over a partition: [`Pair`]s.
+    ScaledPartition,
+    /// The centroid of minimum and maximum over straight terms: a [`LayeredSet`](super::LayeredSet).
+    Layers,
+}
 
 impl ClosedForm {
-    /// None: an [`Engine`](crate::Engine) integrates the aggregated set.
-    pub const NONE: ClosedForm = ClosedForm(0);
-    /// The centroid of minimum and maximum over a partition: [`Pair`]s.
-    pub const PARTITION: ClosedForm = ClosedForm(1);
-    /// The centroid of a sum of products: [`Moment`]s.
-    pub const MOMENTS: ClosedForm = ClosedForm(2);
-    /// Takagi-Sugeno, `sum(w z) / sum(w)`: [`Consequent`]s.
-    pub const WEIGHTED_AVERAGE: ClosedForm = ClosedForm(3);
-    /// Takagi-Sugeno, `sum(w z)`: [`Consequent`]s.
-    pub const WEIGHTED_SUM: ClosedForm = ClosedForm(4);
-
-    /// Tsukamoto, `sum(w z) / sum(w)` with `z` where a term has the degree `w`: [`Curve`]s, one for each firing strength.
-    pub const TSUKAMOTO: ClosedForm = ClosedForm(5);
-    /// A [`FuzzySet`](super::FuzzySet) of terms that are cut off: the implication is the minimum.
-    pub const CUT: ClosedForm = ClosedForm(6);
-    /// A [`FuzzySet`](super::FuzzySet) of terms that are scaled: the implication is the product.
-    pub const SCALED: ClosedForm = ClosedForm(7);
-    /// The centroid of product and maximum over a partition: [`Pair`]s.
-    pub const SCALED_PARTITION: ClosedForm = ClosedForm(8);
-    /// The centroid of minimum and maximum over straight terms: a [`LayeredSet`](super::LayeredSet).
-    pub const LAYERS: ClosedForm = ClosedForm(9);
+    /// The form of this code in exported data. An unknown code, of a damaged table, has no closed form.
+    #[inline(always)]
+    pub(crate) const fn from_code(code: u32) -> Self {
+        match code {
+            1 => ClosedForm::Partition,
+            2 => ClosedForm::Moments,
+            3 => ClosedForm::WeightedAverage,
+            4 => ClosedForm::WeightedSum,
+            5 => ClosedForm::Tsukamoto,
+            6 => ClosedForm::Cut,
+            7 => ClosedForm::Scaled,
+            8 => ClosedForm::ScaledPartition,
+            9 => ClosedForm::Layers,
+            _ => ClosedForm::Integrated,
+        }
+    }
 }
 
 /// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its right.
@@ -173,15 +188,15 @@ pub(super) fn closed<A: Arrays, const L: usize>(
     values: &mut [f64; L],
 ) -> bool {
     let range = output.first as usize..output.end as usize;
-    match output.form {
-        ClosedForm::PARTITION => partition(table, output, strengths, values, Pair::cut),
-        ClosedForm::SCALED_PARTITION => partition(table, output, strengths, values, Pair::scaled),
-        ClosedForm::LAYERS => {
+    match output.form() {
+        ClosedForm::Partition => partition(table, output, strengths, values, Pair::cut),
+        ClosedForm::ScaledPartition => partition(table, output, strengths, values, Pair::scaled),
+        ClosedForm::Layers => {
             let layered = table.layered_sets()[output.first as usize];
             let [areas, moments] = layered.integrals(table, strengths, bases);
             set(values, |row| output.centroid((areas[row], moments[row])));
         }
-        ClosedForm::MOMENTS => {
+        ClosedForm::Moments => {
             let (mut areas, mut moments) = ([0.0; L], [0.0; L]);
             for (Moment { area, moment }, strengths) in table.moments()[range].iter().zip(strengths)
             {
@@ -192,12 +207,14 @@ pub(super) fn closed<A: Arrays, const L: usize>(
             }
             set(values, |row| output.centroid((areas[row], moments[row])));
         }
-        ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM => {
+        ClosedForm::WeightedAverage | ClosedForm::WeightedSum => {
             let (consequents, coefficients) = (&table.consequents()[range], table.coefficients());
             let numbers = (consequents, coefficients, table.points());
             weighted(output, numbers, strengths, inputs, values);
         }
-        _ => return false,
+        ClosedForm::Integrated | ClosedForm::Tsukamoto | ClosedForm::Cut | ClosedForm::Scaled => {
+            return false;
+        }
     }
     true
 }
@@ -247,20 +264,38 @@ impl Output {
     }
 }
 
-/// The value of an output with another closed form; `None` where no rule fired.
-pub(super) fn closed_in_row<A: Arrays>(
+/// The value in one row of an output that [`closed`] does not know; `None` where no rule fired. `integrate` gives the value of
+/// an output without a closed form from its index and its firing strengths.
+#[inline(always)]
+pub(crate) fn value_in_row<A: Arrays>(
     table: &A,
+    index: usize,
     output: &Output,
     strengths: &[f64],
+    mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
 ) -> Option<f64> {
-    match output.form {
-        ClosedForm::CUT | ClosedForm::SCALED => super::set::value(table, output, strengths),
-        ClosedForm::TSUKAMOTO => {
+    match output.form() == ClosedForm::Integrated {
+        true => integrate(index, strengths),
+        false => closed_in_row(table, output, strengths),
+    }
+}
+
+/// [`value_in_row`] of an output with a closed form, apart from the code that calls it.
+fn closed_in_row<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) -> Option<f64> {
+    match output.form() {
+        ClosedForm::Cut | ClosedForm::Scaled => super::set::value(table, output, strengths),
+        ClosedForm::Tsukamoto => {
             let curves = &table.curves()[output.first as usize..output.end as usize];
             let value = tsukamoto(output, curves, table.points(), strengths);
             value.map(|value| output.clamped(value))
         }
-        _ => None,
+        ClosedForm::Integrated
+        | ClosedForm::Partition
+        | ClosedForm::ScaledPartition
+        | ClosedForm::Layers
+        | ClosedForm::Moments
+        | ClosedForm::WeightedAverage
+        | ClosedForm::WeightedSum => None,
     }
 }
 
@@ -339,10 +374,11 @@ fn weighted<const L: usize>(
             }
         }
     }
+    let is_sum = output.form() == ClosedForm::WeightedSum;
     set(values, |row| {
-        let value = match output.form {
-            ClosedForm::WEIGHTED_SUM => sums[row],
-            _ => sums[row] / totals[row],
+        let value = match is_sum {
+            true => sums[row],
+            false => sums[row] / totals[row],
         };
         output.weighted(value, totals[row])
     });

@@ -5,6 +5,54 @@
 //!
 //! A table is made by compiling a model, not by hand: its arrays index into one another. [`Table::check`] verifies the
 //! indices.
+//!
+//! # A worked example: three triangles, two rules, and their arrays
+//! ```
+//! use fuzzy::table::ClosedForm;
+//!
+//! let model: fuzzy::Model = "
+//! fuzzy: 1
+//! name: fan
+//! inputs: {heat: {range: [0, 10], partition: [low, medium, high]}}
+//! outputs: {speed: {range: [0, 10], partition: [slow, medium, fast]}}
+//! rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]
+//! ".parse()?;
+//! let engine = fuzzy::Engine::new(&model)?;
+//! let table = engine.table().ok_or("the model chains")?;
+//!
+//! // Rules read two terms, `low` and `high`: literals 0 and 1. The terms bend at 5 and 10; infinity is padding.
+//! assert_eq!(table.cuts, [5.0, 10.0, f64::INFINITY, f64::INFINITY]);
+//! // Each interval between cuts has two lines. Below 5, `low` has the degree base + rise (x - foot) / run.
+//! let low = table.lines[0];
+//! assert_eq!((low.literal, low.base, low.rise, low.foot, low.run), (0, 0.0, 1.0, 5.0, -5.0));
+//!
+//! // A cell for each literal, with the rule and the firing strength that it raises: 0 of `slow`, 2 of `fast`.
+//! let actions = table.actions.iter().map(|action| (action.rule, action.strength));
+//! assert_eq!(actions.collect::<Vec<_>>(), [(0, 0), (1, 2)]);
+//!
+//! // The output's terms sum to 1, so the centroid has a closed form: two terms in each pair. `slow` cut at h has the area
+//! // 5 h - 2.5 h^2, `medium` 10 h - 5 h^2, less an overlap of width 5 where both fire.
+//! assert_eq!(table.outputs[0].form(), ClosedForm::Partition);
+//! assert_eq!(table.pairs[0].area, [[5.0, 10.0], [-2.5, -5.0]]);
+//! assert_eq!(table.pairs[0].width, [5.0, 5.0]);
+//!
+//! // A heat of 8 is `high` to 0.6, so `fast` is cut at 0.6: the area is 2.1, the moment about the middle 6.6.
+//! assert_eq!(engine.evaluate(&[8.0])?[0].value(), Some(5.0 + 6.6 / 2.1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Words
+//!
+//! | word here | meaning in the literature |
+//! |---|---|
+//! | literal | a proposition "input is term", with its hedges |
+//! | alive | a literal whose support contains the value |
+//! | partial | the conjunction of the first literals of an antecedent, while it is over 0 |
+//! | action | a consequent: the rule, its weight, and the firing strength that it raises |
+//! | flank | a part of a membership function that only rises or only falls; its tail is the integral from its foot |
+//! | knot | a node of the tabulated integral of a curved flank |
+//! | section, strand | a part of the output's range on which terms keep their order; a flank on it |
+//! | layer, base | the part of a set between two alpha-levels; the lower one of them |
 
 use core::ops::DerefMut;
 
@@ -46,12 +94,13 @@ pub use layers::{Base, LayeredSet, Layers};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
 pub use rules::{Action, Axis, Dimension, Edge, Node, Op, Program, Step};
-pub use set::{FuzzySet, Section, SetDefuzzifier, SetTerm, Strand};
+pub use set::{FuzzySet, OfMaxima, Section, SetDefuzzifier, SetTerm, Strand};
 
 pub use crate::shape::Kind;
 
 use crate::rows::{each, set};
-use closed::{closed, closed_apart, closed_in_row, partition};
+pub(crate) use closed::value_in_row;
+use closed::{closed, closed_apart, partition};
 pub(crate) use firing::{fire, fire_row, has_cells_alone};
 use operators::{larger, smaller};
 pub(crate) use raising::{concluded_by, raised_by};
@@ -104,8 +153,8 @@ pub struct Output {
     pub high: f64,
     /// The value where no rule fires; NaN where the output is undefined there.
     pub default_value: f64,
-    /// The closed form of its defuzzifier.
-    pub form: ClosedForm,
+    /// The code of its [closed form](Output::form).
+    pub form: u32,
     /// Its span in the array of that form.
     pub first: u32,
     /// The end of that span.
@@ -144,6 +193,12 @@ pub struct Buffers<N, P, S> {
 pub type Scratch<'m> = Buffers<&'m mut [f64], &'m mut [Partial], &'m mut [Strongest]>;
 
 impl Output {
+    /// How its value is computed.
+    #[inline(always)]
+    pub fn form(&self) -> ClosedForm {
+        ClosedForm::from_code(self.form)
+    }
+
     /// The value, clamped to the range where the author says so.
     #[inline(always)]
     fn clamped(&self, value: f64) -> f64 {
@@ -192,7 +247,7 @@ impl Table<'_> {
     /// };
     /// let mut outcomes = [Outcome::UNDEFINED];
     /// table.evaluate(&mut scratch, &[27.5], &mut outcomes);
-    /// assert_eq!(outcomes[..], engine.evaluate(&[27.5])?);
+    /// assert_eq!(outcomes[..], engine.evaluate(&[27.5])?[..]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn evaluate(&self, scratch: &mut Scratch<'_>, inputs: &[f64], outcomes: &mut [Outcome]) {
@@ -277,22 +332,6 @@ pub(crate) fn evaluate_rows<A, N, P, S, const L: usize, const CELLS: bool>(
     }
 }
 
-/// The value in one row of an output that [`closed`] does not know; `None` where no rule fired. `integrate` is as in
-/// [`evaluate_row`].
-#[inline(always)]
-pub(crate) fn value_in_row<A: Arrays>(
-    table: &A,
-    index: usize,
-    output: &Output,
-    strengths: &[f64],
-    mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
-) -> Option<f64> {
-    match output.form {
-        ClosedForm::NONE => integrate(index, strengths),
-        _ => closed_in_row(table, output, strengths),
-    }
-}
-
 /// Clamps each value to the range of its input, also one that is not finite.
 #[inline(always)]
 fn clamp<A: Arrays, const L: usize>(
@@ -340,7 +379,7 @@ fn fill<A, N, P, S, const L: usize>(
     let strengths = &scratch.strengths[strengths];
     let (inputs, values) = (&scratch.values, &mut results.values);
     let bases = &mut scratch.stack;
-    let is_known = if output.form == ClosedForm::PARTITION {
+    let is_known = if output.form() == ClosedForm::Partition {
         partition(table, output, strengths, values, Pair::cut);
         true
     } else if L == 1 {

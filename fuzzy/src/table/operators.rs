@@ -114,6 +114,20 @@ impl Disjunction {
     ];
 }
 
+impl Aggregation {
+    /// All aggregations.
+    pub const ALL: [Aggregation; 8] = [
+        Aggregation::Maximum,
+        Aggregation::ProbabilisticSum,
+        Aggregation::BoundedSum,
+        Aggregation::Sum,
+        Aggregation::Drastic,
+        Aggregation::Einstein,
+        Aggregation::Hamacher,
+        Aggregation::NilpotentMaximum,
+    ];
+}
+
 impl Hedge {
     /// All hedges.
     pub const ALL: [Hedge; 6] = [
@@ -286,7 +300,7 @@ impl Hedge {
 mod tests {
     use super::*;
 
-    const CONJUNCTIONS: [(Conjunction, f64, f64); 7] = [
+    const CONJUNCTIONS: [(Conjunction, f64, f64); Conjunction::ALL.len()] = [
         // At (0.5, 0.75) and at (0.25, 0.5), by hand.
         (Conjunction::Minimum, 0.5, 0.25),
         (Conjunction::Product, 0.375, 0.125),
@@ -297,7 +311,7 @@ mod tests {
         (Conjunction::NilpotentMinimum, 0.5, 0.0),
     ];
 
-    const DISJUNCTIONS: [(Disjunction, f64, f64); 7] = [
+    const DISJUNCTIONS: [(Disjunction, f64, f64); Disjunction::ALL.len()] = [
         (Disjunction::Maximum, 0.75, 0.5),
         (Disjunction::ProbabilisticSum, 0.875, 0.625),
         (Disjunction::BoundedSum, 1.0, 0.75),

@@ -102,7 +102,7 @@ where
         *strengths.get_mut(index)? = [1.0];
         let mut value = [f64::NAN];
         // The memory for the bases of layers is in use by the rule that fires.
-        let alone = if of.form == ClosedForm::LAYERS {
+        let alone = if of.form() == ClosedForm::Layers {
             let set = table.layered_sets().get(of.first as usize)?;
             Some(of.centroid(set.alone(table, index as u32)))
         } else if closed(table, of, strengths, &mut [], values, &mut value) {

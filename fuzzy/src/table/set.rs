@@ -14,23 +14,46 @@ pub(crate) use maxima::Maxima;
 mod bisector;
 mod maxima;
 
-/// A defuzzifier of a prepared set.
-#[doc(hidden)] // Exported data.
+/// How a fuzzy set becomes a number.
+#[doc(hidden)] // The codes of exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(transparent)]
-pub struct SetDefuzzifier(pub u32);
+pub enum SetDefuzzifier {
+    /// The centre of gravity.
+    Centroid,
+    /// The value that halves the area.
+    Bisector,
+    /// One of the values at which the set is highest.
+    Maxima(OfMaxima),
+}
+
+/// A value among those at which a set is highest.
+#[doc(hidden)] // The codes of exported data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OfMaxima {
+    /// The smallest one.
+    Smallest,
+    /// Their mean.
+    Mean,
+    /// The largest one.
+    Largest,
+}
 
 impl SetDefuzzifier {
-    /// The centre of gravity.
-    pub const CENTROID: SetDefuzzifier = SetDefuzzifier(0);
-    /// The value that halves the area.
-    pub const BISECTOR: SetDefuzzifier = SetDefuzzifier(1);
-    /// The smallest value at which the set is highest.
-    pub const SMALLEST_OF_MAXIMA: SetDefuzzifier = SetDefuzzifier(2);
-    /// The mean of these values.
-    pub const MEAN_OF_MAXIMA: SetDefuzzifier = SetDefuzzifier(3);
-    /// The largest of these values.
-    pub const LARGEST_OF_MAXIMA: SetDefuzzifier = SetDefuzzifier(4);
+    /// All of them, in the order of their codes in exported data.
+    pub const ALL: [SetDefuzzifier; 5] = [
+        SetDefuzzifier::Centroid,
+        SetDefuzzifier::Bisector,
+        SetDefuzzifier::Maxima(OfMaxima::Smallest),
+        SetDefuzzifier::Maxima(OfMaxima::Mean),
+        SetDefuzzifier::Maxima(OfMaxima::Largest),
+    ];
+
+    /// The code in exported data.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn code(self) -> u32 {
+        let index = Self::ALL.iter().position(|other| *other == self);
+        index.unwrap_or(Self::ALL.len()) as u32
+    }
 }
 
 /// The prepared fuzzy set of an output.
@@ -40,8 +63,8 @@ impl SetDefuzzifier {
 pub struct FuzzySet {
     /// The unit of length of areas.
     pub unit: f64,
-    /// The defuzzifier.
-    pub defuzzifier: SetDefuzzifier,
+    /// The defuzzifier, an index in [`SetDefuzzifier::ALL`].
+    pub defuzzifier: u32,
     /// 1 where the aggregation is the sum, else the maximum.
     pub sum: u32,
     /// Its span of sections; empty for a sum.
@@ -140,13 +163,13 @@ pub(super) fn value<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) ->
             origin: output.origin(),
             unit: set.unit,
         },
-        scales: output.form == ClosedForm::SCALED,
+        scales: output.form() == ClosedForm::Scaled,
     };
-    let value = match (set.defuzzifier, set.sum) {
-        (SetDefuzzifier::CENTROID, _) => prepared.centroid(strengths),
-        (SetDefuzzifier::BISECTOR, 0) => prepared.bisector(strengths),
-        (SetDefuzzifier::BISECTOR, _) => prepared.bisector_of_sum(output, strengths),
-        _ => prepared.maxima(strengths),
+    let value = match *SetDefuzzifier::ALL.get(set.defuzzifier as usize)? {
+        SetDefuzzifier::Centroid => prepared.centroid(strengths),
+        SetDefuzzifier::Bisector if set.sum == 0 => prepared.bisector(strengths),
+        SetDefuzzifier::Bisector => prepared.bisector_of_sum(output, strengths),
+        SetDefuzzifier::Maxima(which) => prepared.maxima(which, strengths),
     }?;
     Some(larger(output.low, smaller(output.high, value)))
 }

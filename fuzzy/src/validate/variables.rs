@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use super::{MOST_FINDINGS, Validator, or};
 use crate::{
-    defuzzify::Defuzzify,
+    defuzzify::is_empty,
     model::{
         Defuzzifier, Formula, MembershipFunction, NoRuleFires, Output, Variable,
         document::{TermSpans, VariableSpans},
@@ -300,9 +300,8 @@ impl Validator<'_> {
     /// A term without an area within the range gives an output no value.
     pub(super) fn terms_have_area(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
         let variable = &output.variable;
-        let compiled = Defuzzify::fuzzy(output, self.model.operators_of_output(output));
         for (i, term) in variable.terms.iter().enumerate() {
-            if compiled.is_empty(i) {
+            if is_empty(output, term) {
                 let here = spans.terms.get(i).map_or(0..0, |term| term.name.clone());
                 let lacks = if output.is_discrete() {
                     "does not lie"

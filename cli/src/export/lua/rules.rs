@@ -187,13 +187,13 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused>
     let range = output.first as usize..output.end as usize;
     let strengths = output.end_strength - output.first_strength;
     // A partition has one more, which stays 0: the last term has no term to its right.
-    let strengths = match output.form {
-        ClosedForm::PARTITION => strengths.min(2 * (output.end - output.first)),
+    let strengths = match output.form() {
+        ClosedForm::Partition => strengths.min(2 * (output.end - output.first)),
         _ => strengths,
     };
     let mut lines = vec![format!("local OUTPUT_TERMS = {strengths}")];
-    match output.form {
-        ClosedForm::MOMENTS => {
+    match output.form() {
+        ClosedForm::Moments => {
             let moments = plan.rules.table.moments.get(range).unwrap_or_default();
             let list = |of: fn(&flagred::board::table::Moment) -> f64| {
                 moments
@@ -210,7 +210,7 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused>
             };
             lines.push(format!("local MOMENTS = {{{}}}", list(moment)));
         }
-        ClosedForm::PARTITION => {
+        ClosedForm::Partition => {
             let pairs = plan.rules.table.pairs.get(range).unwrap_or_default();
             let sides = pairs.iter().flat_map(|pair| [(pair, 0), (pair, 1)]);
             lines.push("-- The output's terms: area = a h + b h^2, moment about the middle of the range = c h + d h^2 + e h^3 at".into());
@@ -226,7 +226,7 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused>
             }
             lines.push("}".into());
         }
-        ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM => {
+        ClosedForm::WeightedAverage | ClosedForm::WeightedSum => {
             return Err(Refused::new(
                 "the output is a Takagi-Sugeno one, which the script does not have".into(),
                 "the script has the centroid, with `implication: product` and `aggregation: sum` or over a `partition` with \
@@ -246,8 +246,8 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused>
 }
 
 fn defuzzify(output: &Output) -> Vec<String> {
-    let sum = match output.form {
-        ClosedForm::PARTITION => {
+    let sum = match output.form() {
+        ClosedForm::Partition => {
             "  local area, moment = 0.0, 0.0
   for term = 1, OUTPUT_TERMS do
     local part, h = PARTS[term], strengths[term]

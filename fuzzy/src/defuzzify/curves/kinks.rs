@@ -2,8 +2,9 @@
 
 use alloc::vec::Vec;
 
+use super::super::calculus::{Kinks, levels};
 use super::super::maxima::{INSIDE, turns};
-use super::{Curves, Joint, Part, Strengths, Workspace};
+use super::{Curves, Joint, Part, Run, Strengths, Workspace};
 use crate::model::{Aggregation, Implication};
 use crate::table::{LEAST_STRENGTH, numeric::root};
 
@@ -18,99 +19,108 @@ struct Cuts<'a> {
 }
 
 impl Curves {
-    /// Fills `workspace` with the cuts of the aggregated set, from left to right: its kinks and steps. Returns whether they are
-    /// all known: not of formulas, and not where memory is short. A kink may be missed where curves meet twice between two cuts.
-    /// Then the integration takes longer, and is as exact.
+    /// Fills `workspace` with the cuts of the aggregated set on the stretch of its runs, from left to right: its ends, kinks and
+    /// steps. Returns whether they are all known: not of formulas, and not where memory is short. A kink may be missed where
+    /// curves meet twice between two cuts. Then the integration takes longer, and is as exact.
     pub(super) fn kinks(
         &self,
         strengths: Strengths<'_>,
         joint: Joint,
+        (from, to): (f64, f64),
         workspace: &mut Workspace,
     ) -> bool {
-        let (parts, steps) = (&mut workspace.parts, &mut workspace.steps);
-        workspace.cuts.clear();
-        let active = |term: usize| strengths.of(term).iter().any(|h| *h > 0.0);
-        for &(x, term) in &self.cuts {
-            if term.is_none_or(active) && workspace.cuts.last() != Some(&x) {
-                workspace.cuts.push(x);
-            }
-        }
+        let Workspace {
+            cuts,
+            most_cuts,
+            runs,
+            parts,
+            steps,
+        } = workspace;
+        cuts.clear();
+        cuts.extend([from, to]);
         let mut cuts = Cuts {
-            cuts: &mut workspace.cuts,
-            most: workspace.most_cuts,
+            cuts,
+            most: *most_cuts,
             is_full: false,
             between: (0.0, 0.0),
         };
         cuts.each_stretch(|cuts, _| {
             if steps.take(2 * strengths.strengths.len()) {
-                self.levels(strengths, joint.implication, cuts);
+                self.levels(strengths, joint.implication, runs, cuts);
             }
         });
         let all_known = !cuts.is_full && !self.has_formula;
         // Between the levels each activated term is smooth.
+        let kinks = Kinks::of(joint.aggregation);
         cuts.each_stretch(|cuts, stretch| {
-            if !steps.take(strengths.strengths.len()) {
+            if kinks == Kinks::None || !steps.take(strengths.strengths.len()) {
                 return;
             }
-            self.parts(strengths, joint.implication, stretch, all_known, parts);
-            let pairs = match joint.aggregation {
-                Aggregation::Maximum | Aggregation::NilpotentMaximum => parts.len(),
-                _ => 1,
+            self.parts(
+                strengths,
+                joint.implication,
+                stretch,
+                all_known,
+                (runs, parts),
+            );
+            let pairs = match kinks {
+                Kinks::Crossings | Kinks::CrossingsAndSteps => parts.len(),
+                Kinks::None | Kinks::Steps | Kinks::Bound => 1,
             };
             if steps.take(2 * pairs * parts.len()) {
-                self.crossings(parts, joint.aggregation, cuts);
+                self.crossings(parts, kinks, cuts);
             }
         });
         !cuts.is_full && !self.has_formula
     }
 
     /// Cuts where a term passes a level of its implication.
-    fn levels(&self, strengths: Strengths<'_>, implication: Implication, cuts: &mut Cuts<'_>) {
-        for term in 0..self.terms.len() {
-            for &strength in strengths.of(term).iter().filter(|h| **h > 0.0) {
+    fn levels(
+        &self,
+        strengths: Strengths<'_>,
+        implication: Implication,
+        runs: &[Run],
+        cuts: &mut Cuts<'_>,
+    ) {
+        for Run { term, line } in runs {
+            for &strength in strengths.of(*term).iter().filter(|h| **h > 0.0) {
                 for level in levels(implication, strength).into_iter().flatten() {
-                    if level != strength || self.cuts_off(term, strength) {
-                        cuts.at_sign_change(|x| self.membership(term, x) - level);
+                    if level == strength && !self.cuts_off(*term, strength) {
+                        continue;
+                    }
+                    match line {
+                        Some(line) => cuts.at_sign_change(|x| line.at(x) - level, true),
+                        None => cuts.at_sign_change(|x| self.membership(*term, x) - level, false),
                     }
                 }
             }
         }
     }
 
-    /// Cuts where two terms cross, where one comes to the least strength, or the sum of two reaches 1.
-    fn crossings(&self, parts: &[Part], aggregation: Aggregation, cuts: &mut Cuts<'_>) {
+    /// Cuts at the kinks and steps of the aggregation.
+    fn crossings(&self, parts: &[Part], kinks: Kinks, cuts: &mut Cuts<'_>) {
         let degree = |part: &Part, x: f64| self.joined(&[*part], Aggregation::Maximum, x);
+        let is_line = |part: &Part| part.line.is_some();
+        let sum = |parts: &[Part], x: f64| self.joined(parts, Aggregation::Sum, x);
         for (i, first) in parts.iter().enumerate() {
-            let others = parts.iter().skip(i + 1);
-            match aggregation {
-                Aggregation::Maximum => {
-                    for second in others {
-                        cuts.at_sign_change(|x| degree(first, x) - degree(second, x));
-                    }
+            for second in parts.iter().skip(i + 1) {
+                if let Kinks::Crossings | Kinks::CrossingsAndSteps = kinks {
+                    let are_lines = is_line(first) && is_line(second);
+                    cuts.at_sign_change(|x| degree(first, x) - degree(second, x), are_lines);
                 }
-                Aggregation::NilpotentMaximum => {
-                    for second in others {
-                        cuts.at_sign_change(|x| degree(first, x) - degree(second, x));
-                        let pair = [*first, *second];
-                        let sum = |x: f64| self.joined(&pair, Aggregation::Sum, x);
-                        let slope =
-                            |x: f64, width: f64| self.slope(&pair, Aggregation::Sum, x, width);
-                        cuts.at_sign_changes(|x| sum(x) - (1.0 - LEAST_STRENGTH), slope);
-                    }
+                if kinks == Kinks::CrossingsAndSteps {
+                    let pair = [*first, *second];
+                    let slope = |x: f64, width: f64| self.slope(&pair, Aggregation::Sum, x, width);
+                    cuts.at_sign_changes(|x| sum(&pair, x) - (1.0 - LEAST_STRENGTH), slope);
                 }
-                Aggregation::Drastic => {
-                    cuts.at_sign_change(|x| degree(first, x) - LEAST_STRENGTH);
-                }
-                // All together, below.
-                Aggregation::BoundedSum => {}
-                Aggregation::Sum
-                | Aggregation::ProbabilisticSum
-                | Aggregation::Einstein
-                | Aggregation::Hamacher => {}
+            }
+            if kinks == Kinks::Steps {
+                cuts.at_sign_change(|x| degree(first, x) - LEAST_STRENGTH, is_line(first));
             }
         }
-        if aggregation == Aggregation::BoundedSum {
-            cuts.at_sign_change(|x| self.joined(parts, Aggregation::Sum, x) - 1.0);
+        if kinks == Kinks::Bound {
+            let are_lines = parts.iter().all(is_line);
+            cuts.at_sign_change(|x| sum(parts, x) - 1.0, are_lines);
         }
     }
 }
@@ -137,11 +147,15 @@ impl Cuts<'_> {
         }
     }
 
-    /// Adds a cut where a function changes its sign.
-    fn at_sign_change(&mut self, f: impl Fn(f64) -> f64) {
+    /// Adds a cut where a function, which may be a straight line, changes its sign.
+    fn at_sign_change(&mut self, f: impl Fn(f64) -> f64, is_line: bool) {
         let (a, b) = self.between;
-        if f(a) * f(b) < 0.0 {
-            self.push(root(a, b, f));
+        let (fa, fb) = (f(a), f(b));
+        if fa * fb < 0.0 {
+            self.push(match is_line {
+                true => a + (b - a) * (fa / (fa - fb)),
+                false => root(a, b, f),
+            });
         }
     }
 
@@ -150,7 +164,7 @@ impl Cuts<'_> {
         let (a, b) = self.between;
         let (fa, fb) = (f(a), f(b));
         if fa * fb <= 0.0 {
-            return self.at_sign_change(f);
+            return self.at_sign_change(f, false);
         }
         let sign = if fa < 0.0 { 1.0 } else { -1.0 };
         let width = b - a;
@@ -161,18 +175,5 @@ impl Cuts<'_> {
                 self.push(root(x, b, &f));
             }
         });
-    }
-}
-
-/// The degrees of membership at which an activated term has a kink or a step.
-fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2] {
-    match implication {
-        Implication::Minimum => [Some(strength), None],
-        Implication::BoundedDifference => [Some(1.0 - strength), None],
-        Implication::NilpotentMinimum => [Some(strength), Some(1.0 - strength + LEAST_STRENGTH)],
-        Implication::Product
-        | Implication::Drastic
-        | Implication::Einstein
-        | Implication::Hamacher => [None, None],
     }
 }

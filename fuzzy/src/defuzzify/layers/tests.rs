@@ -79,9 +79,9 @@ fn layers_have_the_centroid_of_the_set() {
         let range = (low, high);
         let model = model(range, &shapes, MINIMUM_MAXIMUM, Defuzzifier::Centroid);
         let engine = Engine::new(&model).unwrap();
-        let form = engine.table().unwrap().outputs[0].form;
-        let is_layered = form == ClosedForm::LAYERS;
-        assert!(is_layered || form == ClosedForm::PARTITION, "{form:?}");
+        let form = engine.table().unwrap().outputs[0].form();
+        let is_layered = form == ClosedForm::Layers;
+        assert!(is_layered || form == ClosedForm::Partition, "{form:?}");
         let Some(value) = engine.evaluate(&[0.5]).unwrap()[0].value() else {
             assert!(terms.iter().all(|(_, strength)| *strength == 0.0));
             continue;

@@ -3,7 +3,6 @@
 use alloc::{vec, vec::Vec};
 
 use super::{degree, stretches::LEVEL};
-use crate::model::Implication;
 use crate::table::numeric::root;
 use crate::table::{Flank, Kind};
 
@@ -29,7 +28,7 @@ impl<'f> Couple<'f> {
     }
 
     /// Adds the cuts that make the two cross at most at cuts (minimum), or at most once between two (product).
-    pub(super) fn cuts(&self, seeds: [&[f64]; 2], implication: Implication, cuts: &mut Vec<f64>) {
+    pub(super) fn cuts(&self, seeds: [&[f64]; 2], scales: bool, cuts: &mut Vec<f64>) {
         let direction = |flank: &Flank| match () {
             () if flank.is_level() => 0,
             () if flank.rises() => 1,
@@ -42,9 +41,9 @@ impl<'f> Couple<'f> {
         } else {
             vec![self.from, self.to]
         };
-        match implication {
-            Implication::Minimum => self.crossings(&points, cuts),
-            _ => self.turns_of_ratio(&points, cuts),
+        match scales {
+            true => self.turns_of_ratio(&points, cuts),
+            false => self.crossings(&points, cuts),
         }
     }
 

@@ -4,13 +4,12 @@ use alloc::{vec, vec::Vec};
 
 use super::{MOST_KNOTS, Measure};
 use crate::defuzzify::maxima::monotone;
-use crate::defuzzify::polyline::limits;
 use crate::model::Term;
 use crate::table::numeric::gauss;
 use crate::table::{Flank, Knot};
 
 /// A part of a term that only rises, only falls or is level.
-pub(super) struct Stretch {
+pub(crate) struct Stretch {
     /// Its ends, and the cuts between.
     pub(super) cuts: Vec<f64>,
     pub(super) left: f64,
@@ -18,15 +17,17 @@ pub(super) struct Stretch {
     pub(super) is_curved: bool,
 }
 
-pub(super) fn straight(
-    mut corners: Vec<(f64, f64)>,
-    height: f64,
-    low: f64,
-    high: f64,
-) -> Vec<Stretch> {
+/// The corners of a term; `None` if it is curved.
+pub(crate) fn corners(term: &Term) -> Option<Vec<(f64, f64)>> {
+    let mut corners = term.membership_function.corners()?;
     for corner in &mut corners {
-        corner.1 *= height;
+        corner.1 *= term.height;
     }
+    Some(corners)
+}
+
+/// The stretches of a straight term within the range, without those where it is 0.
+pub(crate) fn straight(corners: &[(f64, f64)], low: f64, high: f64) -> Vec<Stretch> {
     let mut cuts: Vec<f64> = corners.iter().map(|corner| corner.0).collect();
     cuts.retain(|x| low < *x && *x < high);
     cuts.insert(0, low);
@@ -34,7 +35,7 @@ pub(super) fn straight(
     cuts.dedup();
     let ends = cuts.iter().zip(cuts.iter().skip(1));
     let stretches = ends.map(|(&from, &to)| {
-        let (left, right) = limits(&corners, from, to);
+        let (left, right) = limits(corners, from, to);
         Stretch {
             cuts: vec![from, to],
             left,
@@ -45,6 +46,32 @@ pub(super) fn straight(
     stretches
         .filter(|s| s.left > 0.0 || s.right > 0.0)
         .collect()
+}
+
+/// The degrees of a polyline just inside the ends of an interval without corners.
+pub(in crate::defuzzify) fn limits(corners: &[(f64, f64)], from: f64, to: f64) -> (f64, f64) {
+    let mut before: Option<(f64, f64)> = None;
+    for &corner in corners {
+        if corner.0 >= to {
+            return match before {
+                None => (corner.1, corner.1),
+                Some(left) => (on_line(left, corner, from), on_line(left, corner, to)),
+            };
+        }
+        before = Some(corner);
+    }
+    let held = before.map_or(0.0, |corner| corner.1);
+    (held, held)
+}
+
+fn on_line(a: (f64, f64), b: (f64, f64), x: f64) -> f64 {
+    if x <= a.0 {
+        a.1
+    } else if x >= b.0 {
+        b.1
+    } else {
+        a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0))
+    }
 }
 
 /// A curve whose degrees differ by less over a stretch is level there.

@@ -12,7 +12,7 @@ use fearless_simd::{Level, f64x4};
 use super::{And, Cuts, Lines, fires, four, splat};
 use crate::table::operators::{larger, smaller};
 use crate::table::results::{Given, number_of};
-use crate::table::{Outcome, Output, Results};
+use crate::table::{ClosedForm, Outcome, Output, Results};
 
 /// A compiled rule set.
 #[derive(Debug, Clone)]
@@ -27,21 +27,8 @@ pub(in super::super) struct Plane {
     pub(super) least: f64,
     pub(super) and: And,
     pub(super) output: Output,
-    pub(super) defuzzifies: Defuzzifies,
-}
-
-/// How firing strengths become a value.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Defuzzifies {
-    /// The centroid of terms cut at their firing strengths: the numbers of [`Pair`](crate::table::Pair) for
-    /// [`cut`](crate::table::Pair::cut), and for [`scaled`](crate::table::Pair::scaled).
-    Cut,
-    Scaled,
-    /// The centroid of a sum: the area and moment of each term, times the sum of its firing strengths.
-    Summed,
-    /// Takagi-Sugeno: a constant and a coefficient for each input, weighted by the sum of firing strengths.
-    Average,
-    Sum,
+    /// How firing strengths become a value.
+    pub(super) form: ClosedForm,
 }
 
 /// An input.
@@ -64,7 +51,8 @@ pub(super) struct Region {
     pub(super) weights: [f64; 4],
     /// Of each cell, for each slot: infinite where it acts on it, else 0.
     pub(super) acts: [[f64; 4]; 4],
-    /// Of each slot: the numbers that [`Defuzzifies`] tells.
+    /// Of each slot: the numbers of the closed form, as in [`Pair`](crate::table::Pair), [`Moment`](crate::table::Moment) and
+    /// [`Consequent`](crate::table::Consequent).
     pub(super) numbers: [[f64; 4]; 7],
     /// For each set of cells, as bits: the first rule in the model of those of the cells.
     pub(super) first_rules: [u32; 16],
@@ -116,27 +104,33 @@ impl Plane {
     #[inline(always)]
     fn value<S: Simd>(&self, simd: S, region: &Region, strengths: f64x4<S>, at: [f64; 2]) -> f64 {
         let output = &self.output;
-        match self.defuzzifies {
-            Defuzzifies::Cut => {
+        match self.form {
+            ClosedForm::Partition => {
                 let heights = region.largest(simd, strengths);
                 output.centroid(region.cut(simd, heights))
             }
-            Defuzzifies::Scaled => {
+            ClosedForm::ScaledPartition => {
                 let heights = region.largest(simd, strengths);
                 output.centroid(region.scaled(simd, heights))
             }
-            Defuzzifies::Summed => {
+            ClosedForm::Moments => {
                 let heights = region.sums(simd, strengths);
                 let [area, moment, ..] = &region.numbers;
                 let of = |numbers| sum(heights * four(simd, numbers));
                 output.centroid((of(area), of(moment)))
             }
-            Defuzzifies::Average | Defuzzifies::Sum => {
+            ClosedForm::WeightedAverage | ClosedForm::WeightedSum => {
                 let weights = region.sums(simd, strengths);
                 let (sum, total) = region.weighted(simd, weights, at);
-                let averages = matches!(self.defuzzifies, Defuzzifies::Average);
+                let averages = self.form == ClosedForm::WeightedAverage;
                 output.weighted(if averages { sum / total } else { sum }, total)
             }
+            // No plane has these forms.
+            ClosedForm::Integrated
+            | ClosedForm::Tsukamoto
+            | ClosedForm::Cut
+            | ClosedForm::Scaled
+            | ClosedForm::Layers => f64::NAN,
         }
     }
 }

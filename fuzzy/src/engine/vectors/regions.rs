@@ -5,7 +5,7 @@ use core::array::from_fn;
 
 use fearless_simd::Level;
 
-use super::plane::{Defuzzifies, Plane, Region, Side};
+use super::plane::{Plane, Region, Side};
 use super::{And, Cuts, Lines, lines};
 use crate::engine::arrays::OwnedTable;
 use crate::table::{
@@ -28,14 +28,19 @@ impl Plane {
         else {
             return None;
         };
-        let defuzzifies = match (output.form, sums) {
-            (ClosedForm::PARTITION, false) => Defuzzifies::Cut,
-            (ClosedForm::SCALED_PARTITION, false) => Defuzzifies::Scaled,
-            (ClosedForm::MOMENTS, true) => Defuzzifies::Summed,
-            (ClosedForm::WEIGHTED_AVERAGE, true) => Defuzzifies::Average,
-            (ClosedForm::WEIGHTED_SUM, true) => Defuzzifies::Sum,
-            _ => return None,
+        let form = output.form();
+        let sums_strengths = match form {
+            ClosedForm::Partition | ClosedForm::ScaledPartition => false,
+            ClosedForm::Moments | ClosedForm::WeightedAverage | ClosedForm::WeightedSum => true,
+            ClosedForm::Integrated
+            | ClosedForm::Tsukamoto
+            | ClosedForm::Cut
+            | ClosedForm::Scaled
+            | ClosedForm::Layers => return None,
         };
+        if sums != sums_strengths {
+            return None;
+        }
         if (first.input, second.input) != (0, 1) || !has_cells_alone(table) {
             return None;
         }
@@ -46,7 +51,7 @@ impl Plane {
             moments: table.moments.get(span.clone()).unwrap_or_default(),
             consequents: table.consequents.get(span).unwrap_or_default(),
             coefficients: &table.coefficients,
-            defuzzifies,
+            form,
         };
         let actions = table.actions.get(first_action as usize..)?;
         let mut regions = Vec::new();
@@ -72,7 +77,7 @@ impl Plane {
             least: table.least_strength(),
             and: And::of(table)?,
             output: *output,
-            defuzzifies,
+            form,
         })
     }
 }
@@ -93,7 +98,7 @@ struct Numbers<'t> {
     moments: &'t [Moment],
     consequents: &'t [Consequent],
     coefficients: &'t [Coefficient],
-    defuzzifies: Defuzzifies,
+    form: ClosedForm,
 }
 
 impl Numbers<'_> {
@@ -135,19 +140,19 @@ impl Numbers<'_> {
     /// The numbers of a firing strength, where that of the next one is or is not in the region; `None` where the plane has no
     /// place for them.
     fn of(&self, strength: usize, next_is_there: bool) -> Option<[f64; 7]> {
-        match self.defuzzifies {
-            Defuzzifies::Cut | Defuzzifies::Scaled => {
+        match self.form {
+            ClosedForm::Partition | ClosedForm::ScaledPartition => {
                 let (pair, side) = (self.pairs.get(strength / 2)?, strength % 2);
                 let [a0, a1] = pair.area.map(|sides| sides[side]);
                 let [m0, m1, m2] = pair.moment.map(|sides| sides[side]);
                 let width = if next_is_there { pair.width[side] } else { 0.0 };
                 Some([a0, a1, m0, m1, m2, width, pair.middle[side]])
             }
-            Defuzzifies::Summed => {
+            ClosedForm::Moments => {
                 let Moment { area, moment } = self.moments.get(strength)?;
                 Some([*area, *moment, 0.0, 0.0, 0.0, 0.0, 0.0])
             }
-            Defuzzifies::Average | Defuzzifies::Sum => {
+            ClosedForm::WeightedAverage | ClosedForm::WeightedSum => {
                 let consequent = self.consequents.get(strength)?;
                 let span = consequent.first as usize..consequent.end as usize;
                 let coefficients = self.coefficients.get(span)?;
@@ -163,6 +168,11 @@ impl Numbers<'_> {
                 }
                 Some([consequent.constant, of[0], of[1], 0.0, 0.0, 0.0, 0.0])
             }
+            ClosedForm::Integrated
+            | ClosedForm::Tsukamoto
+            | ClosedForm::Cut
+            | ClosedForm::Scaled
+            | ClosedForm::Layers => None,
         }
     }
 }

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use proptest::prelude::*;
 
-use super::Vectors;
+use crate::engine::strategy::Single;
 use crate::engine::{Engine, Outcome};
 use crate::model::{Aggregation, Conjunction, Defuzzifier, Implication, MembershipFunction};
 use crate::model::{Model, Output, Variable};
@@ -77,11 +77,11 @@ proptest! {
         ], 4), 20),
     ) {
         let engine = Engine::new(&model(inputs, kind, multiplies, &weights, seed)).unwrap();
-        let by_vectors = engine.first.vectors.as_deref();
+        let by_vectors = &engine.first.single;
         let expected = match inputs {
-            2 => matches!(by_vectors, Some(Vectors::Plane(_))),
-            _ if kind == 2 || kind == 3 => by_vectors.is_none(),
-            _ => matches!(by_vectors, Some(Vectors::Uniform(_))),
+            2 => matches!(by_vectors, Single::Plane(_)),
+            _ if kind == 2 || kind == 3 => matches!(by_vectors, Single::Cells | Single::Rules),
+            _ => matches!(by_vectors, Single::Vectors(_)),
         };
         prop_assert!(expected, "{inputs} inputs, kind {kind}");
         let (table, mut own) = (engine.table().unwrap(), engine.scratch());

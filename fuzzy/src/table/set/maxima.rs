@@ -1,12 +1,12 @@
 //! The values at which a prepared set is highest.
 
-use super::{Prepared, Section, SetDefuzzifier, SetTerm};
+use super::{OfMaxima, Prepared, Section, SetTerm};
 use crate::table::Flank;
 use crate::table::operators::{larger, smaller};
 
 impl Prepared<'_> {
     /// The smallest, the mean or the largest value at which the maximum is highest.
-    pub(super) fn maxima(&self, strengths: &[f64]) -> Option<f64> {
+    pub(super) fn maxima(&self, which: OfMaxima, strengths: &[f64]) -> Option<f64> {
         // The highest degree of the term itself that counts. A strength that is its highest degree but for rounding cuts
         // nothing off.
         let level = |term: &SetTerm, strength: f64| {
@@ -46,7 +46,7 @@ impl Prepared<'_> {
             }
             spans.put(section, &mut maxima);
         }
-        maxima.value(self.set.defuzzifier)
+        maxima.value(which)
     }
 }
 
@@ -151,13 +151,13 @@ impl Maxima {
     }
 
     /// The value; `None` of a set that is 0 everywhere.
-    pub(crate) fn value(self, defuzzifier: SetDefuzzifier) -> Option<f64> {
+    pub(crate) fn value(self, which: OfMaxima) -> Option<f64> {
         let smallest = self.smallest?;
-        Some(match defuzzifier {
-            SetDefuzzifier::SMALLEST_OF_MAXIMA => smallest,
-            SetDefuzzifier::LARGEST_OF_MAXIMA => self.largest,
-            _ if self.length > 0.0 => self.mean_of_plateaus,
-            _ => self.mean_of_points,
+        Some(match which {
+            OfMaxima::Smallest => smallest,
+            OfMaxima::Largest => self.largest,
+            OfMaxima::Mean if self.length > 0.0 => self.mean_of_plateaus,
+            OfMaxima::Mean => self.mean_of_points,
         })
     }
 }

@@ -1,4 +1,5 @@
-//! Degrees with their slopes: the derivatives of implications and aggregations.
+//! Properties of the operators that the integrator needs: their derivatives, where they have kinks and steps, and whether
+//! straight lines stay straight between these.
 
 use crate::model::{Aggregation, Implication};
 use crate::table::LEAST_STRENGTH;
@@ -87,6 +88,105 @@ pub(super) fn aggregate(aggregation: Aggregation, a: Sloped, b: Sloped) -> Slope
     }
 }
 
+/// The degrees of membership at which a term activated at this strength has a kink or a step.
+pub(super) fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2] {
+    match implication {
+        Implication::Minimum => [Some(strength), None],
+        Implication::BoundedDifference => [Some(1.0 - strength), None],
+        Implication::NilpotentMinimum => [Some(strength), Some(1.0 - strength + LEAST_STRENGTH)],
+        Implication::Product
+        | Implication::Drastic
+        | Implication::Einstein
+        | Implication::Hamacher => [None, None],
+    }
+}
+
+/// The implication between two levels, where the activated term is not level.
+pub(super) fn between_levels(implication: Implication) -> Implication {
+    match implication {
+        Implication::Drastic | Implication::NilpotentMinimum => Implication::Minimum,
+        Implication::Minimum
+        | Implication::Product
+        | Implication::BoundedDifference
+        | Implication::Einstein
+        | Implication::Hamacher => implication,
+    }
+}
+
+/// Whether a straight term is straight between two levels.
+pub(super) fn keeps_lines(implication: Implication) -> bool {
+    match implication {
+        Implication::Minimum
+        | Implication::Product
+        | Implication::BoundedDifference
+        | Implication::Drastic
+        | Implication::NilpotentMinimum => true,
+        Implication::Einstein | Implication::Hamacher => false,
+    }
+}
+
+/// Where an aggregated set has kinks and steps between the levels of its activated terms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kinks {
+    /// Nowhere.
+    None,
+    /// Where two terms cross.
+    Crossings,
+    /// Where two terms cross or their sum reaches 1.
+    CrossingsAndSteps,
+    /// Where a term reaches the least strength.
+    Steps,
+    /// Where the sum of all terms reaches 1.
+    Bound,
+}
+
+impl Kinks {
+    pub(super) fn of(aggregation: Aggregation) -> Self {
+        match aggregation {
+            Aggregation::Maximum => Kinks::Crossings,
+            Aggregation::NilpotentMaximum => Kinks::CrossingsAndSteps,
+            Aggregation::Drastic => Kinks::Steps,
+            Aggregation::BoundedSum => Kinks::Bound,
+            Aggregation::Sum
+            | Aggregation::ProbabilisticSum
+            | Aggregation::Einstein
+            | Aggregation::Hamacher => Kinks::None,
+        }
+    }
+}
+
+/// An aggregation between its kinks and steps.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Smooth {
+    /// The same degrees, except where they are 1 past a step.
+    pub(super) aggregation: Aggregation,
+    /// Whether it has steps to 1.
+    pub(super) has_steps: bool,
+    /// Whether the aggregated set of straight terms is straight.
+    pub(super) keeps_lines: bool,
+}
+
+impl Smooth {
+    pub(super) fn of(aggregation: Aggregation) -> Self {
+        let (between, keeps_lines) = match aggregation {
+            Aggregation::Maximum | Aggregation::Sum | Aggregation::BoundedSum => {
+                (aggregation, true)
+            }
+            Aggregation::NilpotentMaximum => (Aggregation::Maximum, true),
+            // Terms may cross below the least strength.
+            Aggregation::Drastic => (Aggregation::Maximum, false),
+            Aggregation::ProbabilisticSum | Aggregation::Einstein | Aggregation::Hamacher => {
+                (aggregation, false)
+            }
+        };
+        Smooth {
+            aggregation: between,
+            has_steps: between != aggregation,
+            keeps_lines,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,16 +216,7 @@ mod tests {
 
     #[test]
     fn aggregations_as_by_differences() {
-        for aggregation in [
-            Aggregation::Maximum,
-            Aggregation::Sum,
-            Aggregation::ProbabilisticSum,
-            Aggregation::BoundedSum,
-            Aggregation::Drastic,
-            Aggregation::Einstein,
-            Aggregation::Hamacher,
-            Aggregation::NilpotentMaximum,
-        ] {
+        for aggregation in Aggregation::ALL {
             for x in DEGREES {
                 for y in DEGREES.map(|y| y + 0.001) {
                     let at = |t: f64| aggregation.of(x + 2.0 * t, y - 0.7 * t);

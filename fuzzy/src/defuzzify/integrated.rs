@@ -1,0 +1,123 @@
+//! Outputs without a closed form, whose aggregated set is integrated, sampled or summed at each evaluation.
+
+use super::curves::Curves;
+use super::maxima::{Highest, Maxima};
+use super::piece::{Integrals, Piece, unit};
+use super::singletons::Singletons;
+use super::workspace::Workspace;
+use super::{Joint, Strengths};
+use crate::model::{Output, Sampling};
+use crate::table::SetDefuzzifier;
+use crate::table::operators::{larger, smaller};
+
+/// A fuzzy output without a closed form.
+#[derive(Debug, Clone)]
+pub(crate) struct Integrated {
+    low: f64,
+    high: f64,
+    joint: Joint,
+    defuzzifier: SetDefuzzifier,
+    set: Set,
+}
+
+#[derive(Debug, Clone)]
+enum Set {
+    /// Integrated piece by piece.
+    Pieces(Curves),
+    /// Sampled, to reproduce other programs.
+    Samples(Sampling, Curves),
+    /// All terms are singletons.
+    Singletons(Singletons),
+}
+
+impl Integrated {
+    pub(crate) fn new(output: &Output, joint: Joint, defuzzifier: SetDefuzzifier) -> Self {
+        let (low, high) = (output.variable.low, output.variable.high);
+        let curves = || Curves::new(&output.variable.terms, low, high);
+        let set = match (Singletons::new(output), output.samples) {
+            (Some(singletons), _) => Set::Singletons(singletons),
+            (None, Some(sampling)) => Set::Samples(sampling, curves()),
+            (None, None) => Set::Pieces(curves()),
+        };
+        Integrated {
+            low,
+            high,
+            joint,
+            defuzzifier,
+            set,
+        }
+    }
+
+    /// The most cuts of an evaluation, besides those of its activations.
+    pub(crate) fn cuts(&self) -> usize {
+        match &self.set {
+            Set::Pieces(curves) => curves.workspace(),
+            Set::Samples(..) | Set::Singletons(_) => 0,
+        }
+    }
+
+    /// The value; `None` where no rule fired. Not inlined, which keeps the code of closed forms small.
+    #[inline(never)]
+    pub(crate) fn value(&self, strengths: Strengths<'_>, workspace: &mut Workspace) -> Option<f64> {
+        let value = match &self.set {
+            Set::Pieces(curves) => self.exact(
+                |workspace, visit| {
+                    curves.pieces(strengths, self.joint, workspace, visit);
+                },
+                workspace,
+            ),
+            Set::Samples(sampling, curves) => {
+                let steps = sampling.samples.saturating_mul(strengths.strengths.len());
+                if !workspace.steps.take(steps) {
+                    return None;
+                }
+                sampling.value(self.defuzzifier, (self.low, self.high), |x| {
+                    curves.degree(strengths, self.joint, x)
+                })
+            }
+            Set::Singletons(singletons) => {
+                singletons.value(strengths, self.joint, self.defuzzifier)
+            }
+        }?;
+        Some(larger(self.low, smaller(self.high, value)))
+    }
+
+    /// The value of a set given by its pieces, which `pieces` visits from left to right.
+    fn exact(
+        &self,
+        pieces: impl Fn(&mut Workspace, &mut dyn FnMut(&Piece<'_>)),
+        workspace: &mut Workspace,
+    ) -> Option<f64> {
+        let unit = unit(self.high - self.low);
+        let mut whole = Integrals::about(self.low + 0.5 * (self.high - self.low), unit);
+        match self.defuzzifier {
+            SetDefuzzifier::Centroid => {
+                pieces(workspace, &mut |piece| whole.add(piece));
+                whole.centroid()
+            }
+            SetDefuzzifier::Bisector => {
+                pieces(workspace, &mut |piece| whole.add(piece));
+                let half = 0.5 * whole.area * unit;
+                let mut sum = 0.0;
+                let mut bisector = None;
+                pieces(workspace, &mut |piece| {
+                    if bisector.is_none() {
+                        let area = piece.area();
+                        if sum + area >= half && area > 0.0 {
+                            bisector = Some(piece.where_area_is(half - sum));
+                        }
+                        sum += area;
+                    }
+                });
+                bisector.filter(|_| whole.area > 0.0)
+            }
+            SetDefuzzifier::Maxima(which) => {
+                let mut highest = Highest::default();
+                pieces(workspace, &mut |piece| highest.see(piece));
+                let mut maxima = Maxima::of(highest);
+                pieces(workspace, &mut |piece| maxima.see(piece));
+                maxima.value(which).filter(|_| highest.0 > 0.0)
+            }
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! The choice of strategy: how the rules of a stage fire, and how each output becomes a number.
+//!
+//! Times are nanoseconds per evaluation of the rule set `published(true)` of `benches/src/lib.rs` (2 inputs, 10 rules, 5 output
+//! terms), changed to the operators of the line, on one machine: only their ratios hold.
+//!
+//! # How an output becomes a number
+//!
+//! The first line that fits is chosen, by [`method`]. A line with a [`ClosedForm`] is evaluated by the table alone, also on
+//! board; the method `Integrated` needs the engine.
+//!
+//! | defuzzifier, operators, terms | [`Method`] | prepared in | evaluated in | ns |
+//! |---|---|---|---|---|
+//! | weighted average, weighted sum | `Sugeno` | `defuzzify/weighted.rs` | `table/closed.rs` | 24 |
+//! | Tsukamoto | `Tsukamoto` | - | `table/closed.rs` | 46 |
+//! | terms that are all singletons | `Integrated`, as singletons | `defuzzify/singletons.rs` | the same | 122 |
+//! | `samples` are given | `Integrated`, as samples | `defuzzify/sampled.rs` | the same | 36 a sample |
+//! | centroid, minimum or product with maximum, a partition | `Partition` | `defuzzify/partition.rs` | `table/closed.rs` | 27 |
+//! | centroid, product with sum, up to 64 terms, no formula | `Moments` | `defuzzify/prepared.rs` | `table/closed.rs` | 23 |
+//! | centroid, minimum with maximum, straight terms as above | `Layered` | `defuzzify/layers.rs` | `table/layers.rs` | 60 |
+//! | minimum or product with maximum, or with sum except for maxima, up to 64 terms, no formula | `Prepared` | `defuzzify/prepared.rs` | `table/set.rs` | 73 to 1,200 |
+//! | any other | `Integrated`, in pieces | `defuzzify/curves.rs` | the same | 250 to 3,000 |
+//!
+//! # How firing strengths of rules with the same consequent combine
+//!
+//! | defuzzifier and operators | [`Merging`] |
+//! |---|---|
+//! | weighted average, weighted sum; product with sum or bounded sum | `Sum` |
+//! | maximum, since every implication is monotone in the strength | `Largest` |
+//! | any other | `Apart` |
+//!
+//! # How rules fire
+//!
+//! One layout of the rules is chosen in `engine/rules.rs`; blocks with operators or activation methods of their own are always
+//! programs. All give the same bits.
+//!
+//! | rules | layout | fired by | when |
+//! |---|---|---|---|
+//! | ANDs of straight terms, at most two alive per input | [`Conjunctions::Uniform`] | `table/conjunctions.rs` | up to 6 inputs, 2 consequents a cell |
+//! | other ANDs | [`Conjunctions::Dense`] | `table/conjunctions.rs` | up to 65,536 cells and 32 cells a rule |
+//! | ANDs in larger tables | [`Conjunctions::Trie`] | `table/conjunctions.rs` | always possible |
+//! | other conditions, and ANDs of small rule sets | programs | `table/firing.rs` | always possible |
+//!
+//! | evaluation | [`Single`] | file | when | ns |
+//! |---|---|---|---|---|
+//! | one row | `Plane` | `engine/vectors/plane.rs` | feature `simd`, a uniform table of 2 inputs and 1 output | 27 |
+//! | one row | `Vectors` | `engine/vectors/uniform.rs` | feature `simd`, a uniform table of 3 or 4 inputs and 1 output | 66 (`four_inputs`) |
+//! | one row | `Cells` | `table/firing.rs` | any other uniform table without programs | 73 (2 outputs) |
+//! | one row | `Rules` | `table/firing.rs` | any other rules | 82 (`tipper`) |
+//! | many rows | - | `engine/batch.rs` | programs alone, if there are few ([`OwnedTable::programs_alone`]); else as laid out | 13 |
+
+use super::arrays::OwnedTable;
+#[cfg(feature = "simd")]
+use super::vectors::{Plane, Uniform};
+use crate::defuzzify::{
+    Consequents, Integrated, Joint, Layered, Method, Partition, Prepared, corners, unit,
+};
+use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Variable};
+#[cfg(doc)]
+use crate::table::{ClosedForm, Conjunctions};
+use crate::table::{OfMaxima, Outcome, SetDefuzzifier, has_cells_alone};
+
+/// How the rules of a stage fire on a single row.
+#[derive(Debug, Clone)]
+pub(super) enum Single {
+    /// By vectors, and the output is defuzzified at once.
+    #[cfg(feature = "simd")]
+    Plane(alloc::boxed::Box<Plane>),
+    /// By vectors.
+    #[cfg(feature = "simd")]
+    Vectors(alloc::boxed::Box<Uniform>),
+    /// The cells of a uniform table.
+    Cells,
+    /// Any rules.
+    Rules,
+}
+
+impl Single {
+    pub(super) fn of(table: &OwnedTable) -> Self {
+        #[cfg(feature = "simd")]
+        if let Some(plane) = Plane::new(table) {
+            return Single::Plane(plane.into());
+        } else if let Some(uniform) = Uniform::new(table) {
+            return Single::Vectors(uniform.into());
+        }
+        match has_cells_alone(table) {
+            true => Single::Cells,
+            false => Single::Rules,
+        }
+    }
+
+    /// Evaluates a plane, which needs no working memory. Returns whether it is one.
+    #[inline(always)]
+    #[cfg_attr(not(feature = "simd"), expect(unused_variables))]
+    pub(super) fn by_plane(&self, inputs: &[f64], outcomes: &mut [Outcome]) -> bool {
+        match self {
+            #[cfg(feature = "simd")]
+            Single::Plane(plane) => {
+                if let (Ok(inputs), [outcome]) = (inputs.try_into(), outcomes) {
+                    plane.evaluate(inputs, outcome);
+                }
+                true
+            }
+            #[cfg(feature = "simd")]
+            Single::Vectors(_) => false,
+            Single::Cells | Single::Rules => false,
+        }
+    }
+}
+
+/// How the firing strengths of one consequent combine before the aggregated set is integrated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Merging {
+    /// The largest counts: `max_r min(h_r, mu) = min(max_r h_r, mu)`, and the same for other implications.
+    Largest,
+    /// The sum counts: `sum_r h_r mu = (sum_r h_r) mu`.
+    Sum,
+    /// Each rule keeps its own.
+    Apart,
+}
+
+impl Merging {
+    pub(super) fn of(method: &Method, operators: Operators) -> Self {
+        match method {
+            Method::Sugeno { .. } => return Merging::Sum,
+            Method::Tsukamoto(_) => return Merging::Apart,
+            Method::Partition(_)
+            | Method::Layered(_)
+            | Method::Moments(_)
+            | Method::Prepared(_)
+            | Method::Integrated(_) => {}
+        }
+        match (operators.aggregation, Activated::by(operators.implication)) {
+            (Aggregation::Maximum, _) => Merging::Largest,
+            (Aggregation::Sum | Aggregation::BoundedSum, Activated::Scaled) => Merging::Sum,
+            (
+                Aggregation::Sum
+                | Aggregation::BoundedSum
+                | Aggregation::ProbabilisticSum
+                | Aggregation::Drastic
+                | Aggregation::Einstein
+                | Aggregation::Hamacher
+                | Aggregation::NilpotentMaximum,
+                Activated::Cut | Activated::Scaled | Activated::Otherwise,
+            ) => Merging::Apart,
+        }
+    }
+}
+
+/// The effect of an implication on a term.
+enum Activated {
+    /// It is cut off at the firing strength.
+    Cut,
+    /// It is scaled by the firing strength.
+    Scaled,
+    /// Neither: it has no closed form.
+    Otherwise,
+}
+
+impl Activated {
+    fn by(implication: Implication) -> Self {
+        match implication {
+            Implication::Minimum => Activated::Cut,
+            Implication::Product => Activated::Scaled,
+            Implication::BoundedDifference
+            | Implication::Drastic
+            | Implication::Einstein
+            | Implication::Hamacher
+            | Implication::NilpotentMinimum => Activated::Otherwise,
+        }
+    }
+}
+
+/// How two activated terms are aggregated.
+enum Aggregated {
+    Maximum,
+    Sum,
+    /// Neither: the set has no closed form.
+    Otherwise,
+}
+
+impl Aggregated {
+    fn by(aggregation: Aggregation) -> Self {
+        match aggregation {
+            Aggregation::Maximum => Aggregated::Maximum,
+            Aggregation::Sum => Aggregated::Sum,
+            Aggregation::BoundedSum
+            | Aggregation::ProbabilisticSum
+            | Aggregation::Drastic
+            | Aggregation::Einstein
+            | Aggregation::Hamacher
+            | Aggregation::NilpotentMaximum => Aggregated::Otherwise,
+        }
+    }
+}
+
+/// Chooses how an output of a valid model becomes a number. `input` finds the index of an input that a consequent names.
+pub(super) fn method(
+    output: &Output,
+    operators: Operators,
+    input: impl Fn(&str) -> Option<usize>,
+) -> Method {
+    let sugeno = |is_sum: bool| Method::Sugeno {
+        consequents: Consequents::new(&output.variable.terms, input),
+        is_sum,
+    };
+    let set = |defuzzifier| method_of_set(output, operators, defuzzifier);
+    match output.defuzzifier {
+        Defuzzifier::WeightedAverage => sugeno(false),
+        Defuzzifier::WeightedSum => sugeno(true),
+        Defuzzifier::Tsukamoto => Method::Tsukamoto(output.variable.terms.clone()),
+        Defuzzifier::Centroid => set(SetDefuzzifier::Centroid),
+        Defuzzifier::Bisector => set(SetDefuzzifier::Bisector),
+        Defuzzifier::SmallestOfMaxima => set(SetDefuzzifier::Maxima(OfMaxima::Smallest)),
+        Defuzzifier::MeanOfMaxima => set(SetDefuzzifier::Maxima(OfMaxima::Mean)),
+        Defuzzifier::LargestOfMaxima => set(SetDefuzzifier::Maxima(OfMaxima::Largest)),
+    }
+}
+
+/// The fastest method for a fuzzy set that is exact.
+fn method_of_set(output: &Output, operators: Operators, defuzzifier: SetDefuzzifier) -> Method {
+    let closed = match (output.samples, output.is_discrete()) {
+        (None, false) => closed_form(output, operators, defuzzifier),
+        (Some(_), _) | (None, true) => None,
+    };
+    closed.unwrap_or_else(|| {
+        let joint = Joint {
+            implication: operators.implication,
+            aggregation: operators.aggregation,
+        };
+        Method::Integrated(Integrated::new(output, joint, defuzzifier))
+    })
+}
+
+fn closed_form(
+    output: &Output,
+    operators: Operators,
+    defuzzifier: SetDefuzzifier,
+) -> Option<Method> {
+    let Variable {
+        low, high, terms, ..
+    } = &output.variable;
+    let range = (*low, *high);
+    let about = (low + 0.5 * (high - low), unit(high - low));
+    let scales = match Activated::by(operators.implication) {
+        Activated::Cut => false,
+        Activated::Scaled => true,
+        Activated::Otherwise => return None,
+    };
+    let sums = match Aggregated::by(operators.aggregation) {
+        Aggregated::Maximum => false,
+        Aggregated::Sum => true,
+        Aggregated::Otherwise => return None,
+    };
+    let is_centroid = match defuzzifier {
+        SetDefuzzifier::Centroid => true,
+        SetDefuzzifier::Maxima(_) if sums => return None,
+        SetDefuzzifier::Bisector | SetDefuzzifier::Maxima(_) => false,
+    };
+    if is_centroid
+        && !sums
+        && let Some(partition) = Partition::new(terms, range, about, scales)
+    {
+        return Some(Method::Partition(partition));
+    }
+    let prepared = Prepared::new(terms, range, (scales, sums), defuzzifier)?;
+    let are_straight = || terms.iter().all(|term| corners(term).is_some());
+    Some(match (is_centroid, scales, sums) {
+        (true, true, true) => Method::Moments(prepared.moments(about.1)),
+        (true, false, false) if are_straight() => match Layered::new(&prepared, about) {
+            Some(layered) => Method::Layered(layered),
+            None => Method::Prepared(prepared),
+        },
+        (_, _, _) => Method::Prepared(prepared),
+    })
+}
