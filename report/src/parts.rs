@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use flagred::{
+    estimator::Estimator,
     flight::{Assessment, Peak, Verdict},
     loaded::Loaded,
 };
@@ -142,7 +143,7 @@ impl<'a> Report<'a> {
         let model = estimator.model();
         let stretch = timeline.stretch;
         match part {
-            Part::Head => head(subject, model),
+            Part::Head => head(subject, loaded),
             Part::Risk => {
                 let risk = charts::risk(assessed, estimator, stretch);
                 section("Risk over time", "", risk, timeline)
@@ -189,7 +190,7 @@ pub(crate) fn shown(markup: Markup) -> String {
 }
 
 /// Verdict, vehicle, what the verdict does not rest on, findings and figures.
-fn head(subject: &Subject, model: &Model) -> Markup {
+fn head(subject: &Subject, loaded: &Loaded) -> Markup {
     let Subject {
         flight, assessed, ..
     } = subject;
@@ -200,7 +201,7 @@ fn head(subject: &Subject, model: &Model) -> Markup {
             p.soft { (words::damage(&flight.report)) }
         }
         @for note in words::notes(flight, assessed) { p.soft { (note) } }
-        (findings(subject, model))
+        (findings(subject, &loaded.estimator))
         (figures(subject))
     }
 }
@@ -242,10 +243,10 @@ pub(crate) fn share(value: Option<f64>) -> String {
 }
 
 /// One line a cause, with the details of its worst finding.
-pub(crate) fn findings(subject: &Subject, model: &Model) -> Markup {
+pub(crate) fn findings(subject: &Subject, estimator: &Estimator) -> Markup {
     let assessed = &subject.assessed;
     let teller = Teller {
-        model,
+        estimator,
         motors: &subject.flight.motors,
     };
     let unknown = match &assessed.verdict {
@@ -263,6 +264,8 @@ pub(crate) fn findings(subject: &Subject, model: &Model) -> Markup {
             @for line in finding::lines(&assessed.findings) {
                 li.(charts::level_class(line.worst.level)) {
                     b { (line.worst.level) } " " (teller.line(&line))
+                    br;
+                    (teller.words(line.worst).advice)
                     br;
                     span.soft { (teller.details(line.worst)) }
                 }

@@ -72,17 +72,19 @@ pub fn write(
     }
     writeln!(out)?;
     let teller = Teller {
-        model: estimator.model(),
+        estimator,
         motors: &flight.motors,
     };
     if verbose {
         for finding in &assessed.findings {
             line(out, finding.level, &teller.finding(finding))?;
+            indented(out, &teller.words(finding).advice)?;
             indented(out, &teller.details(finding))?;
         }
     } else {
         for one in finding::lines(&assessed.findings) {
             line(out, one.worst.level, &teller.line(&one))?;
+            indented(out, &teller.words(one.worst).advice)?;
         }
     }
     if !assessed.findings.is_empty() {
@@ -121,12 +123,12 @@ pub fn write_line(
         ));
     }
     let teller = Teller {
-        model: estimator.model(),
+        estimator,
         motors: &flight.motors,
     };
     let lines = finding::lines(&assessed.findings);
     if let Some(gravest) = lines.first() {
-        parts.push(teller.line(gravest));
+        parts.push(teller.line(gravest).trim_end_matches('.').to_owned());
     }
     match lines.len() {
         0 | 1 => {}

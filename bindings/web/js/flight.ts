@@ -89,11 +89,15 @@ export interface Brief {
 }
 
 export interface FlightFinding {
-  level: Level;
+  severity: Level;
   from_s: number;
   to_s: number;
-  /** The finding in words. */
+  /** What kind of finding it is: a stable word for programs, such as `fighting_gusts`. */
+  code: string;
+  /** What happened, and what it means. */
   text: string;
+  /** What to do. */
+  advice: string;
   [more: string]: unknown;
 }
 

@@ -84,6 +84,7 @@ fn profile() -> Profile {
         gap: GapSettings::default(),
         elevated_risk: AccumulatorSettings::default(),
         verdict: VerdictSettings::default(),
+        findings: Vec::new(),
     }
 }
 

@@ -68,6 +68,23 @@ pub struct Profile {
     pub verdict: VerdictSettings,
     /// Other outputs that are risks.
     pub other_risks: Vec<OtherRisk>,
+    /// What a pilot reads where an input raised the risk. Inputs without an entry are described by their names.
+    pub findings: Vec<CauseWords>,
+}
+
+/// What a pilot reads where an input raised the risk.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CauseWords {
+    /// The name of the input in the profile.
+    pub input: String,
+    /// A word for programs: small letters, digits and `_`.
+    pub code: String,
+    /// Two or three words, at most 20 ASCII characters: part of texts of 50.
+    pub brief: String,
+    /// What happened, and what it means. `{value}` is the value of the input, `{percent}` 100 times that.
+    pub text: String,
+    /// What to do.
+    pub advice: String,
 }
 
 /// Another output that is a risk, with levels of its own. Its findings are those of a profile of which it is the only risk.

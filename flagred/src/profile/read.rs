@@ -9,6 +9,7 @@ use fuzzy::{
     yaml,
 };
 
+mod findings;
 mod inputs;
 #[cfg(test)]
 mod tests;
@@ -19,6 +20,7 @@ use crate::{
     accumulator::AccumulatorSettings,
     gap::{GapMethod, GapSettings},
 };
+use findings::findings;
 use inputs::inputs;
 use verdict::{level, verdict};
 
@@ -67,6 +69,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         "elevated_risk",
         "verdict",
         "other_risks",
+        "findings",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
         found.push(tree.unexpected_document("the profile"));
@@ -119,6 +122,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         other_risks: other_risks(&fields, &defaults, found),
         verdict,
         window_s,
+        findings: findings(&fields, &inputs, found),
         inputs,
     };
     Some(profile)

@@ -60,6 +60,8 @@ verdict:
   imbalance: {above: 0.25}
 other_risks:
   tip_over: {warn: {risk: 30}, elevated_risk: {high: 60}}
+findings:
+  d: {code: low_battery, brief: low battery, text: 'The battery had {value} V, or {percent} %.', advice: Land.}
 "
     .parse::<Profile>()
     .unwrap();
@@ -165,6 +167,14 @@ other_risks:
             ..profile.elevated_risk
         }
     );
+    let [words] = profile.findings.as_slice() else {
+        panic!("{:?}", profile.findings)
+    };
+    assert_eq!(
+        [&words.input, &words.code, &words.brief, &words.advice],
+        ["d", "low_battery", "low battery", "Land."]
+    );
+    assert_eq!(words.text, "The battery had {value} V, or {percent} %.");
     let threshold = |risk_pct, elevated_risk_pct| Threshold {
         risk_pct,
         elevated_risk_pct,
@@ -281,6 +291,24 @@ inputs:
   bottomless: {std: motor_command, per: room}
   undivided: {std: motor_command, plus: room}
   flat: {std: motor_command, per: room, at_least: 0}
+";
+    let findings = text.parse::<Profile>().unwrap_err();
+    insta::assert_snapshot!(findings);
+}
+
+#[test]
+fn mistakes_in_words_are_told() {
+    let text = "flagred: 1
+name: wrong
+rules: flagred
+inputs:
+  battery: {last: battery_v}
+findings:
+  batery: {code: low_battery, brief: low battery, text: Low., advice: Land.}
+  battery:
+    code: Low battery
+    brief: the battery is nearly empty
+    text: '{percent} % or {volts} V'
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);
