@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use flagred::{
     estimator::Estimator,
     flight::{Assessment, Finding, Steps, Summary, Verdict, Words},
+    profile::Reliability,
     verdict::VerdictSettings,
 };
 use flightlog::{Flight, Motor, Parameter, Range, Report};
@@ -58,6 +59,8 @@ struct Profile<'a> {
     name: &'a str,
     rules: &'a str,
     verdict: VerdictSettings,
+    /// How often errors followed a risk; empty where it was not measured.
+    reliability: &'a [Reliability],
 }
 
 /// A finding with the output of its motor, and in words.
@@ -135,6 +138,7 @@ pub fn document<'a>(
             name: &profile.name,
             rules: &profile.rules,
             verdict: profile.verdict,
+            reliability: &profile.reliability,
         },
         verdict: &assessed.verdict,
         findings: findings

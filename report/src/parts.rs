@@ -6,6 +6,7 @@ use flagred::{
     estimator::Estimator,
     flight::{Assessment, Peak, Verdict},
     loaded::Loaded,
+    profile::{Followed, Reliability},
 };
 use flightlog::Flight;
 use fuzzy::{
@@ -203,6 +204,7 @@ fn head(subject: &Subject, loaded: &Loaded) -> Markup {
         @for note in words::notes(flight, assessed) { p.soft { (note) } }
         (findings(subject, &loaded.estimator))
         (figures(subject))
+        (reliability(&loaded.estimator.profile().reliability))
     }
 }
 
@@ -299,6 +301,39 @@ fn figures(subject: &Subject) -> Markup {
             @for (name, value) in figures { div { dt { (name) } dd { (value) } } }
         }
         p.soft { "The highest and mean values are without the seconds around take-off and landing." }
+    }
+}
+
+/// How often errors followed a risk, where it was measured.
+fn reliability(rows: &[Reliability]) -> Markup {
+    let of = |counts: Option<Followed>| {
+        let counts = counts.and_then(|counts| Some((counts.share_pct()?, counts.moments)));
+        counts.map_or("unknown".into(), |(share, moments)| {
+            format!("{share:.0} % of {moments}")
+        })
+    };
+    html! {
+        @if !rows.is_empty() {
+            details {
+                summary { "How sure a risk is" }
+                p.soft {
+                    "Of the moments with such a risk on the flights that the rules were tested on, the share that was followed by an attitude \
+                     error over 5 degrees within 5 s."
+                }
+                table.rules {
+                    thead { tr { th.n { "Risk" } th.n { "Real vehicles" } th.n { "Simulated vehicles" } } }
+                    tbody {
+                        @for row in rows {
+                            tr {
+                                td.n { (row.from_pct) " to " (row.to_pct) " %" }
+                                td.n { (of(row.real)) }
+                                td.n { (of(row.simulated)) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
     }
 }
 

@@ -2,7 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use flagred::{estimator::Estimator, flight::Words, shipped, verdict::Measure};
+use flagred::{
+    estimator::Estimator,
+    flight::Words,
+    profile::{Followed, Reliability},
+    shipped,
+    verdict::Measure,
+};
+use flagred_tests::{flagred, reference_data};
 
 /// The estimators of all shipped profiles.
 fn estimators() -> [Estimator; 3] {
@@ -70,5 +77,53 @@ fn every_short_text_fits_with_the_largest_numbers() {
             false => format!("FLAGRED: WARN elevated 100 %, {full}"),
         };
         assert!(text.len() <= 50, "{text}");
+    }
+}
+
+/// The counts of the shipped profiles are those of `flagred evaluate`.
+#[test]
+#[ignore = "needs FLAGRED_SHARED"]
+fn the_reliability_is_the_measured_one() {
+    let counts = |folders: &[&str]| {
+        let paths = folders.iter().map(|folder| reference_data().join(folder));
+        let output = flagred()
+            .args(["evaluate", "--json", "--profile", "flagred"])
+            .args(paths)
+            .output();
+        let document = serde_json::from_slice::<serde_json::Value>(&output.unwrap().stdout);
+        let bands = document.unwrap()["estimators"][0]["reliability"].take();
+        let bands = bands.as_array().unwrap().clone().into_iter();
+        let counts = bands.map(|band| {
+            let count = |name: &str| band[name].as_u64().unwrap();
+            (count("cases"), count("critical"))
+        });
+        counts.collect::<Vec<(u64, u64)>>()
+    };
+    let real = counts(&["real/flights", "real2/flights"]);
+    let simulated = [counts(&["sitl2/timeseries"]), counts(&["sitl3/timeseries"])];
+    let estimator = shipped::flagred();
+    let rows = &estimator.profile().reliability;
+    assert!(!rows.is_empty());
+    for Reliability {
+        from_pct,
+        to_pct,
+        real: of_real,
+        simulated: of_simulated,
+    } in rows
+    {
+        let bands = (*from_pct / 10.0) as usize..(*to_pct / 10.0) as usize;
+        let sum = |counts: &[&Vec<(u64, u64)>]| {
+            let counts = counts.iter().flat_map(|counts| &counts[bands.clone()]);
+            let sum = counts.fold((0, 0), |sum, band| (sum.0 + band.0, sum.1 + band.1));
+            let (moments, followed) = sum;
+            Some(Followed { moments, followed })
+        };
+        assert_eq!(*of_real, sum(&[&real]), "{from_pct} to {to_pct} %");
+        let [sitl2, sitl3] = &simulated;
+        assert_eq!(
+            *of_simulated,
+            sum(&[sitl2, sitl3]),
+            "{from_pct} to {to_pct} %"
+        );
     }
 }

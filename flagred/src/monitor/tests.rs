@@ -85,6 +85,7 @@ fn profile() -> Profile {
         elevated_risk: AccumulatorSettings::default(),
         verdict: VerdictSettings::default(),
         findings: Vec::new(),
+        reliability: Vec::new(),
     }
 }
 

@@ -11,6 +11,7 @@ use fuzzy::{
 
 mod findings;
 mod inputs;
+mod reliability;
 #[cfg(test)]
 mod tests;
 mod verdict;
@@ -22,6 +23,7 @@ use crate::{
 };
 use findings::findings;
 use inputs::inputs;
+use reliability::reliability;
 use verdict::{level, verdict};
 
 /// The version of the format.
@@ -70,6 +72,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         "verdict",
         "other_risks",
         "findings",
+        "reliability",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
         found.push(tree.unexpected_document("the profile"));
@@ -123,6 +126,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         verdict,
         window_s,
         findings: findings(&fields, &inputs, found),
+        reliability: reliability(&fields, found),
         inputs,
     };
     Some(profile)

@@ -1,5 +1,6 @@
 use super::*;
 use crate::{
+    profile::{Followed, Reliability},
     source::{Motors, Signal, Source, Statistic},
     verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings},
 };
@@ -62,6 +63,9 @@ other_risks:
   tip_over: {warn: {risk: 30}, elevated_risk: {high: 60}}
 findings:
   d: {code: low_battery, brief: low battery, text: 'The battery had {value} V, or {percent} %.', advice: Land.}
+reliability:
+  - {risk: [0, 50], real: {moments: 10, followed: 3}}
+  - {risk: [50, 100], simulated: {moments: 7, followed: 7}}
 "
     .parse::<Profile>()
     .unwrap();
@@ -175,6 +179,26 @@ findings:
         ["d", "low_battery", "low battery", "Land."]
     );
     assert_eq!(words.text, "The battery had {value} V, or {percent} %.");
+    let counts = |moments, followed| Some(Followed { moments, followed });
+    assert_eq!(
+        profile.reliability,
+        [
+            Reliability {
+                from_pct: 0.0,
+                to_pct: 50.0,
+                real: counts(10, 3),
+                simulated: None,
+            },
+            Reliability {
+                from_pct: 50.0,
+                to_pct: 100.0,
+                real: None,
+                simulated: counts(7, 7),
+            }
+        ]
+    );
+    assert_eq!(counts(10, 3).unwrap().share_pct(), Some(30.0));
+    assert_eq!(counts(0, 0).unwrap().share_pct(), None);
     let threshold = |risk_pct, elevated_risk_pct| Threshold {
         risk_pct,
         elevated_risk_pct,
@@ -297,7 +321,7 @@ inputs:
 }
 
 #[test]
-fn mistakes_in_words_are_told() {
+fn mistakes_in_words_and_reliability_are_told() {
     let text = "flagred: 1
 name: wrong
 rules: flagred
@@ -309,6 +333,11 @@ findings:
     code: Low battery
     brief: the battery is nearly empty
     text: '{percent} % or {volts} V'
+reliability:
+  - {risk: [60, 80], real: {moments: 3, followed: 4}}
+  - {risk: [50, 120], simulated: {moments: 3}}
+  - {risk: 80}
+  - {real: {moments: 3, followed: 1}}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);
