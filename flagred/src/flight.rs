@@ -24,6 +24,9 @@ use loss::Losses;
 mod verdict;
 pub use verdict::{Reason, Verdict};
 
+mod words;
+pub use words::Words;
+
 #[cfg(feature = "serde")]
 mod serialize;
 #[cfg(feature = "serde")]

@@ -161,6 +161,7 @@ mod tests {
     fn the_battery_adds_to_the_default_profile_and_changes_nothing_of_it() {
         let mut profile = profile(2);
         profile.inputs.retain(|input| input.name != "battery");
+        profile.findings.retain(|words| words.input != "battery");
         profile.other_risks.clear();
         let default = self::profile(0);
         assert_eq!(

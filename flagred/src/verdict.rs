@@ -71,6 +71,20 @@ pub enum Measure {
     IdleInAir,
 }
 
+impl Measure {
+    /// All of them, in order.
+    pub const ALL: [Measure; 8] = [
+        Measure::Risk,
+        Measure::ElevatedRisk,
+        Measure::CommandNoise,
+        Measure::Reserve,
+        Measure::Imbalance,
+        Measure::PairImbalance,
+        Measure::WeakMotor,
+        Measure::IdleInAir,
+    ];
+}
+
 impl core::fmt::Display for Measure {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.pad(match self {

@@ -4,13 +4,14 @@ use std::io::{self, Write};
 
 use flagred::{
     estimator::Estimator,
-    flight::{Assessment, Finding, Steps, Summary, Verdict},
+    flight::{Assessment, Finding, Steps, Summary, Verdict, Words},
+    profile::Reliability,
     verdict::VerdictSettings,
 };
 use flightlog::{Flight, Motor, Parameter, Range, Report};
 use serde::Serialize;
 
-use crate::finding::Teller;
+use crate::finding::{Teller, numbered};
 
 /// The version of the document's layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.assess/1";
@@ -58,6 +59,8 @@ struct Profile<'a> {
     name: &'a str,
     rules: &'a str,
     verdict: VerdictSettings,
+    /// How often errors followed a risk; empty where it was not measured.
+    reliability: &'a [Reliability],
 }
 
 /// A finding with the output of its motor, and in words.
@@ -66,29 +69,25 @@ pub struct FindingDocument<'a> {
     #[serde(flatten)]
     finding: Finding,
     output: Option<&'a str>,
+    code: String,
     text: String,
+    advice: String,
 }
 
 impl<'a> FindingDocument<'a> {
     /// A finding of the flight that the teller knows.
     pub fn new(finding: &'a Finding, teller: Teller<'a>) -> Self {
+        let Words {
+            code, text, advice, ..
+        } = teller.words(finding);
         FindingDocument {
             output: teller.motor(finding).map(|motor| motor.output.as_str()),
-            text: teller.finding(finding),
             finding: numbered(finding, teller.motors),
+            code,
+            text,
+            advice,
         }
     }
-}
-
-/// The finding with the autopilot's number of its motor, where it is not its place in the samples.
-pub fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
-    let mut finding = finding.clone();
-    if let Some(named) = &mut finding.found.motor
-        && let Some(motor) = motors.get(named.motor)
-    {
-        named.motor = usize::from(motor.number).saturating_sub(1);
-    }
-    finding
 }
 
 /// The document of one flight without its steps, which may be many.
@@ -114,7 +113,7 @@ pub fn document<'a>(
     let profile = estimator.profile();
     let findings = assessed.findings.iter();
     let teller = Teller {
-        model: estimator.model(),
+        estimator,
         motors: &flight.motors,
     };
     Document {
@@ -139,6 +138,7 @@ pub fn document<'a>(
             name: &profile.name,
             rules: &profile.rules,
             verdict: profile.verdict,
+            reliability: &profile.reliability,
         },
         verdict: &assessed.verdict,
         findings: findings

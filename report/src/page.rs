@@ -106,7 +106,7 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
                 h2 { (badge(&subject.assessed.verdict)) " " (subject.title()) }
                 p.soft { (words::vehicle(&subject.flight)) }
                 @for note in words::notes(&subject.flight, &subject.assessed) { p.soft { (note) } }
-                (findings(subject, loaded.estimator.model()))
+                (findings(subject, &loaded.estimator))
                 @if let Some(risk) = charts::risk(&subject.assessed, &loaded.estimator, timeline.stretch) {
                     (panel(&risk, timeline, None))
                 }

@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use flagred::{
+    estimator::Estimator,
     flight::{Assessment, Peak, Verdict},
     loaded::Loaded,
+    profile::{Followed, Reliability},
 };
 use flightlog::Flight;
 use fuzzy::{
@@ -142,7 +144,7 @@ impl<'a> Report<'a> {
         let model = estimator.model();
         let stretch = timeline.stretch;
         match part {
-            Part::Head => head(subject, model),
+            Part::Head => head(subject, loaded),
             Part::Risk => {
                 let risk = charts::risk(assessed, estimator, stretch);
                 section("Risk over time", "", risk, timeline)
@@ -189,7 +191,7 @@ pub(crate) fn shown(markup: Markup) -> String {
 }
 
 /// Verdict, vehicle, what the verdict does not rest on, findings and figures.
-fn head(subject: &Subject, model: &Model) -> Markup {
+fn head(subject: &Subject, loaded: &Loaded) -> Markup {
     let Subject {
         flight, assessed, ..
     } = subject;
@@ -200,8 +202,9 @@ fn head(subject: &Subject, model: &Model) -> Markup {
             p.soft { (words::damage(&flight.report)) }
         }
         @for note in words::notes(flight, assessed) { p.soft { (note) } }
-        (findings(subject, model))
+        (findings(subject, &loaded.estimator))
         (figures(subject))
+        (reliability(&loaded.estimator.profile().reliability))
     }
 }
 
@@ -242,10 +245,10 @@ pub(crate) fn share(value: Option<f64>) -> String {
 }
 
 /// One line a cause, with the details of its worst finding.
-pub(crate) fn findings(subject: &Subject, model: &Model) -> Markup {
+pub(crate) fn findings(subject: &Subject, estimator: &Estimator) -> Markup {
     let assessed = &subject.assessed;
     let teller = Teller {
-        model,
+        estimator,
         motors: &subject.flight.motors,
     };
     let unknown = match &assessed.verdict {
@@ -263,6 +266,8 @@ pub(crate) fn findings(subject: &Subject, model: &Model) -> Markup {
             @for line in finding::lines(&assessed.findings) {
                 li.(charts::level_class(line.worst.level)) {
                     b { (line.worst.level) } " " (teller.line(&line))
+                    br;
+                    (teller.words(line.worst).advice)
                     br;
                     span.soft { (teller.details(line.worst)) }
                 }
@@ -296,6 +301,39 @@ fn figures(subject: &Subject) -> Markup {
             @for (name, value) in figures { div { dt { (name) } dd { (value) } } }
         }
         p.soft { "The highest and mean values are without the seconds around take-off and landing." }
+    }
+}
+
+/// How often errors followed a risk, where it was measured.
+fn reliability(rows: &[Reliability]) -> Markup {
+    let of = |counts: Option<Followed>| {
+        let counts = counts.and_then(|counts| Some((counts.share_pct()?, counts.moments)));
+        counts.map_or("unknown".into(), |(share, moments)| {
+            format!("{share:.0} % of {moments}")
+        })
+    };
+    html! {
+        @if !rows.is_empty() {
+            details {
+                summary { "How sure a risk is" }
+                p.soft {
+                    "Of the moments with such a risk on the flights that the rules were tested on, the share that was followed by an attitude \
+                     error over 5 degrees within 5 s."
+                }
+                table.rules {
+                    thead { tr { th.n { "Risk" } th.n { "Real vehicles" } th.n { "Simulated vehicles" } } }
+                    tbody {
+                        @for row in rows {
+                            tr {
+                                td.n { (row.from_pct) " to " (row.to_pct) " %" }
+                                td.n { (of(row.real)) }
+                                td.n { (of(row.simulated)) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use anstyle::{AnsiColor, Style};
 use flagred::{
     estimator::Estimator,
     flight::{Assessment, Peak, Summary, Verdict},
+    profile::Profile,
     verdict::Level,
 };
 use flightlog::Flight;
@@ -69,20 +70,25 @@ pub fn write(
     }
     if assessed.summary.assessed_s > 0.0 {
         indented(out, &summary(&assessed.summary, verbose))?;
+        if verbose && let Some(text) = reliability(&assessed.summary, estimator.profile()) {
+            indented(out, &text)?;
+        }
     }
     writeln!(out)?;
     let teller = Teller {
-        model: estimator.model(),
+        estimator,
         motors: &flight.motors,
     };
     if verbose {
         for finding in &assessed.findings {
             line(out, finding.level, &teller.finding(finding))?;
+            indented(out, &teller.words(finding).advice)?;
             indented(out, &teller.details(finding))?;
         }
     } else {
         for one in finding::lines(&assessed.findings) {
             line(out, one.worst.level, &teller.line(&one))?;
+            indented(out, &teller.words(one.worst).advice)?;
         }
     }
     if !assessed.findings.is_empty() {
@@ -121,12 +127,12 @@ pub fn write_line(
         ));
     }
     let teller = Teller {
-        model: estimator.model(),
+        estimator,
         motors: &flight.motors,
     };
     let lines = finding::lines(&assessed.findings);
     if let Some(gravest) = lines.first() {
-        parts.push(teller.line(gravest));
+        parts.push(teller.line(gravest).trim_end_matches('.').to_owned());
     }
     match lines.len() {
         0 | 1 => {}
@@ -304,6 +310,32 @@ fn summary(summary: &Summary, verbose: bool) -> String {
         );
     }
     text
+}
+
+/// What followed moments with a risk as high as the highest one of a flight; `None` where it was not measured.
+fn reliability(summary: &Summary, profile: &Profile) -> Option<String> {
+    let highest_pct = summary.risk_max?.value_pct;
+    let mut rows = profile.reliability.iter().rev();
+    let row = rows.find(|row| row.from_pct <= highest_pct && highest_pct <= row.to_pct)?;
+    let shares: Vec<String> = [("real", row.real), ("simulated", row.simulated)]
+        .into_iter()
+        .filter_map(|(name, counts)| {
+            let counts = counts?;
+            let share = counts.share_pct()?;
+            Some(format!(
+                "{share:.0} % of {} on {name} vehicles",
+                counts.moments
+            ))
+        })
+        .collect();
+    (!shares.is_empty()).then(|| {
+        format!(
+            "moments with a risk of {} to {} % that were followed by an attitude error over 5 degrees within 5 s: {}",
+            row.from_pct,
+            row.to_pct,
+            shares.join(", ")
+        )
+    })
 }
 
 fn style(verdict: &Verdict) -> Style {

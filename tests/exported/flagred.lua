@@ -903,19 +903,19 @@ return load_all, 1000
 -- 
 -- -- Levels: raised after a while, held, lowered after a while.
 -- 
--- -- What each rule is about: the area and the centre of its consequent, an input and a term, whether motors are at a limit.
+-- -- What each rule is about: the area and the centre of its consequent, what a pilot reads, whether motors are at a limit.
 -- CAUSES = {
---   {5.0, 95.0, "at_limit", "much", true}, -- 1
---   {5.0, 95.0, "unsteady_now", "violent", false}, -- 2
---   {5.0, 5.0, "unsteady_lately", "calm", false}, -- 3
---   {5.0, 25.0, "unsteady_lately", "gusty", false}, -- 4
---   {5.0, 95.0, "unsteady_lately", "stormy", false}, -- 5
---   {5.0, 5.0, "throttle_activity", "steady", false}, -- 6
---   {5.0, 50.0, "throttle_activity", "moving", false}, -- 7
---   {5.0, 75.0, "throttle_activity", "surging", false}, -- 8
---   {5.0, 5.0, "swing_per_room", "small", false}, -- 9
---   {5.0, 50.0, "swing_per_room", "moderate", false}, -- 10
---   {5.0, 95.0, "swing_per_room", "large", false}, -- 11
+--   {5.0, 95.0, "motors at limits", "", true}, -- 1
+--   {5.0, 95.0, "sudden change", "", false}, -- 2
+--   {5.0, 5.0, "fighting gusts", "", false}, -- 3
+--   {5.0, 25.0, "fighting gusts", "", false}, -- 4
+--   {5.0, 95.0, "fighting gusts", "", false}, -- 5
+--   {5.0, 5.0, "thrust surges", "", false}, -- 6
+--   {5.0, 50.0, "thrust surges", "", false}, -- 7
+--   {5.0, 75.0, "thrust surges", "", false}, -- 8
+--   {5.0, 5.0, "low motor margin", "", false}, -- 9
+--   {5.0, 50.0, "low motor margin", "", false}, -- 10
+--   {5.0, 95.0, "low motor margin", "", false}, -- 11
 -- }
 -- warn_risk, fail_risk = 60.0, 80.0 -- parameters may change them
 -- risk_level = 0 -- of the risk alone
@@ -1571,7 +1571,7 @@ return load_all, 1000
 --     local side = is_upper[limit_motor] and "upper" or "lower"
 --     return ", " .. side .. " limit", format(", motor %d", numbers[limit_motor])
 --   end
---   return ", " .. about[3], " " .. about[4]
+--   return ", " .. about[3], about[4]
 -- end
 -- 
 -- 
@@ -1592,7 +1592,7 @@ return load_all, 1000
 --     return
 --   end
 --   if (of_notice or not is_open) and little_reserve then
---     gcs:send_text(severity, format("%s reserve %.0f %%", text, little_reserve))
+--     gcs:send_text(severity, format("%s thrust reserve %.0f %%", text, little_reserve))
 --     return
 --   end
 --   if is_open and by_fall then

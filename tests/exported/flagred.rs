@@ -6,31 +6,45 @@
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<35, 6, 1, 6, MOTORS>;
 
-/// What the cause of a finding is called.
+/// What a pilot reads of a finding with a cause, by its proposition.
 #[allow(dead_code)]
 #[rustfmt::skip]
-pub static CAUSES: [&str; 21] = [
-    "at_limit much",
-    "unsteady_now violent",
-    "at_limit none",
-    "unsteady_lately calm",
-    "at_limit none",
-    "unsteady_lately gusty",
-    "at_limit none",
-    "unsteady_lately stormy",
-    "at_limit none",
-    "throttle_activity steady",
-    "at_limit none",
-    "throttle_activity moving",
-    "at_limit none",
-    "throttle_activity surging",
-    "at_limit none",
-    "swing_per_room small",
-    "at_limit none",
-    "swing_per_room moderate",
-    "at_limit none",
-    "swing_per_room large",
-    "at_limit none",
+pub static CAUSES: [::flagred::board::Words<'static>; 21] = [
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "sudden_change", brief: "sudden change", text: "The motors changed suddenly and strongly to hold attitude, as in a gust, a hard manoeuvre or when a motor fails.", advice: "Reduce speed. If neither wind nor a manoeuvre explains it, land and check motors and propellers." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "fighting_gusts", brief: "fighting gusts", text: "Over 20 s the motors changed strongly to hold attitude, as in gusts. A stronger gust may be too much.", advice: "Reduce speed and height, or land. In calm air check propellers, payload and gains." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "fighting_gusts", brief: "fighting gusts", text: "Over 20 s the motors changed strongly to hold attitude, as in gusts. A stronger gust may be too much.", advice: "Reduce speed and height, or land. In calm air check propellers, payload and gains." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "fighting_gusts", brief: "fighting gusts", text: "Over 20 s the motors changed strongly to hold attitude, as in gusts. A stronger gust may be too much.", advice: "Reduce speed and height, or land. In calm air check propellers, payload and gains." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "thrust_surges", brief: "thrust surges", text: "The thrust of all motors together rose and fell strongly, as in turbulence or fast climbs and descents.", advice: "Climb and descend more slowly. In rough air, land." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "thrust_surges", brief: "thrust surges", text: "The thrust of all motors together rose and fell strongly, as in turbulence or fast climbs and descents.", advice: "Climb and descend more slowly. In rough air, land." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "thrust_surges", brief: "thrust surges", text: "The thrust of all motors together rose and fell strongly, as in turbulence or fast climbs and descents.", advice: "Climb and descend more slowly. In rough air, land." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "low_motor_margin", brief: "low motor margin", text: "To hold attitude the motor commands varied by {percent} % of what the highest motor had left below its limit.", advice: "Reduce speed or land. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "low_motor_margin", brief: "low motor margin", text: "To hold attitude the motor commands varied by {percent} % of what the highest motor had left below its limit.", advice: "Reduce speed or land. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "low_motor_margin", brief: "low motor margin", text: "To hold attitude the motor commands varied by {percent} % of what the highest motor had left below its limit.", advice: "Reduce speed or land. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+];
+
+/// What a pilot reads of a finding without a cause, by its measure.
+#[allow(dead_code)]
+#[rustfmt::skip]
+pub static NOTICES: [::flagred::board::Words<'static>; 8] = [
+    ::flagred::board::Words { code: "risk_interpolated", brief: "interpolated", text: "No rule applies to what the motors did, so the risk is interpolated between rules.", advice: "Reduce speed or land until the risk falls." },
+    ::flagred::board::Words { code: "risk_interpolated", brief: "interpolated", text: "No rule applies to what the motors did, so the risk is interpolated between rules.", advice: "Reduce speed or land until the risk falls." },
+    ::flagred::board::Words { code: "command_noise", brief: "command noise {peak} %", text: "The motor commands are noisy, by {peak} % of their range: vibration, or gains that are too high.", advice: "This alone is not a danger. Check propellers, mounts and filters after the flight." },
+    ::flagred::board::Words { code: "low_thrust_reserve", brief: "thrust reserve {peak} %", text: "The motors ran close to full thrust: on average only {peak} % of their range was left, less than {threshold} %. Gusts and climbs need that reserve.", advice: "Land soon. Fly with less payload or a fresh battery." },
+    ::flagred::board::Words { code: "imbalance", brief: "imbalance {peak} %, {motor}", text: "The motors share the load differently from earlier in the flight, by {peak} % of their range. The motor to check is {motor}, {side} its earlier share.", advice: "Land and check {motor}, and whether the load has shifted." },
+    ::flagred::board::Words { code: "pair_imbalance", brief: "pair imbalance {peak} %, {motor}", text: "The commands of two opposite motors differ by {peak} % of their range. The motor to check is {motor}, {side} the motor opposite: it may be weak, or the load may be off centre.", advice: "Land and check {motor}, and the position of battery and payload." },
+    ::flagred::board::Words { code: "weak_motor", brief: "{motor} weak: +{peak} %", text: "The command of {motor} rose by {peak} % of its range, compared with the other motors: this motor gives less thrust than before.", advice: "Land now. Check {motor}: propeller, motor, speed controller and wiring." },
+    ::flagred::board::Words { code: "motors_idle_in_air", brief: "motors idle in the air", text: "The motors idled while the autopilot reported that the vehicle was in the air: it fell.", advice: "Find out why the motors stopped before the next flight: kill switch, failsafe, power." },
 ];
 
 /// The profile.
@@ -180,7 +194,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             channel::Input { channel: 5, statistic: channel::Statistic::ShareBelow(0.006), ratio: None },
         ],
         signals: 0,
-        settings: Settings { sampling: Sampling { min_samples: 5, warm_up_s: 1.0, longest_gap_s: 2.0, take_off_s: 3.0 }, elevated_risk: AccumulatorSettings { window_s: 3.0, high_pct: 50.0, low_pct: 45.0, rise_pct_per_s: 14.0, fall_pct_per_s: 28.0 }, verdict: VerdictSettings { warn: LevelSettings { raise: Threshold { risk_pct: Some(60.0), elevated_risk_pct: Some(60.0) }, after_s: 0.2, until: Threshold { risk_pct: Some(43.0), elevated_risk_pct: Some(20.0) } }, fail: LevelSettings { raise: Threshold { risk_pct: Some(80.0), elevated_risk_pct: None }, after_s: 0.3, until: Threshold { risk_pct: Some(65.0), elevated_risk_pct: None } }, clear_after_s: 5.0, quiet_after_take_off_s: 3.0, quiet_before_landing_s: 2.0, idle_below: 0.1, notices: NoticeSettings { noise: Some(Limit { value: 0.04, after_s: 5.0 }), reserve: Some(Limit { value: 0.1, after_s: 3.0 }), imbalance: Some(Limit { value: 0.15, after_s: 3.0 }) } } },
+        settings: Settings { sampling: Sampling { min_samples: 5, warm_up_s: 1.0, longest_gap_s: 2.0, take_off_s: 3.0 }, elevated_risk: AccumulatorSettings { window_s: 3.0, high_pct: 50.0, low_pct: 45.0, rise_pct_per_s: 14.0, fall_pct_per_s: 28.0 }, verdict: VerdictSettings { warn: LevelSettings { raise: Threshold { risk_pct: Some(60.0), elevated_risk_pct: Some(60.0) }, after_s: 0.2, until: Threshold { risk_pct: Some(43.0), elevated_risk_pct: Some(20.0) } }, fail: LevelSettings { raise: Threshold { risk_pct: Some(80.0), elevated_risk_pct: None }, after_s: 0.3, until: Threshold { risk_pct: Some(65.0), elevated_risk_pct: None } }, clear_after_s: 5.0, quiet_after_take_off_s: 3.0, quiet_before_landing_s: 2.0, idle_below: 0.1, notices: NoticeSettings { noise: Some(Limit { value: 0.08, after_s: 5.0 }), reserve: Some(Limit { value: 0.1, after_s: 3.0 }), imbalance: Some(Limit { value: 0.15, after_s: 3.0 }) } } },
         coverage_below: 0.03125,
         filled: None,
         propositions: &[

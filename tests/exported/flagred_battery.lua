@@ -738,20 +738,20 @@ return load_all, 1000
 -- 
 -- -- Levels: raised after a while, held, lowered after a while.
 -- 
--- -- What each rule is about: the area and the centre of its consequent, an input and a term, whether motors are at a limit.
+-- -- What each rule is about: the area and the centre of its consequent, what a pilot reads, whether motors are at a limit.
 -- CAUSES = {
---   {12.75, 8.166667, "margin", "high", true}, -- 1
---   {12.75, 8.166667, "spread", "low", false}, -- 2
---   {12.75, 8.166667, "margin", "high", true}, -- 3
---   {12.75, 8.166667, "battery", "enough", false}, -- 4
---   {12.75, 8.166667, "spread", "low", false}, -- 5
---   {25.0, 25.0, "battery", "enough", false}, -- 6
---   {12.75, 91.833336, "margin", "low", true}, -- 7
---   {25.0, 50.0, "margin", "low", true}, -- 8
---   {12.75, 91.833336, "margin", "very_low", true}, -- 9
---   {12.75, 91.833336, "margin", "very_low", true}, -- 10
---   {25.0, 50.0, "battery", "low", false}, -- 11
---   {12.75, 91.833336, "battery", "empty", false}, -- 12
+--   {12.75, 8.166667, "margin", " high", true}, -- 1
+--   {12.75, 8.166667, "spread", " low", false}, -- 2
+--   {12.75, 8.166667, "margin", " high", true}, -- 3
+--   {12.75, 8.166667, "battery", " enough", false}, -- 4
+--   {12.75, 8.166667, "spread", " low", false}, -- 5
+--   {25.0, 25.0, "battery", " enough", false}, -- 6
+--   {12.75, 91.833336, "margin", " low", true}, -- 7
+--   {25.0, 50.0, "margin", " low", true}, -- 8
+--   {12.75, 91.833336, "margin", " very_low", true}, -- 9
+--   {12.75, 91.833336, "margin", " very_low", true}, -- 10
+--   {25.0, 50.0, "battery", " low", false}, -- 11
+--   {12.75, 91.833336, "battery", " empty", false}, -- 12
 -- }
 -- warn_risk, fail_risk = 67.0, 85.0 -- parameters may change them
 -- risk_level = 0 -- of the risk alone
@@ -1155,7 +1155,7 @@ return load_all, 1000
 --     local side = is_upper[limit_motor] and "upper" or "lower"
 --     return ", " .. side .. " limit", format(", motor %d", numbers[limit_motor])
 --   end
---   return ", " .. about[3], " " .. about[4]
+--   return ", " .. about[3], about[4]
 -- end
 -- 
 -- 

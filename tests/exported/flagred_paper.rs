@@ -6,30 +6,44 @@
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<14, 12, 1, 2, MOTORS>;
 
-/// What the cause of a finding is called.
+/// What a pilot reads of a finding with a cause, by its proposition.
 #[allow(dead_code)]
 #[rustfmt::skip]
-pub static CAUSES: [&str; 20] = [
-    "margin high",
-    "spread high",
-    "spread low",
-    "margin high",
-    "margin high",
-    "spread medium",
-    "margin medium",
-    "spread high",
-    "spread low",
-    "margin medium",
-    "margin medium",
-    "spread medium",
-    "margin low",
-    "spread high",
-    "margin low",
-    "spread medium",
-    "margin very_low",
-    "spread high",
-    "margin very_low",
-    "spread medium",
+pub static CAUSES: [::flagred::board::Words<'static>; 20] = [
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "The motors were on average only {percent} % of their range away from a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
+    ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "The motors were on average only {percent} % of their range away from a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "The motors were on average only {percent} % of their range away from a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "The motors were on average only {percent} % of their range away from a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
+    ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "The motors were on average only {percent} % of their range away from a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "The motors were on average only {percent} % of their range away from a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "The motors were on average only {percent} % of their range away from a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "The motors were on average only {percent} % of their range away from a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "The motors were on average only {percent} % of their range away from a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
+    ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "The motors were on average only {percent} % of their range away from a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
+    ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
+];
+
+/// What a pilot reads of a finding without a cause, by its measure.
+#[allow(dead_code)]
+#[rustfmt::skip]
+pub static NOTICES: [::flagred::board::Words<'static>; 8] = [
+    ::flagred::board::Words { code: "risk_interpolated", brief: "interpolated", text: "No rule applies to what the motors did, so the risk is interpolated between rules.", advice: "Reduce speed or land until the risk falls." },
+    ::flagred::board::Words { code: "risk_interpolated", brief: "interpolated", text: "No rule applies to what the motors did, so the risk is interpolated between rules.", advice: "Reduce speed or land until the risk falls." },
+    ::flagred::board::Words { code: "command_noise", brief: "command noise {peak} %", text: "The motor commands are noisy, by {peak} % of their range: vibration, or gains that are too high.", advice: "This alone is not a danger. Check propellers, mounts and filters after the flight." },
+    ::flagred::board::Words { code: "low_thrust_reserve", brief: "thrust reserve {peak} %", text: "The motors ran close to full thrust: on average only {peak} % of their range was left, less than {threshold} %. Gusts and climbs need that reserve.", advice: "Land soon. Fly with less payload or a fresh battery." },
+    ::flagred::board::Words { code: "imbalance", brief: "imbalance {peak} %, {motor}", text: "The motors share the load differently from earlier in the flight, by {peak} % of their range. The motor to check is {motor}, {side} its earlier share.", advice: "Land and check {motor}, and whether the load has shifted." },
+    ::flagred::board::Words { code: "pair_imbalance", brief: "pair imbalance {peak} %, {motor}", text: "The commands of two opposite motors differ by {peak} % of their range. The motor to check is {motor}, {side} the motor opposite: it may be weak, or the load may be off centre.", advice: "Land and check {motor}, and the position of battery and payload." },
+    ::flagred::board::Words { code: "weak_motor", brief: "{motor} weak: +{peak} %", text: "The command of {motor} rose by {peak} % of its range, compared with the other motors: this motor gives less thrust than before.", advice: "Land now. Check {motor}: propeller, motor, speed controller and wiring." },
+    ::flagred::board::Words { code: "motors_idle_in_air", brief: "motors idle in the air", text: "The motors idled while the autopilot reported that the vehicle was in the air: it fell.", advice: "Find out why the motors stopped before the next flight: kill switch, failsafe, power." },
 ];
 
 /// The profile.

@@ -258,7 +258,7 @@ fn an_empty_battery_decides_with_the_shipped_profile() {
     // It runs out on the way.
     let (_, told) = assess(&|t_s| Some((80.0 - 2.0 * t_s).max(0.0)));
     assert!(
-        told.starts_with("FAIL") && told.contains("battery low"),
+        told.starts_with("FAIL") && told.contains("The battery had "),
         "{told}"
     );
     // Unknown is never GOOD.

@@ -199,9 +199,14 @@ fn the_gravest_finding_is_on_top_and_scales_have_units() {
     // One cause, one line, with the motor at its limit.
     let told = html.matches("2 times, worst ").count();
     assert_eq!(told, 1);
-    assert!(html.contains(
-        " limit, motor 1 (pwm1; margin very_low: mean distance of the normalised motor commands from saturation "
-    ));
+    for said in [
+        " away from a limit, where a motor cannot correct anything. Motor 1 was closest to its ",
+        "<br>Land now and gently, ",
+        "margin very_low: ",
+        "; output pwm1, margin ",
+    ] {
+        assert!(html.contains(said), "no `{said}`");
+    }
 }
 
 #[test]

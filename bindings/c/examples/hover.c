@@ -27,9 +27,6 @@ static const char *word(int32_t level) {
     return words[level];
 }
 
-static const char *const measures[] = {"risk", "elevated risk", "command noise", "reserve", "imbalance", "pair imbalance",
-                                       "weak motor", "idle in the air"};
-
 int main(void) {
     /* MOT_PWM_MIN 1000, MOT_PWM_MAX 2000, MOT_SPIN_MIN 0.15, MOT_SPIN_MAX 0.95 */
     const flagred_limits limits[4] = {{1150, 1950}, {1150, 1950}, {1150, 1950}, {1150, 1950}};
@@ -65,11 +62,9 @@ int main(void) {
         if (ended[i].level == FLAGRED_LEVEL_NONE) {
             continue;
         }
-        printf("%s from %.2f s to %.2f s: %s", word(ended[i].level), ended[i].from_s, ended[i].to_s,
-               measures[ended[i].measure]);
-        if (ended[i].cause >= 0) {
-            printf(", %s", flagred_flagred_causes[ended[i].cause]);
-        }
+        const flagred_words *words = ended[i].cause >= 0 ? &flagred_flagred_causes[ended[i].cause]
+                                                         : &flagred_flagred_notices[ended[i].measure];
+        printf("%s from %.2f s to %.2f s: %s", word(ended[i].level), ended[i].from_s, ended[i].to_s, words->code);
         if (ended[i].motor >= 0) {
             printf(", motor %d", (int)ended[i].motor + 1);
         }

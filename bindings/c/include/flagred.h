@@ -118,11 +118,21 @@ typedef struct flagred_finding {
     int32_t motor;              /* the index of the motor that is the cause: near a limit, or out of balance; else -1 */
     int32_t or_motor;           /* the other motor that it may be as well, where the commands do not tell which; else -1 */
     int32_t at_high_limit;      /* 0: nearer to the lower limit; 1: to the upper limit. Out of balance: below, above */
-    int32_t cause;              /* what raised the risk, as an index of flagred_NAME_causes ("unsteady_lately stormy") in the
-                                   exported profile; -1 where no rule did */
+    int32_t cause;              /* what raised the risk, as an index of flagred_NAME_causes in the exported profile; -1 where no
+                                   rule did: then its words are in flagred_NAME_notices, by measure */
     int32_t cause_rule;         /* the index of the rule; -1 */
     int32_t cause_input;        /* the index of the input of the profile; -1 */
 } flagred_finding;
+
+/* What a pilot reads of a finding, in an exported profile. What stands in braces is to be filled in: {value} is cause_value,
+   {percent} 100 times that, {peak} peak_pct, {threshold} threshold_pct, {motor} "motor 3" (motor + 1), {side} "below" or
+   "above" (at_high_limit). */
+typedef struct flagred_words {
+    const char *code;           /* for programs: small letters, digits and _ */
+    const char *brief;          /* a few words, for texts of 50 characters */
+    const char *text;           /* what happened, and what it means */
+    const char *advice;         /* what to do */
+} flagred_words;
 
 /* What is known after a sample. */
 typedef struct flagred_update {

@@ -69,7 +69,7 @@ impl AssessmentData {
         said(
             assessed,
             Teller {
-                model: self.loaded.estimator.model(),
+                estimator: &self.loaded.estimator,
                 motors: &flight.motors,
             },
         )

@@ -85,7 +85,7 @@ impl MonitorData {
 
     fn teller(&self) -> Teller<'_> {
         Teller {
-            model: self.loaded.estimator.model(),
+            estimator: &self.loaded.estimator,
             motors: &[],
         }
     }

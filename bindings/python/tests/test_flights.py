@@ -110,7 +110,9 @@ def test_findings_and_the_report():
     worst = assessment.findings[0]
     document = json.loads(assessment.to_json())["findings"][0]
     assert (worst.severity, worst.from_s, worst.value_pct) == ("FAIL", document["from_s"], document["value_pct"])
-    assert worst.cause.rule == document["cause"]["rule"] and worst.text == str(worst) == document["text"]
+    assert worst.cause.rule == document["cause"]["rule"]
+    assert (worst.code, worst.text, worst.advice) == (document["code"], document["text"], document["advice"])
+    assert str(worst).endswith(f" s: {worst.text} {worst.advice}")
     assert worst.motor.number == document["motor"]["number"]
     html = assessment.html()
     assert html.startswith("<!DOCTYPE html>") and "FAIL" in html and "<path" in html

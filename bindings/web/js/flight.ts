@@ -64,12 +64,21 @@ export interface Peak {
   value_pct: number;
 }
 
+/** How many moments with a risk of a band, one each 0.5 s, were followed by an attitude error over 5 degrees within 5 s. */
+export interface Reliability {
+  /** The ends of the band, in %. */
+  from_pct: number;
+  to_pct: number;
+  real: { moments: number; followed: number } | null;
+  simulated: { moments: number; followed: number } | null;
+}
+
 /** What is said of a flight, without its steps. `docs/json.md` describes all of it. */
 export interface Brief {
   schema: string;
   log: { path: string; format: string };
   vehicle: { kind: string; frame: string | null; firmware: string | null; [more: string]: unknown };
-  profile: { name: string; rules: string; verdict: VerdictSettings };
+  profile: { name: string; rules: string; verdict: VerdictSettings; reliability: Reliability[] };
   /** `NA` where there is none; then `reason` says why, and `help` what helps. */
   verdict: Level | 'NA';
   reason?: string;
@@ -89,11 +98,15 @@ export interface Brief {
 }
 
 export interface FlightFinding {
-  level: Level;
+  severity: Level;
   from_s: number;
   to_s: number;
-  /** The finding in words. */
+  /** What kind of finding it is: a stable word for programs, such as `fighting_gusts`. */
+  code: string;
+  /** What happened, and what it means. */
   text: string;
+  /** What to do. */
+  advice: string;
   [more: string]: unknown;
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::Array;
+use super::{Array, FindingWords};
 use flagred::{
     board::{Plan, Rules, table::Hedge},
     channel::{Channel, Input, Threshold},
@@ -12,7 +12,7 @@ use flagred::{
 };
 
 /// The file of a profile.
-pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], causes: &[String]) -> String {
+pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], words: &FindingWords) -> String {
     let name = identifier(plan.name);
     let motor = plan.bytes(1) - plan.bytes(0);
     let mut arrays = Arrays::begin(
@@ -44,7 +44,7 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], causes: &[Str
     );
     let rules = arrays.rules(&plan.rules);
     arrays.profile(plan);
-    arrays.add_causes(causes);
+    arrays.add_words(words);
     let out = &mut arrays.out;
     line(
         out,
@@ -210,11 +210,27 @@ impl Arrays {
         self.add_array("propositions", &propositions);
     }
 
-    /// What the cause of a finding is called. The plan does not hold it.
-    fn add_causes(&mut self, causes: &[String]) {
-        line(&mut self.out, "/* What flagred_finding.cause is called. */");
-        self.add("char *const", "causes", causes.to_vec());
-        self.fields.pop();
+    /// What a pilot reads of findings. The plan does not hold it.
+    fn add_words(&mut self, words: &FindingWords) {
+        let FindingWords { causes, notices } = words;
+        for (comment, field, words) in [
+            (
+                "What a pilot reads of a finding with a cause, by flagred_finding.cause.",
+                "causes",
+                causes,
+            ),
+            (
+                "What a pilot reads of a finding without a cause, by flagred_finding.measure.",
+                "notices",
+                notices,
+            ),
+        ] {
+            line(&mut self.out, &format!("/* {comment} */"));
+            let rows = words.iter().map(super::literals);
+            let rows = rows.map(|row| format!("{{{}}}", row.join(", ")));
+            self.add("flagred_words", field, rows.collect());
+            self.fields.pop();
+        }
     }
 }
 

@@ -12,8 +12,10 @@ use flagred::{
         table::{self, Table},
     },
     estimator::Estimator,
+    flight::Words,
     gap::FilledKnots,
     plan::NoPlan,
+    verdict::Measure,
 };
 use fuzzy::drawing::visible;
 use interchange::{Format, Losses};
@@ -91,11 +93,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     })?;
     let rules = &loaded.estimator.profile().rules;
     let signals = loaded.estimator.profile().signals();
-    let causes: Vec<String> = causes(&loaded.estimator).collect();
+    let words = FindingWords::of(&loaded.estimator);
     let text = if arguments.rust {
-        rust::text(&plan, rules, &signals, &causes)
+        rust::text(&plan, rules, &signals, &words)
     } else if arguments.c {
-        c::text(&plan, rules, &signals, &causes)
+        c::text(&plan, rules, &signals, &words)
     } else {
         lua::text(&loaded.estimator, &plan)
             .map_err(|refused| Failure::unreadable(refused.message).help(refused.help))?
@@ -146,10 +148,36 @@ fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
     }
 }
 
-/// What the cause of a finding is called, as string literals: `"unsteady_now violent"`.
-fn causes(estimator: &Estimator) -> impl Iterator<Item = String> {
-    let propositions = estimator.propositions();
-    propositions.map(|(input, term)| format!("{:?}", visible(&format!("{input} {term}"))))
+/// What a pilot reads of findings.
+struct FindingWords {
+    /// Where an input raised the risk: a row for each proposition of the plan.
+    causes: Vec<Words>,
+    /// Otherwise: a row for each measure.
+    notices: Vec<Words>,
+}
+
+impl FindingWords {
+    fn of(estimator: &Estimator) -> FindingWords {
+        let causes = estimator.propositions();
+        let notices = Measure::ALL.into_iter().map(Words::of_measure);
+        FindingWords {
+            causes: causes
+                .map(|(input, term)| Words::of_cause(estimator, input, term))
+                .collect(),
+            notices: notices.collect(),
+        }
+    }
+}
+
+/// Words as string literals of Rust and C: code, brief, text and advice.
+fn literals(words: &Words) -> [String; 4] {
+    let Words {
+        code,
+        brief,
+        text,
+        advice,
+    } = words;
+    [code, &brief.concat(), text, advice].map(|text| format!("{:?}", visible(text)))
 }
 
 /// A profile in every language.
@@ -157,10 +185,10 @@ pub(crate) fn texts(estimator: &Estimator) -> Result<[String; 2], NoPlan> {
     let plan = estimator.plan()?;
     let rules = &estimator.profile().rules;
     let signals = estimator.profile().signals();
-    let causes: Vec<String> = causes(estimator).collect();
+    let words = FindingWords::of(estimator);
     Ok([
-        rust::text(&plan, rules, &signals, &causes),
-        c::text(&plan, rules, &signals, &causes),
+        rust::text(&plan, rules, &signals, &words),
+        c::text(&plan, rules, &signals, &words),
     ])
 }
 

@@ -8,10 +8,13 @@ use std::fmt::{Debug, Write};
 use flagred::{
     board::{Plan, Rules, table::Table},
     channel::{Channel, Input, Statistic, Threshold},
+    flight::Words,
 };
 
+use super::FindingWords;
+
 /// The file.
-pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], causes: &[String]) -> String {
+pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], words: &FindingWords) -> String {
     let mut out = String::new();
     for line in super::heading(plan, rules, signals, "--rust") {
         line_of(&mut out, format_args!("// {line}"));
@@ -26,10 +29,17 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], causes: &[Str
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<{}, {}, {}, {}, MOTORS>;
 
-/// What the cause of a finding is called.
+/// What a pilot reads of a finding with a cause, by its proposition.
 #[allow(dead_code)]
 #[rustfmt::skip]
-pub static CAUSES: [&str; {}] = [
+pub static CAUSES: [::flagred::board::Words<'static>; {}] = [
+    {},
+];
+
+/// What a pilot reads of a finding without a cause, by its measure.
+#[allow(dead_code)]
+#[rustfmt::skip]
+pub static NOTICES: [::flagred::board::Words<'static>; {}] = [
     {},
 ];
 
@@ -56,8 +66,10 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
             sizes.partials,
             sizes.outputs,
             sizes.channels,
-            causes.len(),
-            causes.join(",\n    "),
+            words.causes.len(),
+            rows(&words.causes),
+            words.notices.len(),
+            rows(&words.notices),
             plan.name,
         ),
     );
@@ -90,6 +102,17 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
     items(out, 2, "propositions", &debug(plan.propositions));
     line_of(out, format_args!("    }}\n}};"));
     std::mem::take(out)
+}
+
+/// Words as expressions.
+fn rows(words: &[Words]) -> String {
+    let rows = words.iter().map(|words| {
+        let [code, brief, text, advice] = super::literals(words);
+        format!(
+            "::flagred::board::Words {{ code: {code}, brief: {brief}, text: {text}, advice: {advice} }}"
+        )
+    });
+    rows.collect::<Vec<String>>().join(",\n    ")
 }
 
 /// A rule set without a profile, as a function of its inputs.

@@ -132,11 +132,15 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             |_| String::new(),
             |estimate| format!("risk {:.0} %", estimate.risk_pct),
         ),
-        Event::Level { text, .. } => text.clone(),
+        Event::Level { text, advice, .. } => match advice {
+            Some(advice) => format!("{text}: {advice}"),
+            None => text.clone(),
+        },
         Event::Ended { finding } => {
             let view = session.view();
-            let text = teller(view.as_ref(), estimator).finding(finding);
-            format!("{} of {text}", finding.level)
+            let teller = teller(view.as_ref(), estimator);
+            let advice = teller.words(finding).advice;
+            format!("{} of {} {advice}", finding.level, teller.finding(finding))
         }
         Event::Over { end, flown } => over(*end, flown),
     }
@@ -192,7 +196,7 @@ fn cause_of(lost: Lost) -> &'static str {
 pub(super) fn teller<'a>(view: Option<&View<'a>>, estimator: &'a Estimator) -> Teller<'a> {
     let setup = view.and_then(|view| view.setup);
     Teller {
-        model: estimator.model(),
+        estimator,
         motors: setup.map_or(&[], |setup| &setup.motors),
     }
 }

@@ -22,7 +22,7 @@ mod trust;
 
 use super::voice;
 pub(crate) use event::{End, Event, Flown, Left, Lost, Silent};
-use report::document::numbered;
+use report::finding::numbered;
 use speech::Speech;
 pub(crate) use tracked::View;
 use tracked::{Tracked, Watch, tell};
@@ -469,20 +469,26 @@ fn tell_level(
     finding: Option<Finding>,
     out: &mut Out,
 ) {
+    let finding = finding.map(|finding| numbered(&finding, &watch.setup.motors));
+    let words = finding
+        .as_ref()
+        .map(|finding| finding.words(watch.assessor.monitor().estimator()));
     let (severity, text) = match update.level {
-        Some(level) => {
-            let text = voice::say(level, update, finding.as_ref(), &watch.setup);
-            (level, text)
-        }
+        Some(level) => (
+            level,
+            voice::say(level, update, finding.as_ref().zip(words.as_ref())),
+        ),
         None => (Level::Warn, voice::unknown(before.unwrap_or(Level::Warn))),
     };
     speech.warn(now_s, to, &voice::status(severity, &text), out);
-    let finding = finding.map(|finding| numbered(&finding, &watch.setup.motors));
+    let (code, advice) = words.map(|words| (words.code, words.advice)).unzip();
     out.events.push(Event::Level {
         t_s: update.t_s,
         level: update.level,
         before,
         text,
+        code,
+        advice,
         motor: finding.as_ref().and_then(|finding| finding.motor),
         cause: finding.and_then(|finding| finding.cause),
     });

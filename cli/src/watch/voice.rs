@@ -1,12 +1,12 @@
 //! The messages to the vehicle and its ground station.
 
 use flagred::{
-    flight::Finding,
+    flight::{Finding, Words},
     monitor::Update,
     verdict::{Level, Measure},
 };
 use flightlog::mavlink::{
-    Packet, Setup,
+    Packet,
     dialect::{
         HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavSeverity, MavState, MavType,
         NAMED_VALUE_FLOAT_DATA, STATUSTEXT_DATA,
@@ -14,8 +14,6 @@ use flightlog::mavlink::{
 };
 
 use fuzzy::drawing::visible;
-
-use report::finding::{cause, weak};
 
 /// The names of the values that are sent.
 pub(crate) const RISK: &str = "FR_RISK";
@@ -132,53 +130,42 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     })
 }
 
-/// A change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, unsteady_now violent`, or where
-/// a motor is the cause `FLAGRED: WARN risk 78 %, upper limit, motor 3`, or `FLAGRED: WARN motor 3 weak: +24 %`. Without a
-/// finding an alarm stands because the motors do not work as before it.
-pub(crate) fn say(
-    level: Level,
-    update: &Update,
-    finding: Option<&Finding>,
-    setup: &Setup,
-) -> String {
-    if let Some(finding) = finding
-        && finding.measure == Measure::WeakMotor
-    {
-        return format!("{PREFIX}{level} {}", weak(finding, &setup.motors));
-    }
-    if finding.is_some_and(|finding| finding.measure == Measure::IdleInAir) {
-        return format!("{PREFIX}{level} motors idle in the air");
-    }
+/// A change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, fighting gusts`, or where motors are
+/// near a limit `FLAGRED: WARN risk 78 %, upper limit, motor 3`, or `FLAGRED: WARN motor 3 weak: +24 %`. The finding comes with
+/// its words. Without one an alarm stands because the motors do not work as before it.
+pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Words)>) -> String {
     if level > Level::Good && finding.is_none() {
         return format!("{PREFIX}{level} stands: motors not as before");
     }
-    let measure = finding.map_or(Measure::Risk, |finding| finding.measure);
-    let (name, value) = match measure {
-        Measure::Risk | Measure::IdleInAir => {
-            ("risk", update.risk.ok().map(|estimate| estimate.risk_pct))
-        }
-        Measure::ElevatedRisk => ("elevated", update.elevated_risk_pct),
-        Measure::CommandNoise => ("noise", finding.map(|finding| finding.peak_pct)),
-        Measure::Reserve => ("reserve", finding.map(|finding| finding.peak_pct)),
-        Measure::Imbalance => ("imbalance", finding.map(|finding| finding.peak_pct)),
-        Measure::PairImbalance => ("pair imbalance", finding.map(|finding| finding.peak_pct)),
-        Measure::WeakMotor => ("weak motor", finding.map(|finding| finding.peak_pct)),
-    };
-    let (name, value) = match finding.and_then(|finding| Some((finding, finding.risk.as_ref()?))) {
-        Some((finding, risk)) => (risk.as_str(), Some(finding.peak_pct)),
-        None => (name, value),
+    let elevated = || ("elevated", update.elevated_risk_pct);
+    let risk = || ("risk", update.risk.ok().map(|estimate| estimate.risk_pct));
+    let (name, value) = match finding {
+        Some((finding, _)) if !finding.is_of_risk() => ("", None),
+        Some((finding, _)) => match (&finding.risk, finding.measure) {
+            (Some(other), _) => (other.as_str(), Some(finding.peak_pct)),
+            (None, Measure::ElevatedRisk) => elevated(),
+            (None, _) => risk(),
+        },
+        None => risk(),
     };
     let mut text = format!("{PREFIX}{level}");
     if let Some(value) = value {
         text += &format!(" {name} {value:.0} %");
     }
-    let cause = finding.map(|finding| cause(finding, &setup.motors));
-    for word in cause.iter().flatten() {
-        let word = visible(word);
-        if text.len() + word.len() > TEXT {
+    let [first, second] = finding.map_or(["", ""], |(_, words)| {
+        words.brief.each_ref().map(String::as_str)
+    });
+    let first = match finding {
+        Some((finding, _)) if finding.is_of_risk() => format!(", {first}"),
+        Some(_) => format!(" {first}"),
+        None => String::new(),
+    };
+    for words in [first.as_str(), second] {
+        let words = visible(words);
+        if text.len() + words.len() > TEXT {
             break;
         }
-        text += &word;
+        text += &words;
     }
     text
 }

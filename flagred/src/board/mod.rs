@@ -82,6 +82,22 @@ pub struct Plan<'a> {
     pub propositions: &'a [Proposition],
 }
 
+/// What a pilot reads of a finding, as exported profiles have it: `CAUSES` by [`Cause::proposition`], `NOTICES` by
+/// [`Finding::measure`](crate::verdict::Finding::measure) where there is no cause. What stands in braces is to be filled in:
+/// `{value}` is [`Cause::value`] and `{percent}` 100 times that; `{peak}` and `{threshold}` are of the finding, `{motor}` is its
+/// motor, and `{side}` is `above` or `below`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Words<'a> {
+    /// A word for programs: small letters, digits and `_`.
+    pub code: &'a str,
+    /// A few words for texts of 50 characters.
+    pub brief: &'a str,
+    /// What happened, and what it means.
+    pub text: &'a str,
+    /// What to do.
+    pub advice: &'a str,
+}
+
 /// Why a monitor cannot be made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]

@@ -2,6 +2,7 @@ use super::*;
 use crate::{shipped, verdict::Measure};
 
 mod loss;
+mod words;
 
 /// Flies at 50 Hz: for each phase its seconds, whether in the air, and the motors.
 fn fly(phases: &[(f64, bool, [f64; 4])]) -> Assessment {

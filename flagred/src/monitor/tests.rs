@@ -84,6 +84,8 @@ fn profile() -> Profile {
         gap: GapSettings::default(),
         elevated_risk: AccumulatorSettings::default(),
         verdict: VerdictSettings::default(),
+        findings: Vec::new(),
+        reliability: Vec::new(),
     }
 }
 

@@ -68,6 +68,56 @@ pub struct Profile {
     pub verdict: VerdictSettings,
     /// Other outputs that are risks.
     pub other_risks: Vec<OtherRisk>,
+    /// What a pilot reads where an input raised the risk. Inputs without an entry are described by their names.
+    pub findings: Vec<CauseWords>,
+    /// How often errors followed a risk, by rising risk; empty where it was not measured.
+    pub reliability: Vec<Reliability>,
+}
+
+/// What a pilot reads where an input raised the risk.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CauseWords {
+    /// The name of the input in the profile.
+    pub input: String,
+    /// A word for programs: small letters, digits and `_`.
+    pub code: String,
+    /// Two or three words, at most 20 ASCII characters: part of texts of 50.
+    pub brief: String,
+    /// What happened, and what it means. `{value}` is the value of the input, `{percent}` 100 times that.
+    pub text: String,
+    /// What to do.
+    pub advice: String,
+}
+
+/// How many moments with a risk of a band were followed by a large attitude error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Reliability {
+    /// The lower end of the band in %; it belongs to it.
+    pub from_pct: f64,
+    /// The upper end in %; 100 belongs to the last band.
+    pub to_pct: f64,
+    /// On real vehicles.
+    pub real: Option<Followed>,
+    /// On simulated ones.
+    pub simulated: Option<Followed>,
+}
+
+/// How many moments were followed by an attitude error over 5 degrees within 5 s.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Followed {
+    /// All moments, one each 0.5 s.
+    pub moments: u64,
+    /// Those that were followed by such an error.
+    pub followed: u64,
+}
+
+impl Followed {
+    /// The share that was followed by such an error, in %; `None` without a moment.
+    pub fn share_pct(&self) -> Option<f64> {
+        (self.moments > 0).then(|| 100.0 * self.followed as f64 / self.moments as f64)
+    }
 }
 
 /// Another output that is a risk, with levels of its own. Its findings are those of a profile of which it is the only risk.

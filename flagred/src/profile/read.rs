@@ -9,7 +9,9 @@ use fuzzy::{
     yaml,
 };
 
+mod findings;
 mod inputs;
+mod reliability;
 #[cfg(test)]
 mod tests;
 mod verdict;
@@ -19,7 +21,9 @@ use crate::{
     accumulator::AccumulatorSettings,
     gap::{GapMethod, GapSettings},
 };
+use findings::findings;
 use inputs::inputs;
+use reliability::reliability;
 use verdict::{level, verdict};
 
 /// The version of the format.
@@ -67,6 +71,8 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         "elevated_risk",
         "verdict",
         "other_risks",
+        "findings",
+        "reliability",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
         found.push(tree.unexpected_document("the profile"));
@@ -119,6 +125,8 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         other_risks: other_risks(&fields, &defaults, found),
         verdict,
         window_s,
+        findings: findings(&fields, &inputs, found),
+        reliability: reliability(&fields, found),
         inputs,
     };
     Some(profile)

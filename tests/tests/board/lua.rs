@@ -201,7 +201,10 @@ fn told_by_the_assessor(
         let about = match (motor, cause) {
             (Some(motor), Some(_)) => format!(", limit, motor {}", motor.motor + 1),
             (Some(motor), None) => format!(", motor {}", motor.motor + 1),
-            (None, Some(cause)) => format!(", {} {}", cause.input, cause.term),
+            (None, Some(_)) => {
+                let words = finding.as_ref().map(|finding| finding.words(estimator));
+                format!(", {}", words.unwrap().brief.concat())
+            }
             (None, None) => String::new(),
         };
         told.push(format!("{:.1} s {level}{about}", record.t_us as f64 / 1e6));

@@ -162,13 +162,19 @@ void FlagredMonitor::send(hrt_abstime now, const flagred_update &update) {
 }
 
 void FlagredMonitor::say(const flagred_update &update) {
+    flagred_finding finding;
+    flagred_open_finding(_monitor, &finding);
+    /* An alarm of a motor or of the reserve has no cause of the risk. */
+    const bool has_cause = finding.level != FLAGRED_LEVEL_NONE && finding.cause >= 0;
+    const char *comma = has_cause ? ", " : "";
+    const char *cause = has_cause ? flagred_profile_words(&finding)->brief : "";
     switch (update.change) {
     case FLAGRED_FAIL:
-        mavlink_log_critical(&_mavlink_log_pub, "FLAGRED: FAIL risk %.0f %%\t", update.risk_pct);
+        mavlink_log_critical(&_mavlink_log_pub, "FLAGRED: FAIL risk %.0f %%%s%s\t", update.risk_pct, comma, cause);
         break;
 
     case FLAGRED_WARN:
-        mavlink_log_warning(&_mavlink_log_pub, "FLAGRED: WARN risk %.0f %%\t", update.risk_pct);
+        mavlink_log_warning(&_mavlink_log_pub, "FLAGRED: WARN risk %.0f %%%s%s\t", update.risk_pct, comma, cause);
         break;
 
     default:

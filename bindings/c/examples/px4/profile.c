@@ -12,3 +12,7 @@ const flagred_plan *flagred_profile(void) {
 void *flagred_profile_memory(void) {
     return memory;
 }
+
+const flagred_words *flagred_profile_words(const flagred_finding *finding) {
+    return finding->cause >= 0 ? &flagred_flagred_causes[finding->cause] : &flagred_flagred_notices[finding->measure];
+}

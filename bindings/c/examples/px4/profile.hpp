@@ -15,6 +15,7 @@ extern "C" {
 
 const flagred_plan *flagred_profile(void);
 void *flagred_profile_memory(void);
+const flagred_words *flagred_profile_words(const flagred_finding *finding);
 
 #ifdef __cplusplus
 }

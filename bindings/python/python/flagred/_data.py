@@ -154,7 +154,7 @@ class Cause(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """A time at a level: when, what, and its cause. ``str()`` says it in words."""
+    """A time at a level: when, what, and its cause. ``str()`` is what a pilot reads."""
 
     severity: Literal["GOOD", "INFO", "WARN", "FAIL"]
     from_s: float
@@ -174,10 +174,15 @@ class Finding(NamedTuple):
     """The output that is the risk, where it is not the first of the profile."""
     output: str | None
     """The output of the motor, as the log names it."""
+    code: str
+    """What kind of finding it is: a stable word for programs, such as ``fighting_gusts``."""
     text: str
+    """What happened, and what it means."""
+    advice: str
+    """What to do."""
 
     def __str__(self) -> str:
-        return self.text
+        return f"{self.from_s:.1f} to {self.to_s:.1f} s: {self.text} {self.advice}"
 
 
 class Peak(NamedTuple):

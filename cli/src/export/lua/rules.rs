@@ -6,6 +6,7 @@ use flagred::{
         table::{ClosedForm, Output},
     },
     estimator::Estimator,
+    flight::Words,
     source::Signal,
 };
 use fuzzy::{
@@ -456,8 +457,8 @@ fn area_and_centre(variable: &Variable, term: &str) -> (f64, f64) {
     }
 }
 
-/// The input and the term that distinguish a rule, as strings of the script, and whether the input tells how near motors are
-/// to a limit: the proposition that the fewest rules have, as in a finding.
+/// What a pilot reads of the input that distinguishes a rule, as two strings of the script, and whether the input tells how near
+/// motors are to a limit: that of the proposition that the fewest rules have, as in a finding.
 fn about(estimator: &Estimator, condition: &Condition) -> (String, bool) {
     let rules = estimator.model().rules.iter();
     let all: Vec<Vec<&Proposition>> = rules
@@ -483,10 +484,8 @@ fn about(estimator: &Estimator, condition: &Condition) -> (String, bool) {
             Signal::MotorMargin | Signal::MotorMarginLowSide | Signal::MotorMarginHighSide
         )
     });
-    (
-        format!("{}, {}", quoted(name), quoted(&term.join(" "))),
-        is_motor,
-    )
+    let [first, second] = Words::of_cause(estimator, name, &term.join(" ")).brief;
+    (format!("{}, {}", quoted(&first), quoted(&second)), is_motor)
 }
 
 fn propositions(condition: &Condition) -> Vec<&Proposition> {

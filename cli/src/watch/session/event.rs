@@ -85,14 +85,17 @@ pub(crate) enum Event {
     Rebooted,
     /// A flight began.
     TookOff { t_s: f64 },
-    /// The level changed in flight, with the motor and the cause of the finding that it rests on. It is unknown where the
+    /// The level changed in flight, with the words, the motor and the cause of the finding that it rests on. It is unknown where the
     /// risk became unknown while an alarm stood.
     Level {
         t_s: f64,
         level: Option<Level>,
         /// The level before.
         before: Option<Level>,
+        /// The text to the ground station.
         text: String,
+        code: Option<String>,
+        advice: Option<String>,
         motor: Option<MotorFinding>,
         cause: Option<Cause>,
     },

@@ -306,7 +306,7 @@ fn a_flight_at_the_limit_is_told_once_a_level() {
 }
 
 #[test]
-fn a_risk_that_no_motor_at_its_limit_raises_is_told_with_its_input_and_term() {
+fn a_risk_without_a_motor_at_its_limit_is_told_with_its_meaning() {
     let estimator = shipped::flagred();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -323,18 +323,18 @@ fn a_risk_that_no_motor_at_its_limit_raises_is_told_with_its_input_and_term() {
         text.starts_with("FLAGRED: WARN risk ") || text.starts_with("FLAGRED: FAIL risk "),
         "{text}"
     );
-    assert!(text.contains(" %, unsteady_") && text.len() <= 50, "{text}");
+    assert!(
+        text.contains(" %, sudden change") && text.len() <= 50,
+        "{text}"
+    );
     let mut out = Out::default();
     bench.session.finish(&mut out);
     let ended = out.events.iter().find_map(|event| match event {
         Event::Ended { finding } => Some(finding),
         _ => None,
     });
-    let cause = ended.unwrap().cause.as_ref().unwrap();
-    assert!(
-        text.ends_with(&format!(", {} {}", cause.input, cause.term)),
-        "{text}"
-    );
+    let brief = ended.unwrap().words(&estimator).brief.concat();
+    assert!(text.ends_with(&format!(", {brief}")), "{text}");
 }
 
 /// Motor 3 does more from a time in flight on: the level stays until the landing, and text and finding name it.

@@ -1,5 +1,6 @@
 use super::*;
 use crate::{
+    profile::{Followed, Reliability},
     source::{Motors, Signal, Source, Statistic},
     verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings},
 };
@@ -60,6 +61,11 @@ verdict:
   imbalance: {above: 0.25}
 other_risks:
   tip_over: {warn: {risk: 30}, elevated_risk: {high: 60}}
+findings:
+  d: {code: low_battery, brief: low battery, text: 'The battery had {value} V, or {percent} %.', advice: Land.}
+reliability:
+  - {risk: [0, 50], real: {moments: 10, followed: 3}}
+  - {risk: [50, 100], simulated: {moments: 7, followed: 7}}
 "
     .parse::<Profile>()
     .unwrap();
@@ -165,6 +171,34 @@ other_risks:
             ..profile.elevated_risk
         }
     );
+    let [words] = profile.findings.as_slice() else {
+        panic!("{:?}", profile.findings)
+    };
+    assert_eq!(
+        [&words.input, &words.code, &words.brief, &words.advice],
+        ["d", "low_battery", "low battery", "Land."]
+    );
+    assert_eq!(words.text, "The battery had {value} V, or {percent} %.");
+    let counts = |moments, followed| Some(Followed { moments, followed });
+    assert_eq!(
+        profile.reliability,
+        [
+            Reliability {
+                from_pct: 0.0,
+                to_pct: 50.0,
+                real: counts(10, 3),
+                simulated: None,
+            },
+            Reliability {
+                from_pct: 50.0,
+                to_pct: 100.0,
+                real: None,
+                simulated: counts(7, 7),
+            }
+        ]
+    );
+    assert_eq!(counts(10, 3).unwrap().share_pct(), Some(30.0));
+    assert_eq!(counts(0, 0).unwrap().share_pct(), None);
     let threshold = |risk_pct, elevated_risk_pct| Threshold {
         risk_pct,
         elevated_risk_pct,
@@ -281,6 +315,29 @@ inputs:
   bottomless: {std: motor_command, per: room}
   undivided: {std: motor_command, at_least: 0.02}
   flat: {std: motor_command, per: room, at_least: 0}
+";
+    let findings = text.parse::<Profile>().unwrap_err();
+    insta::assert_snapshot!(findings);
+}
+
+#[test]
+fn mistakes_in_words_and_reliability_are_told() {
+    let text = "flagred: 1
+name: wrong
+rules: flagred
+inputs:
+  battery: {last: battery_v}
+findings:
+  batery: {code: low_battery, brief: low battery, text: Low., advice: Land.}
+  battery:
+    code: Low battery
+    brief: the battery is nearly empty
+    text: '{percent} % or {volts} V'
+reliability:
+  - {risk: [60, 80], real: {moments: 3, followed: 4}}
+  - {risk: [50, 120], simulated: {moments: 3}}
+  - {risk: 80}
+  - {real: {moments: 3, followed: 1}}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);

@@ -1,6 +1,6 @@
 -- Levels: raised after a while, held, lowered after a while.
 
--- What each rule is about: the area and the centre of its consequent, an input and a term, whether motors are at a limit.
+-- What each rule is about: the area and the centre of its consequent, what a pilot reads, whether motors are at a limit.
 CAUSES = {
 -- @put causes
 }

@@ -18,7 +18,7 @@ function say(level, risk, of_notice)
 -- @end
 -- @if reserve
   if (of_notice or not is_open) and little_reserve then
-    gcs:send_text(severity, format("%s reserve %.0f %%", text, little_reserve))
+    gcs:send_text(severity, format("%s thrust reserve %.0f %%", text, little_reserve))
     return
   end
 -- @end

@@ -23,6 +23,6 @@ function cause_in_words()
     return ", " .. side .. " limit", format(", motor %d", numbers[limit_motor])
   end
 -- @end
-  return ", " .. about[3], " " .. about[4]
+  return ", " .. about[3], about[4]
 end
 

@@ -1,0 +1,145 @@
+//! What a pilot reads of findings.
+
+use alloc::format;
+
+use crate::{
+    estimator::Estimator,
+    flight::{Cause, Finding, Words},
+    margin::Side,
+    profile::Profile,
+    shipped,
+    verdict::{self, Level, Measure, MotorFinding},
+};
+
+fn finding(measure: Measure, peak_pct: f64) -> Finding {
+    Finding {
+        found: verdict::Finding {
+            level: Level::Warn,
+            measure,
+            threshold_pct: 60.0,
+            peak_pct,
+            ..verdict::Finding::NONE
+        },
+        cause: None,
+        risk: None,
+    }
+}
+
+fn by(input: &str, term: &str, value: f64) -> Finding {
+    Finding {
+        cause: Some(Cause {
+            input: input.into(),
+            value,
+            term: term.into(),
+            rule: 0,
+        }),
+        ..finding(Measure::Risk, 77.6)
+    }
+}
+
+fn motor(motor: usize, or: Option<usize>, side: Side) -> Option<MotorFinding> {
+    Some(MotorFinding {
+        motor,
+        or,
+        side,
+        mean_margin: 0.01,
+        least_margin: 0.0,
+    })
+}
+
+#[test]
+fn a_risk_has_the_words_of_its_input_and_its_numbers() {
+    let words = by("swing_per_room", "large", 0.638).words(&shipped::flagred());
+    assert_eq!(words.code, "low_motor_margin");
+    assert_eq!(words.brief.concat(), "low motor margin");
+    assert!(words.text.contains(" 64 % "), "{}", words.text);
+    assert!(
+        words.text.ends_with(" The risk reached 78 %."),
+        "{}",
+        words.text
+    );
+    let mut elevated = by("unsteady_lately", "stormy", 0.1);
+    elevated.found.measure = Measure::ElevatedRisk;
+    let text = elevated.words(&shipped::flagred()).text;
+    assert!(text.ends_with(" The elevated risk reached 78 %."), "{text}");
+}
+
+#[test]
+fn motors_near_a_limit_are_named_with_it() {
+    let mut finding = by("at_limit", "much", 0.5);
+    finding.found.motor = motor(2, None, Side::High);
+    let words = finding.words(&shipped::flagred());
+    assert_eq!(words.code, "motor_at_limit");
+    assert_eq!(words.brief, ["upper limit", ", motor 3"]);
+    let expected = "Motor 3 was closest to its upper limit. The risk reached 78 %.";
+    assert!(words.text.ends_with(expected), "{}", words.text);
+}
+
+#[test]
+fn another_risk_is_named() {
+    let mut finding = by("battery", "low", 12.25);
+    finding.risk = Some("battery_risk".into());
+    let Words { code, text, .. } = finding.words(&shipped::flagred_battery());
+    assert_eq!(code, "low_battery");
+    let expected = "The battery had 12.25 % left. The risk `battery_risk` reached 78 %.";
+    assert_eq!(text, expected);
+}
+
+#[test]
+fn a_motor_is_named_as_it_is_known() {
+    let estimator = shipped::flagred();
+    let mut weak = finding(Measure::WeakMotor, 23.7);
+    weak.found.motor = motor(2, Some(7), Side::High);
+    let words = weak.words(&estimator);
+    assert_eq!(words.brief.concat(), "motor 3 or 8 weak: +24 %");
+    assert!(
+        words.advice.contains("Check motor 3 or 8:"),
+        "{}",
+        words.advice
+    );
+    let mut imbalance = finding(Measure::Imbalance, 16.0);
+    imbalance.found.motor = motor(1, None, Side::Low);
+    let words = imbalance.words(&estimator);
+    assert_eq!(words.brief, ["imbalance 16 %", ", motor 2"]);
+    assert!(words.text.contains("motor 2, below its"), "{}", words.text);
+}
+
+#[test]
+fn no_number_is_left_out() {
+    let estimator = shipped::flagred();
+    for measure in Measure::ALL {
+        let mut finding = finding(measure, 50.0);
+        finding.found.motor = motor(0, None, Side::High);
+        let Words {
+            brief,
+            text,
+            advice,
+            ..
+        } = finding.words(&estimator);
+        for text in [brief.concat(), text, advice] {
+            assert!(!text.contains('{') && !text.is_empty(), "{measure}: {text}");
+        }
+    }
+}
+
+/// Names of an author may be anything.
+#[test]
+fn an_input_without_words_is_described_by_name_and_description() {
+    let battery = shipped::flagred_battery();
+    let profile = Profile {
+        findings: alloc::vec::Vec::new(),
+        ..battery.profile().clone()
+    };
+    let estimator = Estimator::new(&profile, battery.model()).unwrap();
+    let words = by("battery", "low", 12.0).words(&estimator);
+    assert_eq!(words.code, "battery");
+    assert_eq!(words.brief, ["battery", " low"]);
+    let expected = "battery was low: 12 % (what is left in the battery). The risk reached 78 %.";
+    assert_eq!(words.text, expected);
+    let strange = Words::of_cause(&estimator, "Größe-2", "very high");
+    assert_eq!(strange.code, "gr__e_2");
+    assert_eq!(
+        strange.text,
+        format!("Größe-2 was very high: {}.", "{value}")
+    );
+}

@@ -1,0 +1,247 @@
+//! What a pilot reads of a finding: what happened, what it means and what to do.
+//!
+//! The words about a risk are those that the profile has for the input that raised it ([`Profile::findings`]); an input
+//! without an entry is described by its name, term and description. The words of all other findings are here. docs/findings.md
+//! lists them.
+//!
+//! [`Profile::findings`]: crate::profile::Profile::findings
+
+use alloc::{
+    format,
+    string::{String, ToString},
+};
+
+use fuzzy::model::Variable;
+
+use super::Finding;
+use crate::{
+    estimator::Estimator,
+    margin::Side,
+    verdict::{Measure, MotorFinding},
+};
+
+/// What a pilot reads of a finding.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Words {
+    /// A word for programs: small letters, digits and `_`.
+    pub code: String,
+    /// A few words for texts of 50 characters. Where there is no room for the second part, the first one is true alone.
+    pub brief: [String; 2],
+    /// What happened, and what it means.
+    pub text: String,
+    /// What to do.
+    pub advice: String,
+}
+
+impl Finding {
+    /// What a pilot reads of the finding, with its numbers. The motor is called by its index + 1.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::{flight::Assessor, monitor::{Craft, Sample}, shipped};
+    ///
+    /// let estimator = shipped::flagred();
+    /// let mut assessor = Assessor::new(&estimator, Craft::new(4), None)?;
+    /// for i in 0..1500 {
+    ///     let t_s = f64::from(i) * 0.02;
+    ///     let motors = if t_s < 20.0 { [0.5; 4] } else { [1.0, 0.0, 1.0, 0.0] };
+    ///     assessor.push(&Sample { t_s, motors: &motors, in_air: Some(true), signals: &[] });
+    /// }
+    /// let words = assessor.finish().findings[0].words(&estimator);
+    /// assert_eq!(words.code, "motor_at_limit");
+    /// assert!(words.text.ends_with("The risk reached 95 %."), "{}", words.text);
+    /// # Ok::<(), flagred::monitor::MonitorError>(())
+    /// ```
+    pub fn words(&self, estimator: &Estimator) -> Words {
+        let Words {
+            code,
+            mut brief,
+            text,
+            advice,
+        } = match &self.cause {
+            Some(cause) => Words::of_cause(estimator, &cause.input, &cause.term),
+            None => Words::of_measure(self.measure),
+        };
+        let mut text = self.filled(&text);
+        if self.is_of_risk() {
+            if let (Some(_), Some(motor)) = (&self.cause, &self.motor) {
+                let limit = side(motor.side, "lower", "upper");
+                let number = motor.motor + 1;
+                brief = [format!("{limit} limit"), format!(", motor {number}")];
+                text += &format!(" Motor {number} was closest to its {limit} limit.");
+            }
+            text += &self.reached();
+        }
+        Words {
+            code,
+            brief: brief.map(|part| self.filled(&part)),
+            text,
+            advice: self.filled(&advice),
+        }
+    }
+
+    /// Whether it is about the risk, and not a finding beside it.
+    pub fn is_of_risk(&self) -> bool {
+        matches!(self.measure, Measure::Risk | Measure::ElevatedRisk)
+    }
+
+    /// ` The risk reached 93 %.`
+    fn reached(&self) -> String {
+        let of = match &self.risk {
+            Some(risk) => format!(" `{risk}`"),
+            None => String::new(),
+        };
+        format!(" The {}{of} reached {:.0} %.", self.measure, self.peak_pct)
+    }
+
+    /// A text with the finding's numbers in place of what stands in braces.
+    fn filled(&self, text: &str) -> String {
+        let mut text = text.to_string();
+        let mut fill = |name: &str, value: &dyn Fn() -> String| {
+            if text.contains(name) {
+                text = text.replace(name, &value());
+            }
+        };
+        if let Some(cause) = &self.cause {
+            fill("{percent}", &|| format!("{:.0}", 100.0 * cause.value));
+            fill("{value}", &|| number(cause.value));
+        }
+        fill("{peak}", &|| format!("{:.0}", self.peak_pct));
+        fill("{threshold}", &|| format!("{:.0}", self.threshold_pct));
+        let motor = self.motor.as_ref();
+        fill("{motor}", &|| {
+            motor.map_or_else(|| "a motor".into(), name_of)
+        });
+        fill("{side}", &|| {
+            let side = motor.map(|motor| side(motor.side, "below", "above"));
+            side.unwrap_or("beside").into()
+        });
+        text
+    }
+}
+
+impl Words {
+    /// The words about an input in a term, before `{value}` and `{percent}` are filled in.
+    pub fn of_cause(estimator: &Estimator, input: &str, term: &str) -> Words {
+        let mut known = estimator.profile().findings.iter();
+        if let Some(words) = known.find(|words| words.input == input) {
+            return Words {
+                code: words.code.clone(),
+                brief: [words.brief.clone(), String::new()],
+                text: words.text.clone(),
+                advice: words.advice.clone(),
+            };
+        }
+        let mut inputs = estimator.model().inputs.iter();
+        let variable = inputs.find(|variable| variable.name == input);
+        let unit = variable.and_then(|variable| variable.unit.as_deref());
+        let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+        let description = variable.and_then(first_phrase);
+        let description = description.map_or(String::new(), |phrase| format!(" ({phrase})"));
+        Words {
+            code: code(input),
+            brief: [input.into(), format!(" {term}")],
+            text: format!("{input} was {term}: {{value}}{unit}{description}."),
+            advice: "Reduce speed or land until the risk falls.".into(),
+        }
+    }
+
+    /// The words of a finding beside the risk, and of a risk that no rule raised, before numbers are filled in: `{peak}`,
+    /// `{threshold}`, `{motor}` and `{side}`.
+    pub fn of_measure(measure: Measure) -> Words {
+        let (code, brief, text, advice) = match measure {
+            Measure::Risk | Measure::ElevatedRisk => (
+                "risk_interpolated",
+                ["interpolated", ""],
+                "No rule applies to what the motors did, so the risk is interpolated between rules.",
+                "Reduce speed or land until the risk falls.",
+            ),
+            Measure::CommandNoise => (
+                "command_noise",
+                ["command noise {peak} %", ""],
+                "The motor commands are noisy, by {peak} % of their range: vibration, or gains that are too high.",
+                "This alone is not a danger. Check propellers, mounts and filters after the flight.",
+            ),
+            Measure::Reserve => (
+                "low_thrust_reserve",
+                ["thrust reserve {peak} %", ""],
+                "The motors ran close to full thrust: on average only {peak} % of their range was left, less than {threshold} %. \
+                 Gusts and climbs need that reserve.",
+                "Land soon. Fly with less payload or a fresh battery.",
+            ),
+            Measure::Imbalance => (
+                "imbalance",
+                ["imbalance {peak} %", ", {motor}"],
+                "The motors share the load differently from earlier in the flight, by {peak} % of their range. The motor to check \
+                 is {motor}, {side} its earlier share.",
+                "Land and check {motor}, and whether the load has shifted.",
+            ),
+            Measure::PairImbalance => (
+                "pair_imbalance",
+                ["pair imbalance {peak} %", ", {motor}"],
+                "The commands of two opposite motors differ by {peak} % of their range. The motor to check is {motor}, {side} the \
+                 motor opposite: it may be weak, or the load may be off centre.",
+                "Land and check {motor}, and the position of battery and payload.",
+            ),
+            Measure::WeakMotor => (
+                "weak_motor",
+                ["{motor} weak: +{peak} %", ""],
+                "The command of {motor} rose by {peak} % of its range, compared with the other motors: this motor gives less thrust \
+                 than before.",
+                "Land now. Check {motor}: propeller, motor, speed controller and wiring.",
+            ),
+            Measure::IdleInAir => (
+                "motors_idle_in_air",
+                ["motors idle in the air", ""],
+                "The motors idled while the autopilot reported that the vehicle was in the air: it fell.",
+                "Find out why the motors stopped before the next flight: kill switch, failsafe, power.",
+            ),
+        };
+        Words {
+            code: code.into(),
+            brief: brief.map(String::from),
+            text: text.into(),
+            advice: advice.into(),
+        }
+    }
+}
+
+/// `motor 3`, or `motor 3 or 8` where the commands do not show which.
+fn name_of(motor: &MotorFinding) -> String {
+    let or = motor.or.map(|or| format!(" or {}", or + 1));
+    format!("motor {}{}", motor.motor + 1, or.unwrap_or_default())
+}
+
+fn side(side: Side, low: &'static str, high: &'static str) -> &'static str {
+    match side {
+        Side::Low => low,
+        Side::High => high,
+    }
+}
+
+/// A number with at most 3 decimals.
+fn number(value: f64) -> String {
+    format!("{}", libm::round(value * 1e3) / 1e3 + 0.0)
+}
+
+/// A name as a code.
+fn code(name: &str) -> String {
+    let letter = |c: char| match c.to_ascii_lowercase() {
+        c if c.is_ascii_alphanumeric() => c,
+        _ => '_',
+    };
+    name.chars().map(letter).collect()
+}
+
+/// The description of an input up to its first comma, in small letters as inside a sentence.
+fn first_phrase(input: &Variable) -> Option<String> {
+    let description = input.description.as_deref()?;
+    let phrase = description.split([',', '.', ';']).next()?;
+    let mut letters = phrase.chars();
+    Some(match (letters.next(), letters.clone().next()) {
+        (Some(first), Some(second)) if !second.is_uppercase() => {
+            first.to_lowercase().chain(letters).collect()
+        }
+        _ => phrase.into(),
+    })
+}

@@ -1,0 +1,93 @@
+//! What a pilot reads where an input raised the risk: the key `findings` of a profile.
+
+use alloc::{format, string::String, vec::Vec};
+
+use fuzzy::{
+    diagnostic::Diagnostic,
+    tree::{Entry, Fields, Node},
+};
+
+use super::Found;
+use crate::profile::{CauseWords, ProfileInput};
+
+/// The longest brief in bytes: with the level and the elevated risk before it, it fits into a text of 50 characters.
+const LONGEST_BRIEF: usize = 20;
+
+/// What a text may hold in braces.
+const PLACEHOLDERS: [&str; 2] = ["percent", "value"];
+
+pub(super) fn findings(
+    fields: &Fields,
+    inputs: &[ProfileInput],
+    found: &mut Found,
+) -> Vec<CauseWords> {
+    let entries = fields
+        .get("findings")
+        .and_then(|node| node.entries("`findings`", "input", found));
+    let mut all = Vec::new();
+    for entry in entries.unwrap_or_default() {
+        // An input with a mistake has been told, and is not missing on top.
+        if found.is_empty() && !inputs.iter().any(|input| input.name == entry.key) {
+            let message = format!("the profile has no input `{}`", entry.key);
+            let names: Vec<&str> = inputs.iter().map(|input| input.name.as_str()).collect();
+            found.push(
+                Diagnostic::error("unknown-input", entry.key_span.clone(), message)
+                    .help(format!("its inputs are {}", names.join(", "))),
+            );
+        }
+        all.extend(words(&entry, found));
+    }
+    all
+}
+
+fn words(entry: &Entry, found: &mut Found) -> Option<CauseWords> {
+    let what = format!("finding `{}`", entry.key);
+    let keys = ["code", "brief", "text", "advice"];
+    let fields = entry.value.fields(&what, &keys, found)?;
+    let mut read = |key, check: fn(&Node, &str, &mut Found)| {
+        let help = format!("write `{key}`; docs/findings.md has examples");
+        let node = fields.require(key, &help, found)?;
+        let words = node.words(&format!("`{key}`"), found)?.text.clone();
+        check(node, &words, found);
+        Some(words)
+    };
+    Some(CauseWords {
+        input: entry.key.into(),
+        code: read("code", check_code)?,
+        brief: read("brief", check_brief)?,
+        text: read("text", check_placeholders)?,
+        advice: read("advice", check_placeholders)?,
+    })
+}
+
+fn refuse(node: &Node, message: String, help: String, found: &mut Found) {
+    found.push(Diagnostic::error("finding", node.span.clone(), message).help(help));
+}
+
+fn check_code(node: &Node, code: &str, found: &mut Found) {
+    let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    if code.is_empty() || !code.chars().all(is_letter) {
+        let message = format!("`{code}` is not a code");
+        let help = "write a word of small letters, digits and `_`, such as `sudden_change`";
+        refuse(node, message, help.into(), found);
+    }
+}
+
+fn check_brief(node: &Node, brief: &str, found: &mut Found) {
+    if brief.len() > LONGEST_BRIEF || !brief.is_ascii() {
+        let message = format!("`brief` takes at most {LONGEST_BRIEF} ASCII characters");
+        let help = "it is part of texts of 50 characters: write two or three short words";
+        refuse(node, message, help.into(), found);
+    }
+}
+
+fn check_placeholders(node: &Node, text: &str, found: &mut Found) {
+    for part in text.split('{').skip(1) {
+        let name = part.split_once('}').map(|(name, _)| name);
+        if !name.is_some_and(|name| PLACEHOLDERS.contains(&name)) {
+            let message = String::from("`{` does not begin a placeholder");
+            let help = "placeholders are `{value}`, the value of the input, and `{percent}`, 100 times that";
+            refuse(node, message, help.into(), found);
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! How often errors followed a risk: the key `reliability` of a profile.
+
+use alloc::{format, vec::Vec};
+
+use fuzzy::{
+    diagnostic::Diagnostic,
+    tree::{Fields, Node},
+};
+
+use super::Found;
+use crate::profile::{Followed, Reliability};
+
+pub(super) fn reliability(fields: &Fields, found: &mut Found) -> Vec<Reliability> {
+    let items = fields
+        .get("reliability")
+        .and_then(|node| node.items("`reliability`", found));
+    let mut rows: Vec<Reliability> = Vec::new();
+    for node in items.unwrap_or_default() {
+        let Some(row) = row(node, found) else {
+            continue;
+        };
+        if rows.last().is_some_and(|last| row.from_pct < last.to_pct) {
+            let message = "a row begins below the end of the previous row";
+            found.push(
+                Diagnostic::error("order", node.span.clone(), message)
+                    .help("order the rows by `risk`, without overlaps"),
+            );
+        }
+        rows.push(row);
+    }
+    rows
+}
+
+fn row(node: &Node, found: &mut Found) -> Option<Reliability> {
+    let what = "a row of `reliability`";
+    let fields = node.fields(what, &["risk", "real", "simulated"], found)?;
+    let help = "write `{risk: [60, 80], real: {moments: 889, followed: 759}}`";
+    let risk = fields.require("risk", help, found)?;
+    let [from_pct, to_pct] = pair(risk, found)?;
+    if !(0.0 <= from_pct && from_pct < to_pct && to_pct <= 100.0) {
+        let message = format!("`risk` is [{from_pct}, {to_pct}]");
+        found.push(
+            Diagnostic::error("out-of-range", risk.span.clone(), message)
+                .help("write a range within [0, 100], its lower end first"),
+        );
+    }
+    let mut count = |key| followed(&fields, key, found);
+    Some(Reliability {
+        from_pct,
+        to_pct,
+        real: count("real"),
+        simulated: count("simulated"),
+    })
+}
+
+fn pair(node: &Node, found: &mut Found) -> Option<[f64; 2]> {
+    let items = node.items("`risk`", found)?;
+    let [from, to] = items else {
+        found.push(
+            Diagnostic::error("wrong-type", node.span.clone(), "`risk` takes two numbers")
+                .help("write `risk: [60, 80]`"),
+        );
+        return None;
+    };
+    Some([from.finite("`risk`", found)?, to.finite("`risk`", found)?])
+}
+
+fn followed(fields: &Fields, key: &str, found: &mut Found) -> Option<Followed> {
+    let node = fields.get(key)?;
+    let fields = node.fields(&format!("`{key}`"), &["moments", "followed"], found)?;
+    let mut count = |key: &str| {
+        let help = format!("write `{key}`, a number of moments");
+        let node = fields.require(key, &help, found)?;
+        node.whole(&format!("`{key}`"), 0, found)
+    };
+    let counts = Followed {
+        moments: count("moments")?,
+        followed: count("followed")?,
+    };
+    if counts.followed > counts.moments {
+        let message = format!("`followed` is more than `moments` of `{key}`");
+        found.push(
+            Diagnostic::error("order", node.span.clone(), message)
+                .help("`followed` counts some of the `moments`"),
+        );
+    }
+    Some(counts)
+}
