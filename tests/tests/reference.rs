@@ -97,14 +97,16 @@ fn eventful(rate_hz: f64, length_s: f64, late_s: f64) -> Vec<Sample> {
 fn an_eventful_flight_is_what_the_documents_say() {
     let text = include_str!("../../rules/profiles/multirotor.yaml");
     let with_noise = text.replace("std_less_noise", "std");
-    // How long the vehicle is shaken before it lands, and the number of findings: a landing takes back a late one.
+    // How long the vehicle is shaken before it lands, and the number of findings: a landing takes back a late WARN.
     for (text, rate_hz, length_s, late_s, factors, findings) in [
         (text, 3.0, 100.0, 1.1, octa(), 3),
-        (text, 10.0, 100.0, 1.1, octa(), 2),
+        (text, 10.0, 100.0, 0.45, octa(), 2),
+        (text, 10.0, 100.0, 1.1, octa(), 3),
         (text, 10.0, 100.0, 2.8, octa(), 3),
-        (text, 10.0, 100.0, 1.1, vec![], 2),
-        (&with_noise, 10.0, 100.0, 1.1, octa(), 2),
-        (text, 60.0, 100.0, 1.1, octa(), 2),
+        (text, 10.0, 100.0, 1.1, vec![], 3),
+        (&with_noise, 10.0, 100.0, 1.1, octa(), 3),
+        (text, 60.0, 100.0, 0.45, octa(), 2),
+        (text, 60.0, 100.0, 1.1, octa(), 3),
         (text, 400.0, 24.0, 1.1, octa(), 1),
     ] {
         let samples = eventful(rate_hz, length_s, late_s);

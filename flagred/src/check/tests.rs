@@ -184,8 +184,8 @@ fn an_input_beside_the_motors_that_raises_no_level_alone_is_outvoted() {
     };
     let vote = "IF battery IS empty THEN risk IS very_high";
     let (reached, told) = found(vote, "{last: battery_remaining_pct}");
-    // By hand: 95 against 0.58 * 5, 0.41 * 5 and 0.58 * 5.
-    let expected = (95.0 + 7.85) / (1.0 + 1.57);
+    // By hand: 95 against 0.66 * 5, 0.33 * 25 and 0.66 * 5.
+    let expected = (95.0 + 14.85) / (1.0 + 1.65);
     assert!((reached.risk_pct - expected).abs() < 1e-9, "{reached:?}");
     assert_eq!(
         (reached.value, reached.term.as_deref()),

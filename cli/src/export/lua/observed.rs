@@ -201,11 +201,15 @@ impl Script {
         );
         filling.put(
             "clear_efforts",
-            each(&|axis| format!("  {axis}_effort = has_geometry and 0.0 or nil")),
+            each(&|axis| format!("  local {axis}, {axis}_share = 0.0, {axis}_share")),
         );
         filling.put(
             "add_efforts",
-            each(&|axis| format!("      {axis}_effort = {axis}_effort + {axis}_share[i] * e")),
+            each(&|axis| format!("      {axis} = {axis} + {axis}_share[i] * e")),
+        );
+        filling.put(
+            "set_efforts",
+            each(&|axis| format!("  {axis}_effort = has_geometry and {axis} or nil")),
         );
         filling.put(
             "forget_efforts",

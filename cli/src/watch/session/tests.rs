@@ -382,9 +382,9 @@ fn good_is_never_said_where_nothing_is_known() {
     bench.fly(50.0, 20.0, weak);
     assert!(bench.said().contains("motor 1 weak: +"), "{}", bench.said());
     bench.wait(6.0);
-    bench.fly(76.0, 1.0, weak);
+    bench.fly(76.0, 0.4, weak);
     assert_eq!(bench.said(), "FLAGRED: risk unknown, last level WARN");
-    bench.fly(77.0, 30.0, weak);
+    bench.fly(76.4, 30.6, weak);
     let before = bench.count(|event| matches!(event, Event::Level { .. }));
     // On the ground.
     bench.fly(107.0, 2.0, |_| [1000; 4]);

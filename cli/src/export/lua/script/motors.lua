@@ -69,6 +69,9 @@ function read_commands()
   local margin = margin
 -- @end
   local total = 0.0
+-- @if geometry
+  local has_geometry = has_geometry
+-- @end
 -- @put clear_efforts
   for i = 1, motors do
     local pwm = channels:get_output_pwm(functions[i])
@@ -98,10 +101,11 @@ function read_commands()
 -- @end
   end
   sum = total
+-- @put set_efforts
 -- @if less_yaw
-  local less_yaw, yaw_factor, yaw_effort = less_yaw, yaw_factor, yaw_effort
+  local less_yaw, yaw_factor = less_yaw, yaw_factor
   for i = 1, motors do
-    less_yaw[i] = yaw_effort and command[i] - yaw_factor[i] * yaw_effort or command[i]
+    less_yaw[i] = command[i] - (yaw_factor[i] or 0.0) * yaw
   end
 -- @end
 end
