@@ -261,7 +261,7 @@ const FLIGHTS: [(&str, usize, Option<Level>); 12] = [
     ("real/flights/dronekit_test_01.csv.gz", 4, Some(Level::Fail)),
     ("real/flights/crash_quad_05.csv.gz", 4, Some(Level::Fail)),
     ("real/flights/erle_pxf_b_05.csv.gz", 4, Some(Level::Fail)),
-    ("real/flights/px_3dr_hexa_01.csv.gz", 6, Some(Level::Warn)),
+    ("real/flights/px_3dr_hexa_01.csv.gz", 6, None),
     ("real/flights/rrc_quad_09.csv.gz", 4, None),
     ("real/flights/slung_load_02.csv.gz", 4, Some(Level::Fail)),
     ("sitl2/timeseries/f000.csv.gz", 8, None),

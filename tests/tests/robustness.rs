@@ -58,7 +58,7 @@ fn coarse_logs_wrong_limits_and_faults() {
                 every: 5,
                 ..AS_FLOWN
             },
-            0.89,
+            0.88,
             1.5,
         ),
         (
@@ -67,8 +67,8 @@ fn coarse_logs_wrong_limits_and_faults() {
                 every: 6,
                 ..AS_FLOWN
             },
-            0.89,
-            1.5,
+            0.88,
+            1.6,
         ),
         (
             "effective range 0.05 too low",
