@@ -201,7 +201,7 @@ return load_all, 1000
 -- 
 -- local PARAMETERS = {
 --   {"ENABLE", 1.0},
---   {"WARN", 60.0},
+--   {"WARN", 62.0},
 --   {"FAIL", 80.0},
 -- }
 -- 
@@ -455,7 +455,7 @@ return load_all, 1000
 -- -- `capacity` is the most slots in use at once.
 -- local function new_window(length_s, capacity)
 --   local window = {
---     length_us = floor(length_s * 1000000), needed_s = 0.99 * min(1000000 * 1e-6, length_s), capacity = capacity,
+--     length_us = floor(length_s * 1000000), needed_s = 0.99 * min(500000 * 1e-6, length_s), capacity = capacity,
 --     number = 0, phase = 0, -- the slot of the present, and 128 times the time into it
 --     oldest = 1, newest = 0, newest_number = nil, slots = 0, front = 0, middle = 0, back = 0, turning = 0, unturned = 0,
 --     samples = 0, start_us = 0, back_since_us = 0, is_full = false,
@@ -756,17 +756,17 @@ return load_all, 1000
 -- -- The corners of the terms of inputs: value, degree, value, degree and so on.
 -- local TERMS = {
 --   {0.0, 0.0, 0.35, 1.0}, -- at_limit much
---   {0.01, 0.0, 0.03, 1.0}, -- unsteady_now violent
+--   {0.01, 0.0, 0.036, 1.0}, -- unsteady_now violent
 --   {0.0, 1.0, 0.35, 0.0}, -- at_limit none
---   {0.008, 1.0, 0.012, 0.0}, -- unsteady_lately calm
---   {0.008, 0.0, 0.012, 1.0, 0.04, 0.0}, -- unsteady_lately gusty
+--   {0.006, 1.0, 0.012, 0.0}, -- unsteady_lately calm
+--   {0.006, 0.0, 0.012, 1.0, 0.04, 0.0}, -- unsteady_lately gusty
 --   {0.012, 0.0, 0.04, 1.0}, -- unsteady_lately stormy
 --   {0.0012, 1.0, 0.008, 0.0}, -- throttle_activity steady
 --   {0.0012, 0.0, 0.008, 1.0, 0.03, 0.0}, -- throttle_activity moving
 --   {0.008, 0.0, 0.03, 1.0}, -- throttle_activity surging
---   {0.05, 1.0, 0.3, 0.0}, -- swing_per_room small
---   {0.05, 0.0, 0.3, 1.0, 1.0, 0.0}, -- swing_per_room moderate
---   {0.3, 0.0, 1.0, 1.0}, -- swing_per_room large
+--   {0.03, 1.0, 0.25, 0.0}, -- swing_per_room small
+--   {0.03, 0.0, 0.25, 1.0, 1.0, 0.0}, -- swing_per_room moderate
+--   {0.25, 0.0, 1.0, 1.0}, -- swing_per_room large
 -- }
 -- local OUTPUT_TERMS = 5
 -- -- The areas of the output's terms, and their moments about the middle of its range.
@@ -796,24 +796,24 @@ return load_all, 1000
 --   fire(1, 5, d[1])
 --   -- IF unsteady_now IS violent AND at_limit IS none THEN risk IS very_high
 --   fire(2, 5, d[2] * d[3])
---   -- IF unsteady_lately IS calm AND at_limit IS none THEN risk IS very_low WITH 0.58
---   fire(3, 1, 0.58 * d[4] * d[3])
---   -- IF unsteady_lately IS gusty AND at_limit IS none THEN risk IS low WITH 0.58
---   fire(4, 2, 0.58 * d[5] * d[3])
---   -- IF unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_high WITH 0.58
---   fire(5, 5, 0.58 * d[6] * d[3])
---   -- IF throttle_activity IS steady AND at_limit IS none THEN risk IS very_low WITH 0.41
---   fire(6, 1, 0.41 * d[7] * d[3])
---   -- IF throttle_activity IS moving AND at_limit IS none THEN risk IS medium WITH 0.2
---   fire(7, 3, 0.2 * d[8] * d[3])
---   -- IF throttle_activity IS surging AND at_limit IS none THEN risk IS high WITH 0.41
---   fire(8, 4, 0.41 * d[9] * d[3])
---   -- IF swing_per_room IS small AND at_limit IS none THEN risk IS very_low WITH 0.58
---   fire(9, 1, 0.58 * d[10] * d[3])
---   -- IF swing_per_room IS moderate AND at_limit IS none THEN risk IS medium WITH 0.58
---   fire(10, 3, 0.58 * d[11] * d[3])
---   -- IF swing_per_room IS large AND at_limit IS none THEN risk IS very_high WITH 0.58
---   fire(11, 5, 0.58 * d[12] * d[3])
+--   -- IF unsteady_lately IS calm AND at_limit IS none THEN risk IS very_low WITH 0.66
+--   fire(3, 1, 0.66 * d[4] * d[3])
+--   -- IF unsteady_lately IS gusty AND at_limit IS none THEN risk IS low WITH 0.23
+--   fire(4, 2, 0.23 * d[5] * d[3])
+--   -- IF unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_high WITH 0.66
+--   fire(5, 5, 0.66 * d[6] * d[3])
+--   -- IF throttle_activity IS steady AND at_limit IS none THEN risk IS low WITH 0.33
+--   fire(6, 2, 0.33 * d[7] * d[3])
+--   -- IF throttle_activity IS moving AND at_limit IS none THEN risk IS high WITH 0.23
+--   fire(7, 4, 0.23 * d[8] * d[3])
+--   -- IF throttle_activity IS surging AND at_limit IS none THEN risk IS very_high WITH 0.46
+--   fire(8, 5, 0.46 * d[9] * d[3])
+--   -- IF swing_per_room IS small AND at_limit IS none THEN risk IS very_low WITH 0.66
+--   fire(9, 1, 0.66 * d[10] * d[3])
+--   -- IF swing_per_room IS moderate AND at_limit IS none THEN risk IS medium WITH 0.66
+--   fire(10, 3, 0.66 * d[11] * d[3])
+--   -- IF swing_per_room IS large AND at_limit IS none THEN risk IS very_high WITH 0.66
+--   fire(11, 5, 0.66 * d[12] * d[3])
 --   local area, moment = 0.0, 0.0
 --   for term = 1, OUTPUT_TERMS do
 --     area = area + strengths[term] * AREAS[term]
@@ -894,7 +894,7 @@ return load_all, 1000
 --   all = all and value[1]
 --   all = all and value[2]
 --   all = all and value[3]
---   value[4] = value[4] and value[3] and value[5] and (value[4] + value[3]) / max(value[5], 0.02)
+--   value[4] = value[4] and value[5] and value[4] / max(value[5], 0.02)
 --   all = all and value[4]
 --   all = all and value[5]
 --   all = all and value[6]
@@ -910,14 +910,14 @@ return load_all, 1000
 --   {5.0, 5.0, "fighting gusts", "", false}, -- 3
 --   {5.0, 25.0, "fighting gusts", "", false}, -- 4
 --   {5.0, 95.0, "fighting gusts", "", false}, -- 5
---   {5.0, 5.0, "thrust surges", "", false}, -- 6
---   {5.0, 50.0, "thrust surges", "", false}, -- 7
---   {5.0, 75.0, "thrust surges", "", false}, -- 8
+--   {5.0, 25.0, "thrust surges", "", false}, -- 6
+--   {5.0, 75.0, "thrust surges", "", false}, -- 7
+--   {5.0, 95.0, "thrust surges", "", false}, -- 8
 --   {5.0, 5.0, "low motor margin", "", false}, -- 9
 --   {5.0, 50.0, "low motor margin", "", false}, -- 10
 --   {5.0, 95.0, "low motor margin", "", false}, -- 11
 -- }
--- warn_risk, fail_risk = 60.0, 80.0 -- parameters may change them
+-- warn_risk, fail_risk = 62.0, 80.0 -- parameters may change them
 -- risk_level = 0 -- of the risk alone
 -- local reached_at = {} -- since when the thresholds of each level are reached
 -- local held_at = 0 -- when something last held the level
@@ -1344,7 +1344,7 @@ return load_all, 1000
 -- 
 -- -- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
 -- local function settle()
---   if not settled and flown_us >= 3000000 + 1000000 then
+--   if not settled and flown_us >= 3000000 + 500000 then
 --     settled, settling = true, 1
 --     if 3000000 > 0 then
 --       clear_elevated()
@@ -1435,7 +1435,7 @@ return load_all, 1000
 -- local function read_parameters()
 --   local enable = param:get("FRISK_ENABLE")
 --   is_enabled = enable == nil or enable > 0
---   warn_risk = param:get("FRISK_WARN") or 60.0
+--   warn_risk = param:get("FRISK_WARN") or 62.0
 --   fail_risk = param:get("FRISK_FAIL") or 80.0
 -- end
 -- 
