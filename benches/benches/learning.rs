@@ -2,10 +2,8 @@
 //! inputs with five terms each, and 51 cells along each of four inputs, 6.8 million in all.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use flagred::{
-    gap::{FilledMap, Filling, GapMethod, GapSettings},
-    learning::{Row, cross_validate},
-};
+use evaluation::learning::{Row, cross_validate};
+use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
 use flagred_benches::{four_inputs, points};
 use fuzzy::{
     Engine, Model,

@@ -4,27 +4,51 @@
 //! to. It is told in [`words`], as a [`Document`] for programs, as a picture ([`svg`]) and as a [`page`].
 
 mod alarms;
+mod announced;
+mod attitude;
+mod baseline;
+mod bootstrap;
+mod calm;
+mod complete;
+mod critical;
 mod document;
 mod estimators;
 mod files;
 mod flight;
+pub mod learning;
 pub mod page;
+mod random;
+mod ranking;
 pub mod recipe;
 mod rows;
 mod scores;
+mod span;
 pub mod svg;
 mod tables;
+mod upset;
 mod warnings;
 pub mod words;
 
 use serde::Serialize;
 
+pub use announced::{Answer, Judged, Warning, judge};
+pub use attitude::{risk_pct, rmse_deg};
+pub use baseline::{Baseline, BaselineObserver, PerMotor};
+pub use bootstrap::{Interval, bootstrap};
+pub use calm::calm_stretches;
+pub use complete::{Incomplete, complete, complete_options, header, judged_spans};
+pub use critical::ErrorRecord;
 pub use document::Document;
 pub use estimators::Estimators;
 pub use files::{Candidate, files};
 pub use flight::{Record, Unusable};
+pub use ranking::{
+    Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
+};
 pub use rows::{ERROR, Rows, cases};
 pub use scores::Case;
+pub use span::Span;
+pub use upset::{UpsetAlarm, upset_s};
 
 use alarms::Alarms;
 use scores::{APART, Evaluated};

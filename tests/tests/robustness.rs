@@ -2,12 +2,8 @@
 //!
 //! `FLAGRED_SHARED=... cargo test -p flagred-tests --test robustness -- --ignored --nocapture` prints the figures.
 
-use flagred::{
-    accumulator::Accumulator,
-    estimator::Estimator,
-    evaluation::{Prediction, Ranking},
-    shipped,
-};
+use evaluation::{Prediction, Ranking};
+use flagred::{accumulator::Accumulator, estimator::Estimator, shipped};
 use flagred_tests::{
     reference_data,
     simulated::{self, AS_FLOWN, Replay, Said, Simulated, on_all_cores},

@@ -1,9 +1,7 @@
 //! Rules from rows: `flagred.learn`.
 
-use flagred::{
-    gap::GapSettings,
-    learning::{self, Row},
-};
+use evaluation::learning::{self, Row};
+use flagred::gap::GapSettings;
 use fuzzy::{
     Engine, Model,
     check::counterexamples,

@@ -8,7 +8,7 @@ use std::{
     },
 };
 
-use flagred::learning::Row;
+use evaluation::learning::Row;
 use fuzzy::{Model, yaml};
 use pyo3::prelude::*;
 use tuning::{Data, Loss, Settings, TuneError, cross_validate};
