@@ -74,10 +74,8 @@ fn fill_a_map_of_51_to_the_4(bencher: Bencher<'_, '_>, method: GapMethod) {
         place % 3 != 0
     });
     let engine = Engine::new(&model).unwrap();
-    let settings = GapSettings {
-        method,
-        coverage_below: None,
-    };
+    let mut settings = GapSettings::default();
+    settings.method = method;
     bencher
         .counter(ItemsCount::new(51usize.pow(4)))
         .bench_local(|| {

@@ -30,10 +30,9 @@ impl Incomplete {
 /// What is read of a log to learn from it or to evaluate on it: the named signals, and the attitude.
 pub fn complete_options(names: &[&str]) -> Options {
     let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
-    Options {
-        signals: Some(wanted.collect()),
-        ..Options::default()
-    }
+    let mut options = Options::default();
+    options.signals = Some(wanted.collect());
+    options
 }
 
 /// Whether a flight can be learned from and evaluated on: with motors, attitude and times in the air, and nothing left out.

@@ -304,9 +304,11 @@ pub fn leave_one_rule_out(
     methods: &[GapMethod],
     coverage_below: Option<f64>,
 ) -> Result<GapComparison, ExamineError> {
-    let settings = |method| GapSettings {
-        method,
-        coverage_below,
+    let settings = |method| {
+        let mut settings = GapSettings::default();
+        settings.method = method;
+        settings.coverage_below = coverage_below;
+        settings
     };
     let mut with_it = Predictor::new(model, &settings(GapMethod::Nearest))?;
     let mut of_rule: BTreeMap<usize, Vec<&Row>> = BTreeMap::new();

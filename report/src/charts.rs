@@ -38,10 +38,9 @@ pub fn options(estimator: &Estimator, drawn: bool) -> Options {
         .map(str::to_owned)
         .collect();
     signals.sort_unstable();
-    Options {
-        signals: Some(signals),
-        ..Options::default()
-    }
+    let mut options = Options::default();
+    options.signals = Some(signals);
+    options
 }
 
 /// The scale of a percentage.

@@ -120,10 +120,8 @@ pub fn flights(data: &Path) -> Vec<Simulated> {
 }
 
 fn read(path: &Path) -> Simulated {
-    let options = flightlog::Options {
-        signals: Some(ATTITUDE.map(str::to_owned).to_vec()),
-        ..flightlog::Options::default()
-    };
+    let mut options = flightlog::Options::default();
+    options.signals = Some(ATTITUDE.map(str::to_owned).to_vec());
     let flight = flightlog::open(path, &options).unwrap();
     let said = |key: &str| {
         let found = flight.header.iter().find(|(k, _)| k == key);

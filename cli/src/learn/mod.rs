@@ -145,17 +145,17 @@ fn settings(arguments: &Arguments) -> Settings {
         check::Direction::Decreasing => (claim.input, Direction::Falling),
     };
     let monotone = arguments.rows.claims().into_iter().map(directed).collect();
-    Settings {
-        resolution: match arguments.resolve {
-            Resolve::Strongest => Resolution::Strongest,
-            Resolve::Heaviest => Resolution::Heaviest,
-            Resolve::Mean => Resolution::Mean,
-        },
-        min_support: arguments.min_support,
-        min_degree: arguments.min_degree,
-        complete: arguments.complete,
-        monotone,
-    }
+    let mut settings = Settings::default();
+    settings.resolution = match arguments.resolve {
+        Resolve::Strongest => Resolution::Strongest,
+        Resolve::Heaviest => Resolution::Heaviest,
+        Resolve::Mean => Resolution::Mean,
+    };
+    settings.min_support = arguments.min_support;
+    settings.min_degree = arguments.min_degree;
+    settings.complete = arguments.complete;
+    settings.monotone = monotone;
+    settings
 }
 
 /// Where the learned rules contradict `--rising` and `--falling`, as `flagred check --monotone` finds it.

@@ -254,11 +254,13 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
         Some(fill) => fill.method(),
         None => profile.map(|profile| profile.gap.method),
     };
-    let settings = |method| GapSettings {
-        method,
-        coverage_below: arguments
+    let settings = |method| {
+        let mut settings = GapSettings::default();
+        settings.method = method;
+        settings.coverage_below = arguments
             .coverage_below
-            .or(profile.and_then(|profile| profile.gap.coverage_below)),
+            .or(profile.and_then(|profile| profile.gap.coverage_below));
+        settings
     };
     let filling = method.map(|method| {
         let filling = Filling::new(&engine, &model, output, &settings(method));
