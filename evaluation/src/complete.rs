@@ -55,16 +55,20 @@ pub fn header<'a>(flight: &'a Flight, key: &str) -> Option<&'a str> {
     found.map(|(_, value)| value.as_str())
 }
 
-/// The judged time of a flight: from `judged_from_s` to `judged_to_s` of the header, else [`judged_span`] of each time in
-/// the air.
+/// The judged time that the header of a flight CSV gives: from `judged_from_s` to `judged_to_s`.
+pub fn judged_by_header(flight: &Flight) -> Option<Span> {
+    let number = |key| header(flight, key)?.parse().ok();
+    Some(Span {
+        from_s: number("judged_from_s")?,
+        to_s: number("judged_to_s")?,
+    })
+}
+
+/// The judged time of a flight: that of the header, else each time in the air without the first seconds after take-off and
+/// the last before landing.
 pub fn judged_spans(flight: &Flight, settings: &VerdictSettings) -> Vec<Span> {
-    let number = |key| header(flight, key).and_then(|text| text.parse::<f64>().ok());
-    if let (Some(from_s), Some(to_s)) = (number("judged_from_s"), number("judged_to_s")) {
-        let span = Span { from_s, to_s };
-        return Some(span)
-            .filter(|span| span.length_s() > 0.0)
-            .into_iter()
-            .collect();
+    if let Some(span) = judged_by_header(flight) {
+        return Vec::from_iter((span.length_s() > 0.0).then_some(span));
     }
     let air = flight.in_air.iter().flat_map(|air| &air.spans);
     air.filter_map(|span| {

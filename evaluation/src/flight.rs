@@ -13,7 +13,7 @@ use crate::{
     announced::{Judged, judge},
     baseline::BaselineObserver,
     calm::calm_stretches,
-    complete::{Incomplete, complete, complete_options, header, judged_spans},
+    complete::{Incomplete, complete, complete_options, header, judged_by_header, judged_spans},
     critical::ErrorRecord,
     estimators::Estimators,
     span::Span,
@@ -226,9 +226,7 @@ fn steps(flight: &Flight, upsets: &[Upset], errors: &ErrorRecord, horizon_s: f64
         quiet_after_take_off_s: FIRST_STEP_S,
         ..VerdictSettings::default()
     };
-    let header_says = ["judged_from_s", "judged_to_s"]
-        .iter()
-        .all(|key| header(flight, key).is_some());
+    let header_says = judged_by_header(flight).is_some();
     let is_upset = |t_s: f64| {
         let mut upsets = upsets.iter();
         !header_says && upsets.any(|upset| upset.air.contains(t_s) && t_s >= upset.t_s)

@@ -36,7 +36,9 @@ pub use attitude::{risk_pct, rmse_deg};
 pub use baseline::{Baseline, BaselineObserver, PerMotor};
 pub use bootstrap::{Interval, bootstrap};
 pub use calm::calm_stretches;
-pub use complete::{Incomplete, complete, complete_options, header, judged_spans};
+pub use complete::{
+    Incomplete, complete, complete_options, header, judged_by_header, judged_spans,
+};
 pub use critical::ErrorRecord;
 pub use document::Document;
 pub use estimators::Estimators;

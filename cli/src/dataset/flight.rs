@@ -1,6 +1,6 @@
 //! Rows from a flight log.
 
-use evaluation::{ErrorRecord, Span, header, judged_spans, risk_pct, rmse_deg};
+use evaluation::{ErrorRecord, Span, header, judged_by_header, judged_spans, risk_pct, rmse_deg};
 use flagred::{estimator::Estimator, log, monitor::Monitor, profile::Profile, sample::Unknown};
 use flightlog::{Attitude, Flight};
 use fuzzy::{
@@ -96,15 +96,14 @@ fn parts(flight: &Flight, plan: &Plan) -> Vec<Part> {
         let parts = judged.into_iter().map(|span| Part { air_s: span, span });
         return parts.collect();
     };
-    let number = |key| header(flight, key).and_then(|text| text.parse::<f64>().ok());
-    let judged_s = number("judged_from_s").zip(number("judged_to_s"));
+    let judged = judged_by_header(flight);
     let air = flight.in_air.iter().flat_map(|air| &air.spans);
     let parts = air.map(|air| {
         let (from_s, to_s) = (air.start_s, air.end_s);
-        let span = match judged_s {
-            Some((judged_from_s, judged_to_s)) => Span {
-                from_s: judged_from_s.max(from_s),
-                to_s: judged_to_s.min(to_s),
+        let span = match judged {
+            Some(judged) => Span {
+                from_s: judged.from_s.max(from_s),
+                to_s: judged.to_s.min(to_s),
             },
             None => Span {
                 from_s: from_s + AFTER_TAKE_OFF_S,
