@@ -1,7 +1,12 @@
 //! How good are the risks of profiles, beside predictors that need no rules?
 //!
-//! A [`Record`] is a flight with what each of the [`Estimators`] said at every step; an [`Evaluation`] is what many of them come
-//! to. It is told in [`words`], as a [`Document`] for programs, as a picture ([`svg`]) and as a [`page`].
+//! A *step* is a time of a flight with the scores of the [`Estimators`]: the risks of profiles, and the [`Baseline`]s. It is
+//! critical where the attitude error, root mean square over a second, exceeds 5 degrees within a horizon after it
+//! ([`ErrorRecord`]). An estimator is measured by how well it ranks critical steps above the others ([`Ranking`]), how often a risk
+//! of so many percent became critical ([`reliability`]), and which episodes its warnings announce ([`judge`]).
+//!
+//! A [`Record`] is a flight with its steps; an [`Evaluation`] has the measures over many of them, as text ([`words`]), as a
+//! [`Document`] for programs, as a picture ([`svg`]) and as a [`page`]. [`learning`] measures the errors of learned rules.
 
 mod alarms;
 mod announced;
