@@ -2,10 +2,8 @@
 //! inputs with five terms each, and 51 cells along each of four inputs, 6.8 million in all.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use flagred::{
-    gap::{FilledMap, Filling, GapMethod, GapSettings},
-    learning::{Row, cross_validate},
-};
+use evaluation::learning::{Row, cross_validate};
+use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
 use flagred_benches::{four_inputs, points};
 use fuzzy::{
     Engine, Model,
@@ -76,10 +74,8 @@ fn fill_a_map_of_51_to_the_4(bencher: Bencher<'_, '_>, method: GapMethod) {
         place % 3 != 0
     });
     let engine = Engine::new(&model).unwrap();
-    let settings = GapSettings {
-        method,
-        coverage_below: None,
-    };
+    let mut settings = GapSettings::default();
+    settings.method = method;
     bencher
         .counter(ItemsCount::new(51usize.pow(4)))
         .bench_local(|| {

@@ -8,7 +8,7 @@ use flagred::{
     log::assess,
     verdict::Level,
 };
-use flightlog::{Flight, Options, ReadError};
+use flightlog::{Flight, ReadError};
 
 use report::{
     document,
@@ -97,10 +97,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let html = files.optional(arguments.html.as_ref())?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let reports = html.is_some() || svg.is_some();
-    let options = Options {
-        range: arguments.range.given()?,
-        ..report::options(estimator, reports)
-    };
+    let mut options = report::options(estimator, reports);
+    options.range = arguments.range.given()?;
     let mut subjects = Vec::new();
     let documents: Vec<&Output> = html.iter().chain(&svg).collect();
     let mut out = Stdout::beside(&documents);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use flagred::log;
+use evaluation::{complete, complete_options};
 use flightlog::Flight;
 
 use crate::failure::Failure;
@@ -18,8 +18,8 @@ pub(crate) fn open_complete(
     cannot: &str,
 ) -> Result<Flight, Failure> {
     let path = path.as_ref();
-    let flight = flightlog::open(path, &log::complete_options(names))?;
-    log::complete(&flight).map_err(|lacks| {
+    let flight = flightlog::open(path, &complete_options(names))?;
+    complete(&flight).map_err(|lacks| {
         let failure = Failure::unreadable(format!("`{}` {cannot}: {lacks}", path.display()));
         failure.help_if(lacks.help())
     })?;

@@ -150,7 +150,6 @@ pub(crate) const MAP: &str = "\
 Examples:
   flagred map my-rules.yaml
   flagred map my-rules.yaml --svg map.svg
-  flagred map my-rules.yaml --surface
   flagred map my-rules.yaml --surface --svg surface.svg
   flagred map my-rules.yaml --activations        the dominant rule of each cell
   flagred map my-rules.yaml --fix battery=20 --x margin:0..0.3 --y spread

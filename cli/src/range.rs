@@ -31,9 +31,8 @@ impl RangeArgument {
 
     /// Options that read a log whole, with the given range.
     pub(crate) fn options(&self) -> Result<Options, Failure> {
-        Ok(Options {
-            range: self.given()?,
-            ..Options::default()
-        })
+        let mut options = Options::default();
+        options.range = self.given()?;
+        Ok(options)
     }
 }

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, path::PathBuf};
 
 use clap::ValueEnum;
-use flagred::learning::Row;
+use evaluation::learning::Row;
 use fuzzy::{
     Model,
     check::{Direction, Monotone},

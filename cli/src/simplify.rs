@@ -54,11 +54,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     rule_set::compile(&document, &name, &text)?;
     let model = document.model;
     let (rows, refused) = rows(arguments, &model)?;
-    let settings = SimplifySettings {
-        tolerance: arguments.tolerance,
-        rows_only: arguments.rows_only,
-        seed: arguments.seed,
-    };
+    let mut settings = SimplifySettings::default();
+    settings.tolerance = arguments.tolerance;
+    settings.rows_only = arguments.rows_only;
+    settings.seed = arguments.seed;
     let simplified = simplify(&model, &rows, &settings).map_err(|error| {
         let help = match error {
             SimplifyError::NoRows => {

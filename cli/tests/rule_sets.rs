@@ -224,13 +224,6 @@ fn plot_draws_the_terms_and_the_curve_of_one_input() {
 }
 
 #[test]
-fn a_surface_is_drawn_on_a_terminal_too() {
-    let (output, text) = flagred(&["map", "tipper.yaml", "--surface"], "");
-    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
-    insta::assert_snapshot!(text);
-}
-
-#[test]
 fn explain_asks_for_what_is_missing() {
     for (arguments, said) in [
         (&["margin=0.1"][..], "input `spread` has no value"),

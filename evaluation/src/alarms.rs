@@ -4,16 +4,15 @@
 
 use std::collections::BTreeMap;
 
-use flagred::{
-    evaluation::{Interval, Span, UpsetAlarm, bootstrap},
-    verdict::Level,
-};
-
+use flagred::verdict::Level;
 use serde::Serialize;
 
 use crate::{
+    bootstrap::{Interval, bootstrap},
     flight::{Record, Said},
     scores::{APART, RESAMPLES, SEED, median},
+    span::Span,
+    upset::UpsetAlarm,
 };
 
 /// The alarms of a profile over all flights but the kind apart, and over each kind.

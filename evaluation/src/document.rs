@@ -2,14 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use flagred::evaluation::{Answer, Band, Interval, Span, Warning};
 use serde::Serialize;
 
 use crate::{
     Evaluation, LeftOut,
     alarms::{Alarms, Figure, Needless, Upsets},
+    announced::{Answer, Warning},
+    bootstrap::Interval,
     flight::{Record, Said},
+    ranking::Band,
     scores::{Evaluated, Scores},
+    span::Span,
     warnings::Warnings,
 };
 

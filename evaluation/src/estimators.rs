@@ -1,8 +1,10 @@
 //! Who is compared: the profiles, and the baselines that need no rules.
 
-use flagred::{estimator::Estimator, evaluation::Baseline};
+use flagred::estimator::Estimator;
 
-/// All that are compared: profiles first, then the baselines of [`flagred::evaluation::Baseline::all`].
+use crate::baseline::Baseline;
+
+/// All that are compared: profiles first, then the baselines of [`crate::Baseline::all`].
 pub struct Estimators {
     pub(crate) profiles: Vec<Named>,
     pub(crate) baselines: [Baseline; 9],

@@ -3,16 +3,22 @@
 use std::path::Path;
 
 use flagred::{
-    attitude::Attitude,
-    evaluation::{BaselineObserver, ErrorRecord, Judged, Span, calm_stretches, judge, upset_s},
-    flight::Finding,
-    flight::{Assessor, Verdict},
-    log::{self, Incomplete},
+    flight::{Assessor, Finding, Verdict},
+    log,
     verdict::{Level, VerdictSettings},
 };
-use flightlog::{Flight, ReadError};
+use flightlog::{Attitude, Flight, ReadError};
 
-use crate::estimators::Estimators;
+use crate::{
+    announced::{Judged, judge},
+    baseline::BaselineObserver,
+    calm::calm_stretches,
+    complete::{Incomplete, complete, complete_options, header, judged_by_header, judged_spans},
+    critical::ErrorRecord,
+    estimators::Estimators,
+    span::Span,
+    upset::upset_s,
+};
 
 /// How far apart steps are, in seconds.
 const STEP_S: f64 = 0.5;
@@ -119,7 +125,7 @@ impl Record {
     /// # Errors
     /// A file that cannot be read or is no flight log, and as [`Record::new`].
     pub fn read(path: &Path, estimators: &Estimators, horizon_s: f64) -> Result<Record, Unusable> {
-        let flight = flightlog::open(path, &log::complete_options(&estimators.signals()))?;
+        let flight = flightlog::open(path, &complete_options(&estimators.signals()))?;
         Record::new(&path.display().to_string(), &flight, estimators, horizon_s)
     }
 
@@ -133,12 +139,13 @@ impl Record {
         estimators: &Estimators,
         horizon_s: f64,
     ) -> Result<Record, Unusable> {
-        log::complete(flight).map_err(|lacks| Unusable::Incomplete {
+        complete(flight).map_err(|lacks| Unusable::Incomplete {
             name: name.to_owned(),
             lacks,
         })?;
-        let header = |key| log::header(flight, key).map(str::to_owned);
-        let attitudes: Vec<(f64, Attitude)> = log::attitudes(flight)
+        let named = |key| header(flight, key).map(str::to_owned);
+        let attitudes: Vec<(f64, Attitude)> = flight
+            .attitudes()
             .filter(|(t_s, _)| flight.is_in_air(*t_s) == Some(true))
             .collect();
         let errors = ErrorRecord::new(attitudes.iter().copied());
@@ -170,15 +177,15 @@ impl Record {
             .filter_map(|air| air.spans.last())
             .find(|span| span.ends_with_log)
             .map(|span| span.end_s);
-        let judged = log::judged_spans(flight, &VerdictSettings::default());
+        let judged = judged_spans(flight, &VerdictSettings::default());
         let said = warned.into_iter().map(|(mut said, warnings)| {
             said.judged = judge(&warnings, errors.episodes(), &judged, lost_s);
             said
         });
         Ok(Record {
             file: name.to_owned(),
-            vehicle: flight.vehicle.id.clone().or_else(|| header("vehicle")),
-            kind: header("kind").unwrap_or_else(|| "unnamed".to_owned()),
+            vehicle: flight.vehicle.id.clone().or_else(|| named("vehicle")),
+            kind: named("kind").unwrap_or_else(|| "unnamed".to_owned()),
             judged_s: judged.iter().map(Span::length_s).sum(),
             largest_error_deg: errors.largest_deg(),
             largest_tilt_deg: attitudes
@@ -219,14 +226,12 @@ fn steps(flight: &Flight, upsets: &[Upset], errors: &ErrorRecord, horizon_s: f64
         quiet_after_take_off_s: FIRST_STEP_S,
         ..VerdictSettings::default()
     };
-    let header_says = ["judged_from_s", "judged_to_s"]
-        .iter()
-        .all(|key| log::header(flight, key).is_some());
+    let header_says = judged_by_header(flight).is_some();
     let is_upset = |t_s: f64| {
         let mut upsets = upsets.iter();
         !header_says && upsets.any(|upset| upset.air.contains(t_s) && t_s >= upset.t_s)
     };
-    let spans = log::judged_spans(flight, &settings);
+    let spans = judged_spans(flight, &settings);
     let times = spans.iter().flat_map(step_times);
     times
         .filter(|t_s| !is_upset(*t_s))

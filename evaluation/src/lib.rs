@@ -1,30 +1,61 @@
 //! How good are the risks of profiles, beside predictors that need no rules?
 //!
-//! A [`Record`] is a flight with what each of the [`Estimators`] said at every step; an [`Evaluation`] is what many of them come
-//! to. It is told in [`words`], as a [`Document`] for programs, as a picture ([`svg`]) and as a [`page`].
+//! A *step* is a time of a flight with the scores of the [`Estimators`]: the risks of profiles, and the [`Baseline`]s. It is
+//! critical where the attitude error, root mean square over a second, exceeds 5 degrees within a horizon after it
+//! ([`ErrorRecord`]). An estimator is measured by how well it ranks critical steps above the others ([`Ranking`]), how often a risk
+//! of so many percent became critical ([`reliability`]), and which episodes its warnings announce ([`judge`]).
+//!
+//! A [`Record`] is a flight with its steps; an [`Evaluation`] has the measures over many of them, as text ([`words`]), as a
+//! [`Document`] for programs, as a picture ([`svg`]) and as a [`page`]. [`learning`] measures the errors of learned rules.
 
 mod alarms;
+mod announced;
+mod attitude;
+mod baseline;
+mod bootstrap;
+mod calm;
+mod complete;
+mod critical;
 mod document;
 mod estimators;
 mod files;
 mod flight;
+pub mod learning;
 pub mod page;
+mod random;
+mod ranking;
 pub mod recipe;
 mod rows;
 mod scores;
+mod span;
 pub mod svg;
 mod tables;
+mod upset;
 mod warnings;
 pub mod words;
 
 use serde::Serialize;
 
+pub use announced::{Answer, Judged, Warning, judge};
+pub use attitude::{risk_pct, rmse_deg};
+pub use baseline::{Baseline, BaselineObserver, PerMotor};
+pub use bootstrap::{Interval, bootstrap};
+pub use calm::calm_stretches;
+pub use complete::{
+    Incomplete, complete, complete_options, header, judged_by_header, judged_spans,
+};
+pub use critical::ErrorRecord;
 pub use document::Document;
 pub use estimators::Estimators;
 pub use files::{Candidate, files};
 pub use flight::{Record, Unusable};
+pub use ranking::{
+    Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
+};
 pub use rows::{ERROR, Rows, cases};
 pub use scores::Case;
+pub use span::Span;
+pub use upset::{UpsetAlarm, upset_s};
 
 use alarms::Alarms;
 use scores::{APART, Evaluated};

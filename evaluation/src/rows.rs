@@ -1,8 +1,9 @@
 //! Whole flights under evaluation: a table with a row for each.
 
-use flagred::{attitude::CRITICAL_ERROR_DEG, evaluation::Baseline, source::Source};
+use flagred::{profile::CRITICAL_ERROR_DEG, source::Source};
 
 use crate::{
+    baseline::Baseline,
     estimators::Estimators,
     recipe::{Recipe, recipe},
     scores::Case,

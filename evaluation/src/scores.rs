@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use flagred::evaluation::{
+use rayon::prelude::*;
+
+use crate::ranking::{
     Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
 };
-use rayon::prelude::*;
 
 /// The kind of flight that is reported apart: its attitude errors are real, but commanded.
 pub(crate) const APART: &str = "manoeuvre";

@@ -1,9 +1,8 @@
 //! The evaluation as a picture: the ROC curve of every estimator, and the reliability of risks.
 
-use flagred::evaluation::Band;
 use fuzzy::drawing::{Colour, Plot, Scale, Series, plots_svg};
 
-use crate::{Evaluation, scores::Evaluated};
+use crate::{Evaluation, ranking::Band, scores::Evaluated};
 
 /// Draws an evaluation.
 pub fn draw(evaluation: &Evaluation) -> String {
@@ -65,7 +64,7 @@ fn point(band: &Band) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use flagred::evaluation::{Prediction, Ranking, reliability};
+    use crate::{Prediction, Ranking, reliability};
 
     use super::*;
     use crate::scores::Scores;

@@ -1,10 +1,10 @@
 //! What the warnings of a profile are worth, over many flights.
 
-use flagred::evaluation::Judged;
 use serde::Serialize;
 
 use crate::{
     alarms::kinds,
+    announced::Judged,
     flight::Record,
     scores::{APART, median},
 };

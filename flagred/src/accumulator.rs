@@ -14,7 +14,7 @@
 
 use crate::{moments::Moments, window::Window};
 
-/// The parameters of an [`Accumulator`].
+/// The parameters of the elevated risk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AccumulatorSettings {
     /// Over how many seconds the risks are pooled.
@@ -42,30 +42,9 @@ impl Default for AccumulatorSettings {
     }
 }
 
-/// The elevated risk, in % from 0 to 100, sample by sample.
-///
-/// # Example: two seconds of high risk
-///
-/// ```
-/// use flagred::accumulator::{Accumulator, AccumulatorSettings};
-///
-/// let mut accumulator = Accumulator::new(AccumulatorSettings {
-///     window_s: 1.0, high_pct: 70.0, low_pct: 40.0, rise_pct_per_s: 25.0, fall_pct_per_s: 10.0,
-/// });
-/// for i in 1..=50 {
-///     accumulator.push(f64::from(i) * 0.04, 0.04, 90.0);
-/// }
-/// assert!((accumulator.elevated_risk_pct() - 50.0).abs() < 1e-9);
-/// ```
+/// The elevated risk, in % from 0 to 100, sample by sample. The window of risks is in the caller's memory.
 #[derive(Debug, Clone)]
-pub struct Accumulator {
-    sum: RunningSum,
-    risks: Window,
-}
-
-/// The elevated risk without the window of risks that it is made of.
-#[derive(Debug, Clone)]
-pub(crate) struct RunningSum {
+pub(crate) struct Accumulator {
     settings: AccumulatorSettings,
     elevated_pct: f64,
     /// Risk in % and rate in % per second at the last sample; between two samples both are taken as straight lines,
@@ -74,73 +53,8 @@ pub(crate) struct RunningSum {
 }
 
 impl Accumulator {
-    /// An accumulator at 0 %.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::accumulator::{Accumulator, AccumulatorSettings};
-    ///
-    /// let accumulator = Accumulator::new(AccumulatorSettings::default());
-    /// assert_eq!(accumulator.elevated_risk_pct(), 0.0);
-    /// ```
-    pub const fn new(settings: AccumulatorSettings) -> Accumulator {
+    pub(crate) const fn new(settings: AccumulatorSettings) -> Accumulator {
         Accumulator {
-            risks: Window::new(settings.window_s),
-            sum: RunningSum::new(settings),
-        }
-    }
-
-    /// Forgets everything and starts at 0 % again.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::accumulator::{Accumulator, AccumulatorSettings};
-    ///
-    /// let mut accumulator = Accumulator::new(AccumulatorSettings::default());
-    /// accumulator.push(1.0, 1.0, 90.0);
-    /// accumulator.clear();
-    /// assert_eq!(accumulator.elevated_risk_pct(), 0.0);
-    /// ```
-    pub fn clear(&mut self) {
-        self.sum.clear(&mut self.risks);
-    }
-
-    /// Adds the risk at `t_s`, which stood for the `held_s` seconds before; gives the elevated risk in %.
-    ///
-    /// # Example: ten seconds at 90 %, ten at nothing
-    /// ```
-    /// use flagred::accumulator::{Accumulator, AccumulatorSettings};
-    ///
-    /// let mut accumulator = Accumulator::new(AccumulatorSettings::default());
-    /// let after_10_s = (1..=10).map(|t_s| accumulator.push(f64::from(t_s), 1.0, 90.0)).last();
-    /// assert_eq!(after_10_s, Some(15.0)); // 1.5 % a second
-    /// let after_20_s = (11..=20).map(|t_s| accumulator.push(f64::from(t_s), 1.0, 0.0)).last();
-    /// assert!(after_20_s > Some(10.0), "it falls only as the high risks leave its window");
-    /// ```
-    pub fn push(&mut self, t_s: f64, held_s: f64, risk_pct: f64) -> f64 {
-        self.sum.push(&mut self.risks, (t_s, held_s), risk_pct)
-    }
-
-    /// The elevated risk in %.
-    ///
-    /// # Example: never over 100 %
-    /// ```
-    /// use flagred::accumulator::{Accumulator, AccumulatorSettings};
-    ///
-    /// let mut accumulator = Accumulator::new(AccumulatorSettings::default());
-    /// for t_s in 1..=120 {
-    ///     accumulator.push(f64::from(t_s), 1.0, 90.0);
-    /// }
-    /// assert_eq!(accumulator.elevated_risk_pct(), 100.0);
-    /// ```
-    pub fn elevated_risk_pct(&self) -> f64 {
-        self.sum.elevated_pct
-    }
-}
-
-impl RunningSum {
-    pub(crate) const fn new(settings: AccumulatorSettings) -> RunningSum {
-        RunningSum {
             settings,
             elevated_pct: 0.0,
             last: None,
@@ -153,7 +67,7 @@ impl RunningSum {
         self.last = None;
     }
 
-    /// [`Accumulator::push`] with the window of risks.
+    /// Adds the risk at `t_s`, which stood for the `held_s` seconds before; returns the elevated risk in %.
     pub(crate) fn push(
         &mut self,
         risks: &mut Window,
@@ -226,34 +140,42 @@ mod tests {
 
     #[test]
     fn it_rises_holds_falls_and_stays_within_0_and_100() {
-        let mut accumulator = Accumulator::new(SETTINGS);
+        let (mut accumulator, mut risks) = (Accumulator::new(SETTINGS), Window::new(5.0));
         let mut t_s = 0.0;
-        let mut hold = |accumulator: &mut Accumulator, risk: f64, seconds: usize| {
+        let mut hold = |accumulator: &mut Accumulator, risks: &mut Window, risk: f64, seconds| {
             let mut elevated = 0.0;
             for _ in 0..seconds * 25 {
                 t_s += 0.04;
-                elevated = accumulator.push(t_s, 0.04, risk);
+                elevated = accumulator.push(risks, (t_s, 0.04), risk);
             }
             elevated
         };
-        approx::assert_abs_diff_eq!(hold(&mut accumulator, 90.0, 4), 40.0, epsilon = 1e-9);
-        approx::assert_abs_diff_eq!(hold(&mut accumulator, 90.0, 60), 100.0, epsilon = 1e-9);
-        accumulator.clear();
-        assert_eq!(accumulator.elevated_risk_pct(), 0.0);
-        assert_eq!(hold(&mut accumulator, 50.0, 60), 0.0);
-        assert_eq!(hold(&mut accumulator, 0.0, 60), 0.0);
+        approx::assert_abs_diff_eq!(
+            hold(&mut accumulator, &mut risks, 90.0, 4),
+            40.0,
+            epsilon = 1e-9
+        );
+        approx::assert_abs_diff_eq!(
+            hold(&mut accumulator, &mut risks, 90.0, 60),
+            100.0,
+            epsilon = 1e-9
+        );
+        accumulator.clear(&mut risks);
+        assert_eq!(accumulator.elevated_pct, 0.0);
+        assert_eq!(hold(&mut accumulator, &mut risks, 50.0, 60), 0.0);
+        assert_eq!(hold(&mut accumulator, &mut risks, 0.0, 60), 0.0);
     }
 
     #[test]
     fn it_does_not_depend_on_the_sample_rate() {
         // A risk that swings slowly, seen at 1, 10, 25 and 400 Hz.
         let run = |rate: u32| {
-            let mut accumulator = Accumulator::new(SETTINGS);
+            let (mut accumulator, mut risks) = (Accumulator::new(SETTINGS), Window::new(5.0));
             let dt = 1.0 / f64::from(rate);
             let seconds = |i: u32| f64::from(i) * dt;
             let samples = (1..=120 * rate).map(|i| {
                 let risk = 50.0 + 45.0 * (seconds(i) / 8.0).sin();
-                (i, accumulator.push(seconds(i), dt, risk))
+                (i, accumulator.push(&mut risks, (seconds(i), dt), risk))
             });
             let whole_seconds = samples.filter(|(i, _)| i % rate == 0);
             whole_seconds

@@ -4,12 +4,11 @@ use alloc::{collections::VecDeque, vec::Vec};
 
 use crate::{
     estimator::Estimator,
-    evaluation::Span,
     margin::margin,
     monitor::{Craft, Monitor, MonitorError, Sample, Unknown, Update},
     motor::counted,
     profile::Profile,
-    verdict::{Ended, Level, VerdictSettings},
+    verdict::{Ended, Level},
 };
 
 mod assessment;
@@ -44,21 +43,6 @@ const PENDING_S: f64 = 1e-4;
 
 /// A motor with a smaller margin counts as saturated.
 const SATURATED_MARGIN: f64 = 0.005;
-
-/// The judged part of a time in the air: without the first seconds after take-off and the last before landing.
-///
-/// `None` where nothing is left. A flight that ends with its log in the air has no landing.
-pub fn judged_span(air: Span, ends_with_log: bool, settings: &VerdictSettings) -> Option<Span> {
-    let before_landing_s = match ends_with_log {
-        true => 0.0,
-        false => settings.quiet_before_landing_s,
-    };
-    let judged = Span {
-        from_s: air.from_s + settings.quiet_after_take_off_s,
-        to_s: air.to_s - before_landing_s,
-    };
-    (judged.length_s() > 0.0).then_some(judged)
-}
 
 /// Whether two reasons are the same but for their numbers.
 fn is_same(a: &Unknown, b: &Unknown) -> bool {

@@ -1,7 +1,7 @@
 //! A flight, sample by sample, in memory that the caller lends: what every monitor does.
 
 use crate::{
-    accumulator::{AccumulatorSettings, RunningSum},
+    accumulator::{Accumulator, AccumulatorSettings},
     cause::{Cause, is_of_limits},
     channel::{Channel, Input, Now, Seen, push, reads_motors, value},
     motor::{self, Bin, Motor},
@@ -25,7 +25,7 @@ pub struct Settings {
 #[derive(Debug, Clone)]
 pub(crate) struct Follower {
     settings: Settings,
-    sum: RunningSum,
+    sum: Accumulator,
     alert: Alert,
     notices: Notices,
     bin: Bin,
@@ -113,7 +113,7 @@ impl Feed<'_> {
 impl Follower {
     pub(crate) const fn new(settings: Settings) -> Follower {
         Follower {
-            sum: RunningSum::new(settings.elevated_risk),
+            sum: Accumulator::new(settings.elevated_risk),
             alert: Alert::new(settings.verdict),
             notices: Notices::new(settings.verdict.notices),
             bin: Bin::NONE,

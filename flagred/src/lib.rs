@@ -6,7 +6,6 @@
 //!   allocator.
 //! - [`shipped`]: the profiles and rule sets that come with the crate; [`profile::Profile`] and [`estimator::Estimator`]
 //!   make others usable; `loaded::load` (feature `flightlog`) reads both.
-//! - [`evaluation`], [`learning`]: how good a risk is, and rules from flights.
 //!
 //! ```
 //! use flagred::{flight::{Assessor, Verdict}, monitor::{Craft, Sample}, shipped, verdict::Level};
@@ -28,8 +27,6 @@
 extern crate alloc;
 
 pub mod accumulator;
-#[cfg(feature = "std")]
-pub mod attitude;
 mod average;
 pub mod board;
 mod cause;
@@ -42,16 +39,12 @@ mod craft;
 mod effort;
 #[cfg(feature = "std")]
 pub mod estimator;
-#[cfg(feature = "std")]
-pub mod evaluation;
 mod exponential;
 #[cfg(feature = "std")]
 pub mod flight;
 #[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.
 pub mod follower;
 pub mod gap;
-#[cfg(feature = "std")]
-pub mod learning;
 #[cfg(feature = "flightlog")]
 pub mod loaded;
 #[cfg(feature = "flightlog")]

@@ -32,11 +32,13 @@ pub struct Loaded {
 }
 
 /// Why a profile cannot be used. `E` is why a file cannot be read.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum LoadError<E> {
     /// The profile cannot be read.
+    #[error("{0}")]
     Read(E),
     /// A text has errors.
+    #[error("`{file}` cannot be used:\n{findings}")]
     Findings {
         /// Its file.
         file: String,
@@ -46,6 +48,7 @@ pub enum LoadError<E> {
         findings: Findings,
     },
     /// A file is something else, is missing, or lies where it may not be.
+    #[error("{message}")]
     Unusable {
         /// Which, and why.
         message: String,
@@ -86,9 +89,9 @@ impl<E> LoadError<E> {
 /// ```
 /// use flagred::loaded::load;
 ///
-/// let loaded = load("flagred", |path| std::fs::read_to_string(path)).map_err(|_| "no profile")?;
+/// let loaded = load("flagred", |path| std::fs::read_to_string(path))?;
 /// assert_eq!(loaded.estimator.profile().name, "flagred");
-/// # Ok::<(), &str>(())
+/// # Ok::<(), flagred::loaded::LoadError<std::io::Error>>(())
 /// ```
 pub fn load<E>(
     name: &str,
@@ -159,6 +162,7 @@ fn finish<E>(
 
 /// The findings about the text of a profile and the rule set that it names, for the author: [`fit`] and
 /// [`check::outvoted`].
+#[doc(hidden)] // For the programs of this repository.
 pub fn examine(profile_text: &str, model: &Model) -> (Findings, Option<Estimator>) {
     let (mut findings, estimator) = fit(profile_text, model);
     if let Some(estimator) = &estimator {
@@ -179,6 +183,7 @@ pub fn fit(profile_text: &str, model: &Model) -> (Findings, Option<Estimator>) {
 ///
 /// # Errors
 /// As [`load`].
+#[doc(hidden)] // For the programs of this repository.
 pub fn model<E>(
     profile: &Profile,
     folder: Option<&Path>,
@@ -215,6 +220,7 @@ fn compiled<E>(profile: &Profile, file: String, text: &str) -> Result<Model, Loa
 ///
 /// # Errors
 /// As [`load`].
+#[doc(hidden)] // For the programs of this repository.
 pub fn read<E>(
     name: &str,
     read: impl Fn(&Path) -> Result<String, E>,
@@ -247,6 +253,7 @@ fn parse<E>(name: &str, text: &str) -> Result<Profile, LoadError<E>> {
 ///
 /// # Errors
 /// As [`load`].
+#[doc(hidden)] // For the programs of this repository.
 pub fn rules<E>(
     profile: &Profile,
     folder: Option<&Path>,
@@ -279,6 +286,7 @@ pub fn rules<E>(
 
 /// Whether a line of a text begins with a key that only rule sets and profiles have. No other file is quoted: it may hold
 /// secrets, and be named by somebody else.
+#[doc(hidden)] // For the programs of this repository.
 pub fn is_meant_as_rules(text: &str) -> bool {
     text.lines().any(|line| {
         let line = line.trim_start_matches([' ', '-', '{', '"', '\'']);

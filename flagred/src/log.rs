@@ -1,20 +1,15 @@
 //! A flight log as samples: the one place where `flightlog` and FLAGRED meet.
 
-use alloc::{borrow::ToOwned, vec, vec::Vec};
+use alloc::{vec, vec::Vec};
 
-use flightlog::{Flight, Gap, LeftOut, Options};
+use flightlog::{Flight, Gap};
 
 use crate::{
-    attitude::Attitude,
     estimator::Estimator,
-    evaluation::Span,
-    flight::{Assessment, Assessor, Reason, Verdict, judged_span},
+    flight::{Assessment, Assessor, Reason, Verdict},
     monitor::{Craft, MonitorError, Sample, Unknown},
-    verdict::{Level, VerdictSettings},
+    verdict::Level,
 };
-
-/// The signals that an attitude error is made of.
-pub const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
 
 /// Assesses a flight. Every motor sample counts; a step is kept every `step_s` seconds, or none.
 ///
@@ -146,96 +141,4 @@ pub fn in_air(flight: &Flight, t_s: f64) -> Option<bool> {
         true => (!is_assumed).then_some(true),
         false => Some(false),
     }
-}
-
-/// The attitude over time, at the rate of `roll_deg`.
-pub fn attitudes(flight: &Flight) -> impl Iterator<Item = (f64, Attitude)> + '_ {
-    let mut holds = ATTITUDE.map(|name| flight.signal(name).map(|signal| signal.hold()));
-    let times = flight.signal("roll_deg").map_or(&[][..], |roll| roll.t_s);
-    times.iter().map(move |&t_s| {
-        let [roll_des_deg, roll_deg, pitch_des_deg, pitch_deg] = holds.each_mut().map(|hold| {
-            let held = hold.as_mut().and_then(|hold| hold.at(t_s));
-            held.unwrap_or(f64::NAN)
-        });
-        let attitude = Attitude {
-            roll_des_deg,
-            roll_deg,
-            pitch_des_deg,
-            pitch_deg,
-        };
-        (t_s, attitude)
-    })
-}
-
-/// Why a flight is not complete: see [`complete`].
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Incomplete {
-    /// The log has more than is kept of it.
-    #[error("not all of it is kept, which leaves out {0}")]
-    LeftOut(LeftOut),
-    /// The log lacks something.
-    #[error(transparent)]
-    Gap(Gap),
-}
-
-impl Incomplete {
-    /// What to do about it, apart from the message.
-    pub fn help(&self) -> Option<&'static str> {
-        match self {
-            Incomplete::LeftOut(_) => Some("docs/limits.md has the bounds"),
-            Incomplete::Gap(gap) => gap.help(),
-        }
-    }
-}
-
-/// What is read of a log to learn from it or to evaluate on it: the named signals, and the attitude.
-pub fn complete_options(names: &[&str]) -> Options {
-    let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
-    Options {
-        signals: Some(wanted.collect()),
-        ..Options::default()
-    }
-}
-
-/// Whether a flight can be learned from and evaluated on: with motors, attitude and times in the air, and nothing left out.
-///
-/// # Errors
-/// What it lacks.
-pub fn complete(flight: &Flight) -> Result<(), Incomplete> {
-    let left_out = &flight.report.left_out;
-    if left_out.messages > 0 || left_out.changes > 0 {
-        return Err(Incomplete::LeftOut(left_out.clone()));
-    }
-    let mut gaps = flight.gaps().into_iter();
-    let gap = gaps.find(|gap| !matches!(gap, Gap::TooSlow { .. }));
-    gap.map_or(Ok(()), |gap| Err(Incomplete::Gap(gap)))
-}
-
-/// What the header of a flight CSV says under a key, such as `kind` or `vehicle`.
-pub fn header<'a>(flight: &'a Flight, key: &str) -> Option<&'a str> {
-    let found = flight.header.iter().find(|(k, _)| k == key);
-    found.map(|(_, value)| value.as_str())
-}
-
-/// The judged time of a flight: from `judged_from_s` to `judged_to_s` of the header, else [`judged_span`] of each time in
-/// the air.
-pub fn judged_spans(flight: &Flight, settings: &VerdictSettings) -> Vec<Span> {
-    let number = |key| header(flight, key).and_then(|text| text.parse::<f64>().ok());
-    if let (Some(from_s), Some(to_s)) = (number("judged_from_s"), number("judged_to_s")) {
-        let span = Span { from_s, to_s };
-        return Some(span)
-            .filter(|span| span.length_s() > 0.0)
-            .into_iter()
-            .collect();
-    }
-    let air = flight.in_air.iter().flat_map(|air| &air.spans);
-    air.filter_map(|span| {
-        let air = Span {
-            from_s: span.start_s,
-            to_s: span.end_s,
-        };
-        judged_span(air, span.ends_with_log, settings)
-    })
-    .collect()
 }

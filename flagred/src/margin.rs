@@ -3,42 +3,14 @@
 //! The paper's Eq. 2 and 3. Everything here works on the *effective* range, the part of the command range
 //! that the vehicle uses in flight: a motor at its limit then has margin 0, whatever the vehicle's set-up.
 
-/// How a pulse width becomes a normalised command.
-///
-/// # Example: the erratum
-/// ```
-/// use flagred::margin::{Normalisation, Range};
-///
-/// let pwm = Range::new(1000.0, 2000.0).ok_or("low must be below high")?;
-/// assert_eq!(pwm.normalise(2000.0, Normalisation::Linear), 1.0);
-/// assert!((pwm.normalise(2000.0, Normalisation::Printed) - 0.577).abs() < 1e-3);
-/// # Ok::<(), &str>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Normalisation {
-    /// `(pwm - low) / (high - low)`.
-    #[default]
-    Linear,
-    /// `(pwm - low) / sqrt(high^2 - low^2)`, the denominator as Eq. 2 of the paper prints it.
-    ///
-    /// An erratum: with 1000 and 2000 us a motor at its limit reads 0.577 and never 1. Offered to reproduce
-    /// printed numbers, for nothing else.
-    Printed,
-}
-
 /// A command range: the two values between which a motor can be driven.
 ///
 /// # Example: a saturated motor has no margin
-///
 /// ```
-/// use flagred::margin::{Normalisation, Range, margin};
+/// use flagred::margin::{Range, margin};
 ///
-/// let pwm = Range::new(1000.0, 2000.0).ok_or("low must be below high")?;
 /// let spin = Range::new(0.15, 0.95).ok_or("low must be below high")?; // MOT_SPIN_MIN, MOT_SPIN_MAX
-///
-/// let command = pwm.normalise(1950.0, Normalisation::Linear);
-/// assert_eq!(command, 0.95);
-/// assert_eq!(margin(spin.fraction(command)), 0.0);
+/// assert_eq!(margin(spin.fraction(0.95)), 0.0);
 /// # Ok::<(), &str>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,49 +41,6 @@ impl Range {
         let span = high - low;
         let least = LEAST_SPAN * low.abs().max(high.abs()).max(1.0);
         (span >= least && span.is_finite()).then_some(Range { low, high })
-    }
-
-    /// The lower limit.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::margin::Range;
-    ///
-    /// assert_eq!((Range::FULL.low(), Range::FULL.high()), (0.0, 1.0));
-    /// ```
-    pub fn low(&self) -> f64 {
-        self.low
-    }
-
-    /// The upper limit.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::margin::Range;
-    ///
-    /// assert_eq!(Range::new(1100.0, 1940.0).map(|range| range.high() - range.low()), Some(840.0));
-    /// ```
-    pub fn high(&self) -> f64 {
-        self.high
-    }
-
-    /// The normalised command of a pulse width in the unit of this range (us); not clamped.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::margin::{Normalisation, Range};
-    ///
-    /// let pwm = Range::new(1100.0, 1900.0).ok_or("low must be below high")?;
-    /// assert_eq!(pwm.normalise(1300.0, Normalisation::Linear), 0.25);
-    /// assert_eq!(pwm.normalise(1000.0, Normalisation::Linear), -0.125);
-    /// # Ok::<(), &str>(())
-    /// ```
-    pub fn normalise(&self, pwm: f64, normalisation: Normalisation) -> f64 {
-        let width = match normalisation {
-            Normalisation::Linear => self.high - self.low,
-            Normalisation::Printed => libm::sqrt(self.high * self.high - self.low * self.low),
-        };
-        (pwm - self.low) / width
     }
 
     /// Where a value stands in this range: 0 at `low`, 1 at `high`, clamped to these; NaN stays NaN.
@@ -188,30 +117,6 @@ impl Side {
 mod tests {
     use super::*;
     use proptest::prelude::*;
-
-    #[test]
-    fn linear_and_printed_normalisation_of_saturated_and_hovering_motors() {
-        let pwm = Range::new(1000.0, 2000.0).unwrap();
-        for (us, linear, printed) in [
-            (1000.0, 0.0, 0.0),
-            (1460.0, 0.46, 0.265_581),
-            (1500.0, 0.5, 0.288_675),
-            (2000.0, 1.0, 0.577_350),
-        ] {
-            approx::assert_abs_diff_eq!(pwm.normalise(us, Normalisation::Linear), linear);
-            approx::assert_abs_diff_eq!(
-                pwm.normalise(us, Normalisation::Printed),
-                printed,
-                epsilon = 1e-6
-            );
-        }
-        // The reason why the printed form cannot be meant: full power leaves a margin of 0.42.
-        approx::assert_abs_diff_eq!(
-            margin(pwm.normalise(2000.0, Normalisation::Printed)),
-            0.42265,
-            epsilon = 1e-5
-        );
-    }
 
     #[test]
     fn a_range_needs_two_finite_limits_in_order() {

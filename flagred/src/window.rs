@@ -92,7 +92,8 @@ impl Window {
     };
 
     /// An empty window over the last `length_s` seconds (over 0).
-    pub(crate) const fn new(length_s: f64) -> Window {
+    #[cfg(feature = "std")]
+    pub(crate) fn new(length_s: f64) -> Window {
         Window {
             length_s,
             now_s: f64::NEG_INFINITY,

@@ -227,8 +227,10 @@ impl Flight {
             (_, None) => gaps.push(Gap::AirUnknown { format }),
             _ => {}
         }
-        let attitude = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
-        if attitude.iter().any(|name| self.signal(name).is_none()) {
+        if crate::ATTITUDE
+            .iter()
+            .any(|name| self.signal(name).is_none())
+        {
             gaps.push(Gap::NoAttitude);
         }
         if let Some(rate_hz) = self.command_rate_hz().filter(|&rate| rate < SLOWEST_HZ) {

@@ -26,6 +26,7 @@
 
 mod angle;
 mod ardupilot;
+mod attitude;
 mod clock;
 mod csv;
 mod dataflash;
@@ -54,6 +55,7 @@ mod tlog;
 mod ulog;
 mod utc;
 
+pub use attitude::{ATTITUDE, Attitude};
 pub use error::ReadError;
 pub use flight::{Commands, Event, Flight, Format, Motor, Range, Vehicle, VehicleKind};
 pub use gap::Gap;

@@ -15,12 +15,14 @@ use crate::{Commands, Flight, PulseRange, Range, ReadError, csv, dataflash, geom
 /// use flightlog::Options;
 ///
 /// let log = "t_s,motor1,roll_deg,wind_m_s\n0,0.4,0.3,5\n";
-/// let only_wind = Options { signals: Some(vec!["wind_m_s".into()]), ..Options::default() };
+/// let mut only_wind = Options::default();
+/// only_wind.signals = Some(vec!["wind_m_s".into()]);
 /// let flight = flightlog::read(log.as_bytes(), &only_wind)?;
 /// assert!(flight.signal("wind_m_s").is_some() && flight.signal("roll_deg").is_none());
 /// # Ok::<(), flightlog::ReadError>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Options {
     /// Names of the signals to keep; `None` keeps all. Motor commands, armed and in-air
     /// times, modes and messages are always read, and the [`Report`](crate::Report) is the

@@ -1,9 +1,9 @@
 //! The curves of a report, and the data they are drawn from.
 
 use flagred::{
-    attitude::Attitude,
     estimator::Estimator,
     flight::{Assessment, Step},
+    profile::CRITICAL_ERROR_DEG,
     verdict::{Level, Threshold},
 };
 use flightlog::{Flight, Options, Signal};
@@ -38,10 +38,9 @@ pub fn options(estimator: &Estimator, drawn: bool) -> Options {
         .map(str::to_owned)
         .collect();
     signals.sort_unstable();
-    Options {
-        signals: Some(signals),
-        ..Options::default()
-    }
+    let mut options = Options::default();
+    options.signals = Some(signals);
+    options
 }
 
 /// The scale of a percentage.
@@ -309,35 +308,16 @@ pub(crate) fn attitude_error(
     stretch: Stretch,
 ) -> Option<Panel> {
     let roll = flight.signal("roll_deg")?;
-    let mut others = [
-        flight.signal("roll_des_deg")?.hold(),
-        flight.signal("pitch_des_deg")?.hold(),
-        flight.signal("pitch_deg")?.hold(),
-    ];
-    let errors: Vec<(f64, f64)> = roll
-        .t_s
-        .iter()
-        .zip(roll.values)
-        .map(|(t_s, roll_deg)| {
-            let [roll_des_deg, pitch_des_deg, pitch_deg] = others
-                .each_mut()
-                .map(|hold| hold.at(*t_s).unwrap_or(f64::NAN));
-            let attitude = Attitude {
-                roll_des_deg,
-                roll_deg: *roll_deg,
-                pitch_des_deg,
-                pitch_deg,
-            };
-            (*t_s, attitude.squared_error_deg2().sqrt())
-        })
+    let errors: Vec<(f64, f64)> = flight
+        .attitudes()
+        .map(|(t_s, attitude)| (t_s, attitude.squared_error_deg2().sqrt()))
         .collect();
     // The scale reaches the critical error at least, so that a calm flight looks calm.
-    let critical_deg = flagred::attitude::CRITICAL_ERROR_DEG;
     let largest = errors
         .iter()
         .filter(|(t_s, _)| stretch.contains(*t_s))
         .map(|(_, error)| *error)
-        .fold(critical_deg * 1.1, f64::max);
+        .fold(CRITICAL_ERROR_DEG * 1.1, f64::max);
     let gap_s = gap_s(estimator, roll.rate_hz());
     let data = path(errors.into_iter(), stretch, gap_s, 2);
     let name = "roll and pitch against their set points";
@@ -345,7 +325,7 @@ pub(crate) fn attitude_error(
     let scale = (Scale::new(0.0, largest), "°");
     let panel = Panel {
         marks: vec![Mark {
-            value: critical_deg,
+            value: CRITICAL_ERROR_DEG,
             class: "limit",
             name: "critical".into(),
         }],

@@ -11,20 +11,17 @@ use std::{
     thread,
 };
 
+use evaluation::{ErrorRecord, Span};
 use flagred::{
-    attitude::Attitude,
     estimator::Estimator,
-    evaluation::{ErrorRecord, Span},
     monitor::{Craft, Monitor, Sample},
     verdict::Level,
 };
-use flightlog::Flight;
+use flightlog::{ATTITUDE, Flight};
 
 /// How far apart steps are, and how far they look ahead, in seconds.
 const STEP_S: f64 = 0.5;
 const HORIZON_S: f64 = 5.0;
-
-const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
 
 /// A flight in changing conditions, with what became of it.
 pub struct Simulated {
@@ -123,10 +120,8 @@ pub fn flights(data: &Path) -> Vec<Simulated> {
 }
 
 fn read(path: &Path) -> Simulated {
-    let options = flightlog::Options {
-        signals: Some(ATTITUDE.map(str::to_owned).to_vec()),
-        ..flightlog::Options::default()
-    };
+    let mut options = flightlog::Options::default();
+    options.signals = Some(ATTITUDE.map(str::to_owned).to_vec());
     let flight = flightlog::open(path, &options).unwrap();
     let said = |key: &str| {
         let found = flight.header.iter().find(|(k, _)| k == key);
@@ -136,17 +131,7 @@ fn read(path: &Path) -> Simulated {
         from_s: said("judged_from_s").parse().unwrap(),
         to_s: said("judged_to_s").parse().unwrap(),
     };
-    let signals = ATTITUDE.map(|name| flight.signal(name).unwrap());
-    let errors = ErrorRecord::new((0..signals[0].t_s.len()).map(|i| {
-        let [roll_des_deg, roll_deg, pitch_des_deg, pitch_deg] = signals.map(|s| s.values[i]);
-        let attitude = Attitude {
-            roll_des_deg,
-            roll_deg,
-            pitch_des_deg,
-            pitch_deg,
-        };
-        (signals[0].t_s[i], attitude)
-    }));
+    let errors = ErrorRecord::new(flight.attitudes());
     let times = (0..).map(|i| judged.from_s + f64::from(i) * STEP_S);
     let steps = times
         .take_while(|t_s| *t_s <= judged.to_s + 1e-6)

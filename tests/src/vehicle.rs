@@ -377,14 +377,9 @@ impl StandIn {
 /// Where it cannot be read.
 pub fn flight(log: &Path) -> Flight {
     let signals = Some(Vec::new());
-    flightlog::open(
-        log,
-        &flightlog::Options {
-            signals,
-            ..flightlog::Options::default()
-        },
-    )
-    .unwrap()
+    let mut options = flightlog::Options::default();
+    options.signals = signals;
+    flightlog::open(log, &options).unwrap()
 }
 
 fn output(name: &str) -> usize {

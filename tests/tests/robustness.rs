@@ -2,12 +2,8 @@
 //!
 //! `FLAGRED_SHARED=... cargo test -p flagred-tests --test robustness -- --ignored --nocapture` prints the figures.
 
-use flagred::{
-    accumulator::Accumulator,
-    estimator::Estimator,
-    evaluation::{Prediction, Ranking},
-    shipped,
-};
+use evaluation::{Prediction, Ranking};
+use flagred::{estimator::Estimator, shipped};
 use flagred_tests::{
     reference_data,
     simulated::{self, AS_FLOWN, Replay, Said, Simulated, on_all_cores},
@@ -226,70 +222,4 @@ fn faults(flights: &[Simulated], said: &[Said]) {
         // Whoever is lost was warned of.
         assert!(flight.lost_s.is_none() || warned.is_some(), "{}", flight.id);
     }
-}
-
-#[test]
-#[ignore = "needs FLAGRED_SHARED"]
-fn the_elevated_risk_is_that_of_any_rate() {
-    let data = reference_data();
-    let flights = simulated::flights(&data);
-    let estimator = estimator();
-    let warn = estimator.profile().verdict.warn.raise;
-    let threshold_pct = warn.elevated_risk_pct.unwrap();
-    let differences = on_all_cores(&flights, |flight| {
-        let risks = flight.replay(&estimator, AS_FLOWN).risks;
-        let as_flown = elevated(&estimator, &risks, 25);
-        [1, 10, 400].map(|rate_hz| {
-            let other = elevated(&estimator, &risks, rate_hz);
-            let pairs = other.iter().zip(&as_flown);
-            pairs
-                .map(|(a, b)| (a - b).abs() / threshold_pct)
-                .fold(0.0, f64::max)
-        })
-    });
-    for (i, rate_hz) in [1, 10, 400].into_iter().enumerate() {
-        let mut of_rate: Vec<f64> = differences.iter().map(|d| d[i]).collect();
-        of_rate.sort_by(f64::total_cmp);
-        let largest = of_rate[of_rate.len() - 1];
-        let of_most = of_rate[of_rate.len() * 95 / 100];
-        println!(
-            "{rate_hz} Hz against 25 Hz: largest difference of a flight, as a share of the threshold of WARN: median {:.2}, 95 % {of_most:.2}, of all {largest:.2}",
-            of_rate[of_rate.len() / 2]
-        );
-        // A risk that jumps within a second without a sample may have jumped at any time of it.
-        let most = if rate_hz == 1 {
-            (0.5, 1.0)
-        } else {
-            (0.1, 0.25)
-        };
-        assert!(
-            of_most < most.0 && largest < most.1,
-            "{rate_hz} Hz: {of_most}, {largest}"
-        );
-    }
-}
-
-/// The elevated risk once a second, from the risk seen so many times a second.
-fn elevated(estimator: &Estimator, risks: &[(f64, f64)], rate_hz: u32) -> Vec<f64> {
-    let (first_s, last_s) = (risks[0].0, risks[risks.len() - 1].0);
-    let at = |t_s: f64| {
-        let next = risks
-            .partition_point(|risk| risk.0 <= t_s)
-            .clamp(1, risks.len() - 1);
-        let (a, b) = (risks[next - 1], risks[next]);
-        a.1 + (b.1 - a.1) * ((t_s - a.0) / (b.0 - a.0)).clamp(0.0, 1.0)
-    };
-    let mut accumulator = Accumulator::new(estimator.profile().elevated_risk);
-    let step_s = 1.0 / f64::from(rate_hz);
-    let samples = ((last_s - first_s) * f64::from(rate_hz)) as u32;
-    let mut once_a_second = Vec::new();
-    for i in 0..=samples {
-        let t_s = first_s + f64::from(i) * step_s;
-        let held_s = if i == 0 { 0.0 } else { step_s };
-        let elevated = accumulator.push(t_s, held_s, at(t_s));
-        if i % rate_hz == 0 {
-            once_a_second.push(elevated);
-        }
-    }
-    once_a_second
 }

@@ -26,9 +26,6 @@ impl Data {
     /// The largest value and weight of a row. Squares of larger numbers, and their products, would overflow.
     pub const LARGEST: f64 = *WEIGHTS.end();
 
-    /// The smallest weight above 0.
-    pub const SMALLEST_WEIGHT: f64 = *WEIGHTS.start();
-
     /// How many widths of the output's range a target of [`Loss::Squared`] may lie away from the range. Beyond that, the loss
     /// changes by less than its rounding errors.
     pub const FARTHEST: f64 = 1e6;

@@ -25,6 +25,7 @@ impl Loss {
 
 /// What may move and how far.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// What is made small.
     pub loss: Loss,

@@ -97,11 +97,9 @@ fn the_chaotic_series_is_predicted_as_well_as_by_anfis() {
     let (low, high) = all.fold((f64::MAX, f64::MIN), |(low, high), x| {
         (low.min(*x), high.max(*x))
     });
-    let settings = Settings {
-        iterations: 60,
-        digits: None,
-        ..Settings::default()
-    };
+    let mut settings = Settings::default();
+    settings.iterations = 60;
+    settings.digits = None;
     let mut steps = 0;
     let tuned = tune(&grid(low, high), &training, &settings, &mut |_| {
         steps += 1;

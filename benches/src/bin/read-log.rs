@@ -8,10 +8,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let log = arguments.next().ok_or("which log?")?;
     let runs: u32 = arguments.next().ok_or("how many runs?")?.parse()?;
     let signals: Vec<String> = arguments.collect();
-    let options = flightlog::Options {
-        signals: (!signals.is_empty()).then_some(signals),
-        ..flightlog::Options::default()
-    };
+    let mut options = flightlog::Options::default();
+    options.signals = (!signals.is_empty()).then_some(signals);
     let mut flight = None;
     let start_s = cpu_s()?;
     for _ in 0..runs {

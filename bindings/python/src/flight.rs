@@ -98,7 +98,10 @@ impl FlightData {
             Ok(bytes) => Source::Bytes(bytes.as_bytes().to_vec()),
             Err(_) => Source::Path(source.extract()?),
         };
-        let flight = Arc::new(read(py, source, Options { signals, range })?);
+        let mut options = Options::default();
+        options.signals = signals;
+        options.range = range;
+        let flight = Arc::new(read(py, source, options)?);
         Ok(FlightData { flight, name })
     }
 

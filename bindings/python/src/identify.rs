@@ -41,18 +41,18 @@ impl IdentifyOptions {
             ("constants", Consequents::Constants),
             ("lines", Consequents::Lines),
         ];
-        Ok(Identification {
-            antecedents: choice("antecedents", &self.antecedents, &antecedents)?,
-            consequents: choice("consequents", &self.consequents, &consequents)?,
-            inputs: self.inputs.clone(),
-            most_inputs: self.most_inputs,
-            most_terms: self.most_terms,
-            most_rules: self.most_rules,
-            least_gain: self.least_gain,
-            least_support: self.min_support,
-            folds: self.folds,
-            seed: self.seed,
-        })
+        let mut settings = Identification::default();
+        settings.antecedents = choice("antecedents", &self.antecedents, &antecedents)?;
+        settings.consequents = choice("consequents", &self.consequents, &consequents)?;
+        settings.inputs = self.inputs.clone();
+        settings.most_inputs = self.most_inputs;
+        settings.most_terms = self.most_terms;
+        settings.most_rules = self.most_rules;
+        settings.least_gain = self.least_gain;
+        settings.least_support = self.min_support;
+        settings.folds = self.folds;
+        settings.seed = self.seed;
+        Ok(settings)
     }
 }
 

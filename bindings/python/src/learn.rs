@@ -1,9 +1,7 @@
 //! Rules from rows: `flagred.learn`.
 
-use flagred::{
-    gap::GapSettings,
-    learning::{self, Row},
-};
+use evaluation::learning::{self, Row};
+use flagred::gap::GapSettings;
 use fuzzy::{
     Engine, Model,
     check::counterexamples,
@@ -64,13 +62,13 @@ impl LearnOptions {
             ("heaviest", Resolution::Heaviest),
             ("mean", Resolution::Mean),
         ];
-        Ok(Settings {
-            resolution: choice("resolve", &self.resolve, &resolutions)?,
-            min_support: self.min_support,
-            min_degree: self.min_degree,
-            complete: self.complete,
-            monotone: directed(&self.rising, &self.falling, directions),
-        })
+        let mut settings = Settings::default();
+        settings.resolution = choice("resolve", &self.resolve, &resolutions)?;
+        settings.min_support = self.min_support;
+        settings.min_degree = self.min_degree;
+        settings.complete = self.complete;
+        settings.monotone = directed(&self.rising, &self.falling, directions);
+        Ok(settings)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Rows to learn from, and what `flagred.learn` and `flagred.tune` ask alike.
 
-use flagred::learning::Row;
+use evaluation::learning::Row;
 use fuzzy::{
     Findings,
     check::{Direction, Monotone},

@@ -48,11 +48,10 @@ pub(crate) fn _simplify(
     let model = rule_set.model(Model::clone);
     let columns = columns.iter().map(|column| column.as_array().to_vec());
     let columns: Vec<Vec<f64>> = columns.collect();
-    let settings = SimplifySettings {
-        tolerance: options.tolerance,
-        rows_only: options.rows_only,
-        seed: options.seed,
-    };
+    let mut settings = SimplifySettings::default();
+    settings.tolerance = options.tolerance;
+    settings.rows_only = options.rows_only;
+    settings.seed = options.seed;
     let found = interruptible(py, move || simplify(&model, &columns, &settings))?;
     let found = found.map_err(|error| Failed::from(error).raise(py))?;
     let numbers = |rules: Vec<usize>| rules.into_iter().map(|rule| rule + 1).collect();

@@ -8,7 +8,7 @@ use std::{
     },
 };
 
-use flagred::learning::Row;
+use evaluation::learning::Row;
 use fuzzy::{Model, yaml};
 use pyo3::prelude::*;
 use tuning::{Data, Loss, Settings, TuneError, cross_validate};
@@ -76,19 +76,19 @@ impl TuneOptions {
             ("log", Loss::Log),
             ("ranking", Loss::Ranking),
         ];
-        Ok(Settings {
-            loss: choice("loss", &self.loss, &losses)?,
-            only: self.only.clone(),
-            fix: self.fix.clone(),
-            weights: self.weights,
-            least_distance: self.least_distance,
-            monotone: claims(&self.rising, &self.falling),
-            beyond_range: self.beyond_range,
-            digits: self.digits,
-            starts: self.starts,
-            seed: self.seed,
-            iterations: self.iterations,
-        })
+        let mut settings = Settings::default();
+        settings.loss = choice("loss", &self.loss, &losses)?;
+        settings.only = self.only.clone();
+        settings.fix = self.fix.clone();
+        settings.weights = self.weights;
+        settings.least_distance = self.least_distance;
+        settings.monotone = claims(&self.rising, &self.falling);
+        settings.beyond_range = self.beyond_range;
+        settings.digits = self.digits;
+        settings.starts = self.starts;
+        settings.seed = self.seed;
+        settings.iterations = self.iterations;
+        Ok(settings)
     }
 }
 

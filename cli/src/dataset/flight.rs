@@ -1,15 +1,8 @@
 //! Rows from a flight log.
 
-use flagred::{
-    attitude::{Attitude, AttitudeError, risk_pct},
-    estimator::Estimator,
-    evaluation::{ErrorRecord, Span},
-    log,
-    monitor::Monitor,
-    profile::Profile,
-    sample::Unknown,
-};
-use flightlog::Flight;
+use evaluation::{ErrorRecord, Span, header, judged_by_header, judged_spans, risk_pct, rmse_deg};
+use flagred::{estimator::Estimator, log, monitor::Monitor, profile::Profile, sample::Unknown};
+use flightlog::{Attitude, Flight};
 use fuzzy::{
     Model,
     model::{Output, Variable},
@@ -27,7 +20,7 @@ const BEFORE_END_S: f64 = 1.0;
 pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     let names = plan.profile.signals();
     let flight = open_complete(log, &names, "makes no rows")?;
-    let said = |key: &str| log::header(&flight, key);
+    let said = |key: &str| header(&flight, key);
     let carried = log::carried(&flight, &names);
     if let Some(lacking) = names.iter().find(|name| !carried.contains(name)) {
         return Err(Failure::unreadable(format!(
@@ -35,7 +28,7 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
         ))
         .help("`flagred inspect` lists the signals a log carries"));
     }
-    let errors: Vec<(f64, Attitude)> = log::attitudes(&flight).collect();
+    let errors: Vec<(f64, Attitude)> = flight.attitudes().collect();
     let mut made = Rows {
         rows: Vec::new(),
         notes: Vec::new(),
@@ -99,19 +92,18 @@ struct Part {
 
 fn parts(flight: &Flight, plan: &Plan) -> Vec<Part> {
     let Cut::Ahead { .. } = plan.cut else {
-        let judged = log::judged_spans(flight, &plan.profile.verdict);
+        let judged = judged_spans(flight, &plan.profile.verdict);
         let parts = judged.into_iter().map(|span| Part { air_s: span, span });
         return parts.collect();
     };
-    let number = |key| log::header(flight, key).and_then(|text| text.parse::<f64>().ok());
-    let judged_s = number("judged_from_s").zip(number("judged_to_s"));
+    let judged = judged_by_header(flight);
     let air = flight.in_air.iter().flat_map(|air| &air.spans);
     let parts = air.map(|air| {
         let (from_s, to_s) = (air.start_s, air.end_s);
-        let span = match judged_s {
-            Some((judged_from_s, judged_to_s)) => Span {
-                from_s: judged_from_s.max(from_s),
-                to_s: judged_to_s.min(to_s),
+        let span = match judged {
+            Some(judged) => Span {
+                from_s: judged.from_s.max(from_s),
+                to_s: judged.to_s.min(to_s),
             },
             None => Span {
                 from_s: from_s + AFTER_TAKE_OFF_S,
@@ -195,9 +187,6 @@ fn any_rules(profile: &Profile) -> Model {
 fn rmse(errors: &[(f64, Attitude)], from_s: f64, to_s: f64) -> Option<f64> {
     let first = errors.partition_point(|(t_s, _)| *t_s <= from_s + 1e-6);
     let end = errors.partition_point(|(t_s, _)| *t_s <= to_s + 1e-6);
-    let mut rmse = AttitudeError::default();
-    for (_, attitude) in errors.get(first..end).unwrap_or(&[]) {
-        rmse.push(attitude);
-    }
-    rmse.rmse_deg()
+    let errors = errors.get(first..end).unwrap_or(&[]);
+    rmse_deg(errors.iter().map(|(_, attitude)| attitude))
 }

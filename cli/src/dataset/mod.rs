@@ -6,8 +6,7 @@ pub(crate) mod summary;
 use std::path::{Path, PathBuf};
 
 use flagred::{
-    attitude::CRITICAL_ERROR_DEG,
-    profile::{Profile, ProfileInput},
+    profile::{CRITICAL_ERROR_DEG, Profile, ProfileInput},
     source::{Motors, Signal, Source, Statistic},
 };
 

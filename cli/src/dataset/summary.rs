@@ -2,8 +2,7 @@
 
 use std::{fs::File, io::Read, path::Path};
 
-use evaluation::recipe::recipe;
-use flagred::attitude::risk_pct;
+use evaluation::{recipe::recipe, risk_pct};
 
 use super::{Plan, Row, Rows};
 use crate::{

@@ -175,24 +175,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn settings(arguments: &Arguments) -> Identification {
-    Identification {
-        antecedents: match arguments.clusters {
-            true => Antecedents::Clusters,
-            false => Antecedents::Partitions,
-        },
-        consequents: match arguments.lines {
-            true => Consequents::Lines,
-            false => Consequents::Constants,
-        },
-        inputs: arguments.input.clone(),
-        most_inputs: arguments.most_inputs as usize,
-        most_terms: arguments.most_terms as usize,
-        most_rules: arguments.most_rules as usize,
-        least_gain: arguments.least_gain,
-        least_support: arguments.min_support,
-        folds: arguments.folds,
-        seed: arguments.seed,
-    }
+    let mut settings = Identification::default();
+    settings.antecedents = match arguments.clusters {
+        true => Antecedents::Clusters,
+        false => Antecedents::Partitions,
+    };
+    settings.consequents = match arguments.lines {
+        true => Consequents::Lines,
+        false => Consequents::Constants,
+    };
+    settings.inputs = arguments.input.clone();
+    settings.most_inputs = arguments.most_inputs as usize;
+    settings.most_terms = arguments.most_terms as usize;
+    settings.most_rules = arguments.most_rules as usize;
+    settings.least_gain = arguments.least_gain;
+    settings.least_support = arguments.min_support;
+    settings.folds = arguments.folds;
+    settings.seed = arguments.seed;
+    settings
 }
 
 /// The columns of a table that may be inputs, and those that hold no number.

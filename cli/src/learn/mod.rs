@@ -5,10 +5,10 @@ pub(crate) mod report;
 use std::io::Write as _;
 
 use clap::ValueEnum;
-use flagred::{
-    gap::{FilledMap, Filling, GapMethod, GapSettings},
-    learning::{Errors, GapComparison, cross_validate, leave_one_rule_out},
+use evaluation::learning::{
+    Errors, ExamineError, GapComparison, cross_validate, leave_one_rule_out,
 };
+use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
 use fuzzy::{
     Engine, Model,
     check::{self, Counterexample},
@@ -101,7 +101,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let learned = learner.finish();
     let gap = GapSettings::default();
-    let examined = |error: flagred::learning::ExamineError| Failure::unreadable(error.to_string());
+    let examined = |error: ExamineError| Failure::unreadable(error.to_string());
     let coverage = coverage(&learned.model, &gap)?;
     let counterexamples = counterexamples(arguments, &learned.model)?;
     let outcome = Outcome {
@@ -145,17 +145,17 @@ fn settings(arguments: &Arguments) -> Settings {
         check::Direction::Decreasing => (claim.input, Direction::Falling),
     };
     let monotone = arguments.rows.claims().into_iter().map(directed).collect();
-    Settings {
-        resolution: match arguments.resolve {
-            Resolve::Strongest => Resolution::Strongest,
-            Resolve::Heaviest => Resolution::Heaviest,
-            Resolve::Mean => Resolution::Mean,
-        },
-        min_support: arguments.min_support,
-        min_degree: arguments.min_degree,
-        complete: arguments.complete,
-        monotone,
-    }
+    let mut settings = Settings::default();
+    settings.resolution = match arguments.resolve {
+        Resolve::Strongest => Resolution::Strongest,
+        Resolve::Heaviest => Resolution::Heaviest,
+        Resolve::Mean => Resolution::Mean,
+    };
+    settings.min_support = arguments.min_support;
+    settings.min_degree = arguments.min_degree;
+    settings.complete = arguments.complete;
+    settings.monotone = monotone;
+    settings
 }
 
 /// Where the learned rules contradict `--rising` and `--falling`, as `flagred check --monotone` finds it.

@@ -2,10 +2,8 @@
 
 use std::io::Write;
 
-use flagred::{
-    gap::GapMethod,
-    learning::{Errors, MethodErrors},
-};
+use evaluation::learning::{Errors, MethodErrors};
+use flagred::gap::GapMethod;
 use fuzzy::{check::Counterexample, drawing::visible, model::Step};
 use serde::Serialize;
 

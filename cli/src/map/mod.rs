@@ -14,9 +14,7 @@ use flagred::{
 use fuzzy::{
     Engine, Model,
     drawing::visible,
-    drawing::{
-        Colour, Slice, map_svg, map_text, rules_svg, rules_text, short, surface_svg, surface_text,
-    },
+    drawing::{Colour, Slice, map_svg, map_text, rules_svg, rules_text, short, surface_svg},
     map::{DecisionMap, Grid},
 };
 
@@ -71,8 +69,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 
-    /// Draw a surface in three dimensions instead of a flat map
-    #[arg(long, conflicts_with = "csv")]
+    /// Draw a surface in three dimensions instead of a flat map, as SVG
+    #[arg(long, requires = "svg")]
     surface: bool,
 
     /// Show in each cell the rule with the largest firing strength instead of the value
@@ -194,24 +192,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         None if arguments.activations => {
             write!(out, "{}", rules_text(&slice, model, painted))?;
         }
-        None if arguments.surface => {
-            let drawn = surface_text(&slice, painted).ok_or_else(no_surface)?;
-            write!(out, "{drawn}")?;
-        }
         None => write!(out, "{}", map_text(&slice, painted))?,
         Some(svg) if arguments.surface => {
-            svg.write(&surface_svg(&slice).ok_or_else(no_surface)?)?;
+            let surface = surface_svg(&slice).ok_or_else(|| {
+                Failure::usage("`--surface` needs two inputs, and one is left")
+                    .help("without `--surface`, the picture of one input is a curve")
+            })?;
+            svg.write(&surface)?;
         }
         Some(svg) if arguments.activations => svg.write(&rules_svg(&slice, model))?,
         Some(svg) => svg.write(&map_svg(&slice))?,
     }
     out.finish()?;
     Ok(Exit::Clean)
-}
-
-fn no_surface() -> Failure {
-    Failure::usage("`--surface` needs two inputs, and one is left")
-        .help("without `--surface`, the picture of one input is a curve")
 }
 
 /// A cell of a picture on a terminal, in its colour.
@@ -261,11 +254,13 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
         Some(fill) => fill.method(),
         None => profile.map(|profile| profile.gap.method),
     };
-    let settings = |method| GapSettings {
-        method,
-        coverage_below: arguments
+    let settings = |method| {
+        let mut settings = GapSettings::default();
+        settings.method = method;
+        settings.coverage_below = arguments
             .coverage_below
-            .or(profile.and_then(|profile| profile.gap.coverage_below)),
+            .or(profile.and_then(|profile| profile.gap.coverage_below));
+        settings
     };
     let filling = method.map(|method| {
         let filling = Filling::new(&engine, &model, output, &settings(method));

@@ -214,19 +214,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn settings(arguments: &Arguments) -> Settings {
-    Settings {
-        loss: arguments.loss(),
-        only: arguments.only.clone(),
-        fix: arguments.fix.clone(),
-        weights: arguments.weights,
-        least_distance: arguments.least_distance,
-        monotone: arguments.rows.claims(),
-        beyond_range: arguments.beyond_range,
-        digits: arguments.round.0,
-        starts: arguments.starts,
-        seed: arguments.seed,
-        iterations: arguments.iterations,
-    }
+    let mut settings = Settings::default();
+    settings.loss = arguments.loss();
+    settings.only = arguments.only.clone();
+    settings.fix = arguments.fix.clone();
+    settings.weights = arguments.weights;
+    settings.least_distance = arguments.least_distance;
+    settings.monotone = arguments.rows.claims();
+    settings.beyond_range = arguments.beyond_range;
+    settings.digits = arguments.round.0;
+    settings.starts = arguments.starts;
+    settings.seed = arguments.seed;
+    settings.iterations = arguments.iterations;
+    settings
 }
 
 /// The rows as columns, and why others cannot be used.

@@ -4,12 +4,12 @@ mod profiles;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use flagred::evaluation::Interval;
 use fuzzy::drawing::visible;
 
 use crate::{
     Evaluation,
     alarms::Verdicts,
+    bootstrap::Interval,
     flight::Record,
     scores::{APART, Evaluated, Scores},
 };

@@ -116,23 +116,6 @@ fn a_second_flight_begins_anew() {
     assert_eq!(fly(30.0, HOVER).verdict, Verdict::Known(Level::Good));
 }
 
-#[test]
-fn judged_time_leaves_out_take_off_and_landing() {
-    let settings = VerdictSettings::default();
-    let air = Span {
-        from_s: 10.0,
-        to_s: 30.0,
-    };
-    let judged = judged_span(air, false, &settings).unwrap();
-    assert_eq!((judged.from_s, judged.to_s), (15.0, 29.0));
-    assert_eq!(judged_span(air, true, &settings).unwrap().to_s, 30.0);
-    let hop = Span {
-        from_s: 10.0,
-        to_s: 12.0,
-    };
-    assert_eq!(judged_span(hop, false, &settings), None);
-}
-
 /// The paper's inputs, with the rules' part about the spread fed by something that is no motor at its limit.
 #[test]
 fn a_motor_is_named_only_where_motors_near_a_limit_are_the_cause() {

@@ -67,6 +67,7 @@ impl GapMethod {
 
 /// What a cell must not be to count as covered, and how the others get their values.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct GapSettings {
     /// How the gap is filled.
     pub method: GapMethod,

@@ -89,6 +89,9 @@ pub struct CauseWords {
     pub advice: String,
 }
 
+/// The attitude error of a risk of 100 %, in degrees: the critical error of the paper.
+pub const CRITICAL_ERROR_DEG: f64 = 5.0;
+
 /// How many moments with a risk of a band were followed by a large attitude error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]

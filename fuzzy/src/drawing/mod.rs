@@ -8,7 +8,7 @@
 //! | the terms of all variables | [`variables_svg`] | [`variables_text`] |
 //! | terms that moved, as they were and as they are | [`moved_svg`] | |
 //! | an evaluation with its reasons | [`explanation_svg`] | [`explanation_text`] |
-//! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`], [`surface_text`], [`values_text`] |
+//! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`], [`values_text`] |
 //! | the rule that dominates each part of a map | [`rules_svg`] | [`rules_text`] |
 //! | lines over a number ([`Plot`]) | [`plots_svg`] | |
 //!
@@ -37,7 +37,6 @@ mod scale;
 mod sheet;
 mod slice;
 mod surface;
-mod surface_text;
 mod text;
 mod variables;
 
@@ -52,6 +51,5 @@ pub use scale::Scale;
 pub use sheet::{Anchor, Frame, Sheet};
 pub use slice::{Axis, Cell, Slice};
 pub use surface::surface_svg;
-pub use surface_text::surface_text;
 pub use text::{Escaped, bar, block, number, short, visible, visible_lines};
 pub use variables::{moved_svg, variables_svg, variables_text};

@@ -21,7 +21,7 @@ const MIDDLE: (f64, f64) = (280.0, 258.0);
 const SIZE: f64 = 285.0;
 
 /// Projects the unit cube onto the sheet, without perspective, so that equal heights stay equal.
-pub(super) struct View {
+struct View {
     sin_turn: f64,
     cos_turn: f64,
     sin_tip: f64,
@@ -29,7 +29,7 @@ pub(super) struct View {
 }
 
 impl View {
-    pub(super) fn new() -> View {
+    fn new() -> View {
         let (turn, tip) = (TURN_DEG.to_radians(), TIP_DEG.to_radians());
         View {
             sin_turn: turn.sin(),
@@ -40,7 +40,7 @@ impl View {
     }
 
     /// The place on the sheet of a point of the unit cube.
-    pub(super) fn at(&self, x: f64, y: f64, z: f64) -> (f64, f64) {
+    fn at(&self, x: f64, y: f64, z: f64) -> (f64, f64) {
         let (x, y, z) = (x - 0.5, y - 0.5, z - 0.5);
         let across = x * self.cos_turn + y * self.sin_turn;
         let up = z * 0.75 * self.cos_tip + self.depth(x, y) * self.sin_tip;
@@ -48,7 +48,7 @@ impl View {
     }
 
     /// The distance from the viewer.
-    pub(super) fn depth(&self, x: f64, y: f64) -> f64 {
+    fn depth(&self, x: f64, y: f64) -> f64 {
         y * self.cos_turn - x * self.sin_turn
     }
 }

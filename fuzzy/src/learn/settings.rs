@@ -28,7 +28,9 @@ pub fn bad_weight(weight: f64, wanted: &str) -> String {
 /// rules: []
 /// ")?.model;
 /// let consequent = |resolution| -> Result<String, Box<dyn std::error::Error>> {
-///     let mut learner = Learner::new(&model, Settings { resolution, ..Settings::default() })?;
+///     let mut settings = Settings::default();
+///     settings.resolution = resolution;
+///     let mut learner = Learner::new(&model, settings)?;
 ///     for sample in [[90.0, 9.0], [70.0, 0.0], [80.0, 0.0]] {
 ///         learner.add(&sample, 1.0)?;
 ///     }
@@ -74,7 +76,9 @@ pub enum Direction {
 /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
 /// rules: []
 /// ")?.model;
-/// let mut learner = Learner::new(&model, Settings { complete: true, ..Settings::default() })?;
+/// let mut settings = Settings::default();
+/// settings.complete = true;
+/// let mut learner = Learner::new(&model, settings)?;
 /// learner.add(&[90.0, 9.0], 1.0)?;
 /// let learned = learner.finish();
 /// assert_eq!((learned.completed, learned.missing), (1, 0));
@@ -82,6 +86,7 @@ pub enum Direction {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Settings {
     /// How the consequent is chosen where samples disagree.
     pub resolution: Resolution,

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use flagred::evaluation::{Prediction, Ranking};
+use evaluation::{Prediction, Ranking};
 use rayon::prelude::*;
 
 use super::{objective::Area, rows::Row, search::tune, votes::Votes};

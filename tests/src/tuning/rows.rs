@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, path::Path};
 
-use flagred::attitude::CRITICAL_ERROR_DEG;
+use flagred::profile::CRITICAL_ERROR_DEG;
 
 use super::Failure;
 

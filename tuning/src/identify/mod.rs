@@ -44,6 +44,7 @@ pub enum Antecedents {
 
 /// What is looked for.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Identification {
     /// What rules ask of the inputs.
     pub antecedents: Antecedents,

@@ -27,6 +27,7 @@ pub const MOST_RULES: usize = 1_000;
 
 /// When a rule set says the same as another one.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct SimplifySettings {
     /// By how much an output may differ, in its unit; `None`: by [`EQUAL`].
     pub tolerance: Option<f64>,

@@ -49,10 +49,8 @@ impl Flight {
         read: &Function,
         signals: Option<Vec<String>>,
     ) -> Result<Flight, JsError> {
-        let options = flightlog::Options {
-            signals,
-            ..flightlog::Options::default()
-        };
+        let mut options = flightlog::Options::default();
+        options.signals = signals;
         match flightlog::read(Source::new(read), &options) {
             Ok(flight) => Ok(Flight {
                 name,

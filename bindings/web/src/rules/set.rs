@@ -175,14 +175,11 @@ impl RuleSet {
             return Ok(Vec::new());
         }
         let columns: Vec<&[f64]> = columns.chunks(rows).collect();
-        let outcomes = self.engine.evaluate_batch(&columns);
-        let outcomes = outcomes.map_err(|error| failure(error, None))?;
-        let outputs = self.engine.output_names().len();
-        let column = |output| outcomes.iter().skip(output).step_by(outputs);
-        let values = (0..outputs).flat_map(column);
-        Ok(values
-            .map(|outcome| outcome.value().unwrap_or(f64::NAN))
-            .collect())
+        let mut values = vec![0.0; rows * self.engine.output_names().len()];
+        let mut outputs: Vec<&mut [f64]> = values.chunks_mut(rows).collect();
+        let evaluated = self.engine.evaluate_columns(&columns, &mut outputs);
+        evaluated.map_err(|error| failure(error, None))?;
+        Ok(values)
     }
 
     /// The document of `flagred explain --json`.

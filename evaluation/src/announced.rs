@@ -1,8 +1,6 @@
 //! Which episodes warnings announce, how long before, and which warnings are false.
 
-use alloc::vec::Vec;
-
-use super::Span;
+use crate::span::Span;
 
 /// A warning is not false when an episode starts within so many seconds after its end.
 const FOLLOWS_S: f64 = 10.0;
@@ -60,7 +58,7 @@ pub struct Judged {
 ///
 /// # Example: a false warning, and one four seconds ahead
 /// ```
-/// use flagred::evaluation::{Span, judge};
+/// use evaluation::{Span, judge};
 ///
 /// let span = |from_s, to_s| Span { from_s, to_s };
 /// let (warnings, episodes) = ([span(5.0, 8.0), span(26.0, 40.0)], [span(30.0, 33.0)]);

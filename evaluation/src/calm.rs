@@ -1,9 +1,9 @@
 //! Stretches of a flight in which nothing happens.
 
-use alloc::vec::Vec;
+use flagred::profile::CRITICAL_ERROR_DEG;
+use flightlog::Attitude;
 
-use super::{ErrorRecord, Span};
-use crate::attitude::{Attitude, CRITICAL_ERROR_DEG};
+use crate::{critical::ErrorRecord, span::Span};
 
 /// Calm begins so many seconds after take-off ...
 const AFTER_TAKE_OFF_S: f64 = 5.0;
@@ -25,7 +25,8 @@ const SHORTEST_S: f64 = 20.0;
 /// # Example: one error of 20 degrees in a minute
 ///
 /// ```
-/// use flagred::{attitude::Attitude, evaluation::{ErrorRecord, Span, calm_stretches}};
+/// use evaluation::{ErrorRecord, Span, calm_stretches};
+/// use flightlog::Attitude;
 ///
 /// let attitudes = (0..1500).map(|i| {
 ///     let t_s = f64::from(i) * 0.04;
@@ -51,7 +52,7 @@ pub fn calm_stretches(errors: &ErrorRecord, attitudes: &[(f64, Attitude)], air: 
     let mut last_s = air.from_s;
     let unknown = known
         .chain([air.to_s])
-        .map(|t_s| (core::mem::replace(&mut last_s, t_s), t_s))
+        .map(|t_s| (std::mem::replace(&mut last_s, t_s), t_s))
         .filter(|(from_s, to_s)| to_s - from_s > UNKNOWN_S);
     let moments = errors.times_over(CRITICAL_ERROR_DEG, air).chain(steep);
     let mut busy: Vec<(f64, f64)> = moments.map(|t_s| (t_s, t_s)).chain(unknown).collect();

@@ -1,14 +1,13 @@
 //! How good learned rules are: on samples they were not learned from, and where a rule is missing.
 
-use alloc::{collections::BTreeMap, vec, vec::Vec};
+use std::collections::BTreeMap;
 
+use flagred::gap::{Filling, GapMethod, GapSettings};
 use fuzzy::{
     Engine, Model,
     engine::{EvaluateError, Outcome, Scratch},
     learn::{LearnError, Learner, Refusal, Settings},
 };
-
-use crate::gap::{Filling, GapMethod, GapSettings};
 
 /// A sample to learn from.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,8 +21,7 @@ pub struct Row {
 }
 
 /// Errors of predictions on rows, in the unit of the output, weighted by row. NaN where no row was compared.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct Errors {
     /// The rows compared.
     pub rows: usize,
@@ -68,7 +66,7 @@ impl Tally {
         Errors {
             rows: self.rows,
             without_prediction: self.without_prediction,
-            rmse: libm::sqrt(mean(self.squares)),
+            rmse: mean(self.squares).sqrt(),
             mean_absolute: mean(self.sizes),
             bias: mean(self.sum),
         }
@@ -172,7 +170,8 @@ const MOST_GROUPS: usize = 50;
 ///
 /// # Example: vehicles that were not learned from
 /// ```
-/// use flagred::{gap::GapSettings, learning::{Row, cross_validate}};
+/// use evaluation::learning::{Row, cross_validate};
+/// use flagred::gap::GapSettings;
 /// use fuzzy::learn::Settings;
 ///
 /// let mut model = flagred::shipped::flagred_paper_rules();
@@ -266,8 +265,7 @@ pub struct GapComparison {
 }
 
 /// Errors over all rows, and the mean over rules of the errors of their rows.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct MethodErrors {
     /// Each row counts.
     pub by_row: Errors,
@@ -287,7 +285,8 @@ pub struct MethodErrors {
 ///
 /// # Example
 /// ```
-/// use flagred::{gap::GapMethod, learning::{Row, leave_one_rule_out}};
+/// use evaluation::learning::{Row, leave_one_rule_out};
+/// use flagred::gap::GapMethod;
 ///
 /// let model = flagred::shipped::flagred_paper_rules();
 /// let rows: Vec<Row> = (0..20).map(|i| {
@@ -305,9 +304,11 @@ pub fn leave_one_rule_out(
     methods: &[GapMethod],
     coverage_below: Option<f64>,
 ) -> Result<GapComparison, ExamineError> {
-    let settings = |method| GapSettings {
-        method,
-        coverage_below,
+    let settings = |method| {
+        let mut settings = GapSettings::default();
+        settings.method = method;
+        settings.coverage_below = coverage_below;
+        settings
     };
     let mut with_it = Predictor::new(model, &settings(GapMethod::Nearest))?;
     let mut of_rule: BTreeMap<usize, Vec<&Row>> = BTreeMap::new();

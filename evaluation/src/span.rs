@@ -1,40 +1,15 @@
-//! How well risks and other scores predict critical attitude errors.
-//!
-//! A *step* is a time of a flight with the scores of the estimators. It is critical where the attitude error, root mean square
-//! over a second, exceeds [`CRITICAL_ERROR_DEG`](crate::attitude::CRITICAL_ERROR_DEG) within a horizon after it
-//! ([`ErrorRecord`]). An estimator is measured by how well it ranks critical steps above the others ([`Ranking`]), how often
-//! a risk of so many percent became critical ([`reliability`]), and which episodes its warnings announce ([`judge`]).
-
-mod announced;
-mod baseline;
-mod bootstrap;
-mod calm;
-mod critical;
-mod random;
-mod ranking;
-mod upset;
-
-pub use announced::{Answer, Judged, Warning, judge};
-pub use baseline::{Baseline, BaselineObserver, PerMotor};
-pub use bootstrap::{Interval, bootstrap};
-pub use calm::calm_stretches;
-pub use critical::ErrorRecord;
-pub use ranking::{
-    Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
-};
-pub use upset::{UpsetAlarm, upset_s};
+//! Times of a flight.
 
 /// A time of a flight, both ends included, in seconds.
 ///
 /// # Example
 /// ```
-/// use flagred::evaluation::Span;
+/// use evaluation::Span;
 ///
 /// let gust = Span { from_s: 30.0, to_s: 33.5 };
 /// assert!(gust.contains(30.0) && gust.contains(33.5) && !gust.contains(34.0));
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Span {
     /// Where it begins.
     pub from_s: f64,

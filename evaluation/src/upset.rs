@@ -1,9 +1,8 @@
 //! Upsets: times at which the attitude was lost, and whether an alarm came before.
 
-use alloc::vec::Vec;
+use flightlog::Attitude;
 
-use super::{ErrorRecord, Span};
-use crate::attitude::Attitude;
+use crate::{critical::ErrorRecord, span::Span};
 
 /// The attitude is lost where its error, root mean square over a second, is over so many degrees ...
 const ERROR_DEG: f64 = 30.0;
@@ -27,7 +26,7 @@ const AFTER_S: f64 = 1.0;
 ///
 /// # Example: an alarm that is on four seconds before the upset
 /// ```
-/// use flagred::evaluation::{Span, UpsetAlarm};
+/// use evaluation::{Span, UpsetAlarm};
 ///
 /// let (air, alarm) = (Span { from_s: 0.0, to_s: 60.0 }, Span { from_s: 26.0, to_s: 28.0 });
 /// assert_eq!(UpsetAlarm::of(30.0, air, &[alarm]), UpsetAlarm::Before { lead_s: 4.0 });

@@ -1,8 +1,6 @@
 //! Baselines: predictors without rules that a risk must beat.
 
-use alloc::{string::String, vec, vec::Vec};
-
-use crate::{
+use flagred::{
     monitor::Craft,
     source::{Motors, Observer, Signal, Source, Statistic},
 };
@@ -11,7 +9,7 @@ use crate::{
 ///
 /// # Example
 /// ```
-/// use flagred::evaluation::Baseline;
+/// use evaluation::Baseline;
 ///
 /// let lowest = Baseline::all().into_iter().find(|baseline| baseline.name == "lowest_motor").ok_or("gone")?;
 /// // The less margin the lowest motor has, the more critical.
@@ -145,7 +143,8 @@ impl Baseline {
 ///
 /// # Example: one of two motors at its lower limit
 /// ```
-/// use flagred::{evaluation::{Baseline, BaselineObserver}, monitor::Craft};
+/// use evaluation::{Baseline, BaselineObserver};
+/// use flagred::monitor::Craft;
 ///
 /// let baselines = Baseline::all();
 /// let mut observer = BaselineObserver::new(&baselines, Craft::new(2))?;

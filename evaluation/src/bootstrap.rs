@@ -1,8 +1,6 @@
 //! How sure a figure over flights is: 95 % intervals by drawing whole flights again.
 
-use alloc::{vec, vec::Vec};
-
-use super::random::Random;
+use crate::random::Random;
 
 /// Both ends of a 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +19,7 @@ pub struct Interval {
 ///
 /// # Example: alarms an hour, over three flights of half an hour
 /// ```
-/// use flagred::evaluation::bootstrap;
+/// use evaluation::bootstrap;
 ///
 /// let alarms = [0, 1, 5];
 /// let intervals = bootstrap(alarms.len(), 1000, 1, |drawn| {
@@ -40,7 +38,7 @@ pub fn bootstrap<const N: usize>(
 ) -> Option<[Interval; N]> {
     let mut random = Random::new(seed);
     let mut drawn = vec![0_u32; groups];
-    let mut found: [Vec<f64>; N] = core::array::from_fn(|_| Vec::with_capacity(resamples));
+    let mut found: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(resamples));
     for _ in 0..resamples {
         drawn.fill(0);
         for _ in 0..groups {
@@ -66,7 +64,7 @@ fn quantiles(values: &mut [f64]) -> Option<Interval> {
     values.sort_by(f64::total_cmp);
     let quantile = |share: f64| {
         let rank = share * (values.len().checked_sub(1)?) as f64;
-        let (below, part) = (rank as usize, rank - libm::floor(rank));
+        let (below, part) = (rank as usize, rank - rank.floor());
         let low = *values.get(below)?;
         let high = values.get(below + 1).copied().unwrap_or(low);
         Some(low + part * (high - low))

@@ -1,16 +1,19 @@
 //! The attitude error of a flight over time, and its critical episodes.
 
-use alloc::vec::Vec;
-
-use super::Span;
-use crate::{
-    attitude::{Attitude, CRITICAL_ERROR_DEG},
-    moments::Moments,
-    window::Window,
+use flagred::{
+    monitor::Craft,
+    profile::CRITICAL_ERROR_DEG,
+    source::{Motors, Observer, Signal, Source, Statistic},
 };
+use flightlog::Attitude;
+
+use crate::span::Span;
 
 /// The attitude error is its root mean square over so many seconds.
 const ERROR_WINDOW_S: f64 = 1.0;
+
+/// The name of the signal whose mean over the window is taken.
+const SQUARED_ERROR: &str = "squared_error_deg2";
 
 /// An episode is over the limit for at least so many seconds.
 const SHORTEST_EPISODE_S: f64 = 1.0;
@@ -23,7 +26,8 @@ const ROUNDING_S: f64 = 1e-6;
 /// # Example: three seconds with an error of 20 degrees
 ///
 /// ```
-/// use flagred::{attitude::Attitude, evaluation::ErrorRecord};
+/// use evaluation::ErrorRecord;
+/// use flightlog::Attitude;
 ///
 /// let attitudes = (0..500).map(|i| {
 ///     let t_s = f64::from(i) * 0.04;
@@ -49,7 +53,18 @@ impl ErrorRecord {
     /// From the attitudes of a flight with their times in seconds, in order; one that is not finite is unknown.
     pub fn new(attitudes: impl IntoIterator<Item = (f64, Attitude)>) -> ErrorRecord {
         let mut record = ErrorRecord::default();
-        let mut second = Window::new(ERROR_WINDOW_S);
+        let squares = Source {
+            statistic: Statistic::Mean,
+            motors: Motors::Pooled,
+            signal: Signal::named(SQUARED_ERROR),
+            window_s: ERROR_WINDOW_S,
+            exponential: false,
+        };
+        // The craft carries the signal, so there is an observer of it.
+        let craft = Craft::new(0).with_signals(&[SQUARED_ERROR]);
+        let Ok(mut second) = Observer::new([&squares], craft) else {
+            return record;
+        };
         let mut excursion: Option<Span> = None;
         let mut last_s = None;
         for (t_s, attitude) in attitudes {
@@ -64,15 +79,13 @@ impl ErrorRecord {
                 excursion = None;
                 continue;
             }
-            second.push(t_s, held_s, &Moments::of(squared, held_s));
+            second.push(t_s, held_s, &[], &[squared]);
             // A second that is full to a sample or so is full.
-            if second.total().weight() < ERROR_WINDOW_S - held_s / 2.0 - ROUNDING_S {
-                continue;
-            }
-            let Some(mean) = second.total().mean() else {
+            let full_s = ERROR_WINDOW_S - held_s / 2.0 - ROUNDING_S;
+            let Some(mean) = second.value(0).filter(|mean| mean.covered_s >= full_s) else {
                 continue;
             };
-            let error_deg = libm::sqrt(mean);
+            let error_deg = mean.value.sqrt();
             record.errors.push((t_s, error_deg));
             let is_critical = error_deg > CRITICAL_ERROR_DEG;
             let span = excursion.filter(|_| is_critical).unwrap_or(Span {

@@ -1,8 +1,8 @@
 //! How well scores rank critical cases above the others.
 
-use alloc::{collections::BTreeMap, vec, vec::Vec};
+use std::collections::BTreeMap;
 
-use super::bootstrap::{Interval, bootstrap};
+use crate::bootstrap::{Interval, bootstrap};
 
 /// A score and the outcome.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Prediction {
 /// # Example: one pair of four is ranked wrong
 ///
 /// ```
-/// use flagred::evaluation::{Prediction, Ranking};
+/// use evaluation::{Prediction, Ranking};
 ///
 /// let told = [(0.9, true), (0.8, false), (0.7, true), (0.1, false)];
 /// let ranking = Ranking::new(told.into_iter().enumerate().map(|(i, (score, critical))| {
@@ -171,7 +171,7 @@ impl Ranking {
     ///
     /// # Example: two flights that the score tells apart, but not their moments
     /// ```
-    /// use flagred::evaluation::{Prediction, Ranking};
+    /// use evaluation::{Prediction, Ranking};
     ///
     /// let told = [(0.9, true, 0), (0.9, true, 0), (0.9, false, 0), (0.1, true, 1), (0.1, false, 1), (0.1, false, 1)];
     /// let ranking = Ranking::new(told.map(|(score, critical, group)| Prediction { score, critical, group }));
@@ -300,7 +300,7 @@ pub struct Band {
 ///
 /// # Example
 /// ```
-/// use flagred::evaluation::{Prediction, reliability};
+/// use evaluation::{Prediction, reliability};
 ///
 /// let told = [(12.0, false), (18.0, false), (95.0, true), (97.0, false)];
 /// let bands = reliability(told.map(|(score, critical)| Prediction { score, critical, group: 0 }));
@@ -308,7 +308,7 @@ pub struct Band {
 /// assert_eq!((bands[9].predictions, bands[9].critical, bands[9].mean_risk_pct), (2, 1, Some(96.0)));
 /// ```
 pub fn reliability(predictions: impl IntoIterator<Item = Prediction>) -> [Band; 10] {
-    let mut bands = core::array::from_fn(|i| Band {
+    let mut bands = std::array::from_fn(|i| Band {
         from_pct: 10.0 * i as f64,
         to_pct: 10.0 * (i + 1) as f64,
         predictions: 0,
