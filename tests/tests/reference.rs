@@ -105,7 +105,6 @@ fn an_eventful_flight_is_what_the_documents_say() {
         (text, 10.0, 100.0, 2.8, octa(), 3),
         (text, 10.0, 100.0, 1.1, vec![], 3),
         (&with_noise, 10.0, 100.0, 1.1, octa(), 3),
-        (text, 60.0, 100.0, 0.45, octa(), 2),
         (text, 60.0, 100.0, 1.1, octa(), 3),
         (text, 400.0, 24.0, 1.1, octa(), 1),
     ] {
