@@ -83,13 +83,13 @@ test('a moment has its step and the rules that fire', () => {
 });
 
 test('thresholds are changed in the text of a profile', () => {
-  const tried = profile.withVerdict({ warn: { raise: { risk_pct: 40 }, until: { risk_pct: 30 } }, clear_after_s: 5 });
+  const tried = profile.withVerdict({ warn: { raise: { risk_pct: 40 }, until: { risk_pct: 30 } }, clear_after_s: 7 });
   assert.equal(tried.verdict.warn.raise.risk_pct, 40);
-  assert.equal(tried.verdict.warn.raise.elevated_risk_pct, 2);
+  assert.equal(tried.verdict.warn.raise.elevated_risk_pct, 60);
   assert.equal(flight.assess(tried).brief().verdict, 'WARN');
-  assert.match(tried.text, /clear_after_s: 5 +# lowered when nothing has held it for so long/);
-  assert.equal(Profile.fromText('x.yaml', tried.text).verdict.clear_after_s, 5);
-  assert.throws(() => profile.withVerdict({ warn: { raise: { risk_pct: 40 } } }), { message: /held until 45, which is above 40\nhelp: / });
+  assert.match(tried.text, /clear_after_s: 7 +# lowered when nothing has held it for so long/);
+  assert.equal(Profile.fromText('x.yaml', tried.text).verdict.clear_after_s, 7);
+  assert.throws(() => profile.withVerdict({ warn: { raise: { risk_pct: 40 } } }), { message: /held until 43, which is above 40\nhelp: / });
 });
 
 test('a rule set stands in for the one that a profile names', () => {
