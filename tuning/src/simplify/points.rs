@@ -12,7 +12,7 @@ use super::antecedent::parts;
 pub(crate) const MOST_ON_THE_GRID: usize = 50_000;
 
 /// Points between those of the grid.
-pub(crate) const BETWEEN: usize = 10_000;
+pub(crate) const BETWEEN: usize = 40_000;
 
 /// Points at which a rule fires, for each rule.
 pub(crate) const FOR_EACH_RULE: usize = 50;

@@ -420,3 +420,11 @@ fn most_random_models_become_shorter() {
     let (before, after) = counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
     assert!(after * 4 < before * 3, "{before} {after}");
 }
+
+/// A rule that matters in a small part of the inputs only is kept.
+#[test]
+fn a_rule_that_rarely_matters_is_kept() {
+    let seed = 5_125_509_504_377_779_155;
+    let model = random_model(seed);
+    agree(&model, &simplified(&model).model, seed);
+}

@@ -438,7 +438,7 @@ def evaluate(
     Evaluation(11 estimators on 232 steps)
     >>> of = evaluation.estimators["flagred"]
     >>> round(of.areas.auc, 2), of.warnings.announced, round(of.warnings.lead_s_median, 1)
-    (0.92, 1, 2.8)
+    (0.91, 1, 2.8)
     """
     if rows is not None:
         if not isinstance(logs, tuple) or logs:
