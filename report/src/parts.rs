@@ -306,12 +306,7 @@ fn figures(subject: &Subject) -> Markup {
 
 /// How often errors followed a risk, where it was measured.
 fn reliability(rows: &[Reliability]) -> Markup {
-    let of = |counts: Option<Followed>| {
-        let counts = counts.and_then(|counts| Some((counts.share_pct()?, counts.moments)));
-        counts.map_or("unknown".into(), |(share, moments)| {
-            format!("{share:.0} % of {moments}")
-        })
-    };
+    let of = |counts: Option<Followed>| counts.and_then(words::share).unwrap_or("unknown".into());
     html! {
         @if !rows.is_empty() {
             details {

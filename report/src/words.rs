@@ -6,7 +6,7 @@ use anstyle::{AnsiColor, Style};
 use flagred::{
     estimator::Estimator,
     flight::{Assessment, Peak, Summary, Verdict},
-    profile::Profile,
+    profile::{Followed, Profile},
     verdict::Level,
 };
 use flightlog::Flight;
@@ -312,6 +312,12 @@ fn summary(summary: &Summary, verbose: bool) -> String {
     text
 }
 
+/// `54 % of 1280`; `None` without a moment.
+pub(crate) fn share(counts: Followed) -> Option<String> {
+    let share_pct = counts.share_pct()?;
+    Some(format!("{share_pct:.0} % of {}", counts.moments))
+}
+
 /// What followed moments with a risk as high as the highest one of a flight; `None` where it was not measured.
 fn reliability(summary: &Summary, profile: &Profile) -> Option<String> {
     let highest_pct = summary.risk_max?.value_pct;
@@ -319,14 +325,7 @@ fn reliability(summary: &Summary, profile: &Profile) -> Option<String> {
     let row = rows.find(|row| row.from_pct <= highest_pct && highest_pct <= row.to_pct)?;
     let shares: Vec<String> = [("real", row.real), ("simulated", row.simulated)]
         .into_iter()
-        .filter_map(|(name, counts)| {
-            let counts = counts?;
-            let share = counts.share_pct()?;
-            Some(format!(
-                "{share:.0} % of {} on {name} vehicles",
-                counts.moments
-            ))
-        })
+        .filter_map(|(name, counts)| Some(format!("{} on {name} vehicles", share(counts?)?)))
         .collect();
     (!shares.is_empty()).then(|| {
         format!(
