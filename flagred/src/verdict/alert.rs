@@ -214,14 +214,14 @@ impl Alert {
         self.level = Level::Good;
         let [_, reaches_fail] = self.reached_since_s.map(|since_s| since_s.is_some());
         self.reached_since_s = [None; 2];
+        let quiet_s = self.settings.quiet_before_landing_s;
         let is_landing = |finding: &Finding| {
             landed
                 && !reaches_fail
                 && finding.level < Level::Fail
-                && t_s - finding.raised_s < self.settings.quiet_before_landing_s
+                && t_s - finding.raised_s < quiet_s
         };
-        let ended = self.finding.filter(|finding| !is_landing(finding));
-        self.end_finding();
+        let ended = self.end_finding().filter(|finding| !is_landing(finding));
         Step { change, ended }
     }
 

@@ -1,4 +1,4 @@
-//! The rule sets between which vehicles that were left out chose.
+//! The candidate rule sets. The choice between them is made on vehicles left out.
 
 use fuzzy::Model;
 
@@ -23,7 +23,7 @@ pub const CANDIDATES: [&[&str]; 4] = [
     ],
 ];
 
-/// The template with some of its inputs alone.
+/// The template with these inputs and `at_limit`, without the other inputs and their rules.
 pub fn candidate(model: &Model, inputs: &[&str]) -> Model {
     let mut model = model.clone();
     let is_kept = |name: &str| name == "at_limit" || inputs.contains(&name);
@@ -38,11 +38,11 @@ pub fn candidate(model: &Model, inputs: &[&str]) -> Model {
     model
 }
 
-/// What the learned votes count beside that of a step.
+/// The factor of the weights of the learned votes, beside the vote of a sudden change.
 const BESIDE_STEP: f64 = 0.66;
 
-/// The rules with a vote that only raises: a sudden change is what shows a motor that fails on a craft with room to spare. Like
-/// what `swing_per_room` says it is chosen, because the flights to learn from have few such faults.
+/// Adds a vote of `unsteady_now` that only raises the risk: on a craft with room to spare, a sudden change is the first sign of a
+/// motor that fails. Its peaks are chosen by hand, as those of `swing_per_room` are, because few flights have such a fault.
 ///
 /// # Errors
 ///
