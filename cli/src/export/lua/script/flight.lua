@@ -72,7 +72,10 @@ local function settle()
     local window = windows[settling]
     settling = settling + 1
     if window.length_us > TAKE_OFF_US then
+      local samples = window.samples
       drop_older(window, flown_us - TAKE_OFF_US - 1)
+      -- Slots that stay hold more than a sample each; calls come often enough for that many.
+      window.samples = max(window.samples, min(samples, MIN_SAMPLES))
       return
     end
   end
