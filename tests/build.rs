@@ -12,8 +12,8 @@ fn main() -> std::io::Result<()> {
         "examples",
         "fuzzy",
         "flagred",
-        "flightlog",
-        "cli",
+        "crates/flightlog",
+        "crates/cli",
         "bindings/c",
     ] {
         let folder = root.join(folder);

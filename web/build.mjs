@@ -1,4 +1,4 @@
-// Builds the page: target/web/page for a server, and cli/page/studio.html, one file, which `flagred studio` holds.
+// Builds the page: target/web/page for a server, and crates/cli/page/studio.html, one file, which `flagred studio` holds.
 
 import { createHash } from 'node:crypto';
 import { copyFile, mkdir, readFile, readdir, rm, writeFile } from 'node:fs/promises';
@@ -8,7 +8,7 @@ import { build } from 'esbuild';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 const page = fileURLToPath(new URL('../target/web/page/', import.meta.url));
-const studio = fileURLToPath(new URL('../cli/page/studio.html', import.meta.url));
+const studio = fileURLToPath(new URL('../crates/cli/page/studio.html', import.meta.url));
 const module = (room) => fileURLToPath(new URL(`../bindings/web/js/wasm/${room}_bg.wasm`, import.meta.url));
 const rooms = ['flight', 'rules'];
 

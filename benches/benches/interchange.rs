@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use divan::{Bencher, black_box, counter::ItemsCount};
+use flagred_interchange::{Format, Losses};
 use fuzzy::Model;
-use interchange::{Format, Losses};
 
 fn main() {
     divan::main();
@@ -43,10 +43,10 @@ fn format_of(ending: &str) -> Format {
 #[divan::bench(args = FORMATS, sample_count = 20)]
 fn read_5000_rules(bencher: Bencher<'_, '_>, ending: &str) {
     let format = format_of(ending);
-    let written = interchange::write(&model(), format, Losses::Refuse).unwrap();
-    bencher
-        .counter(ItemsCount::new(RULES))
-        .bench(|| interchange::read(black_box(&written.text), format, Losses::Refuse).unwrap());
+    let written = flagred_interchange::write(&model(), format, Losses::Refuse).unwrap();
+    bencher.counter(ItemsCount::new(RULES)).bench(|| {
+        flagred_interchange::read(black_box(&written.text), format, Losses::Refuse).unwrap()
+    });
 }
 
 #[divan::bench(args = FORMATS, sample_count = 20)]
@@ -54,5 +54,5 @@ fn write_5000_rules(bencher: Bencher<'_, '_>, ending: &str) {
     let (model, format) = (model(), format_of(ending));
     bencher
         .counter(ItemsCount::new(RULES))
-        .bench(|| interchange::write(black_box(&model), format, Losses::Refuse).unwrap());
+        .bench(|| flagred_interchange::write(black_box(&model), format, Losses::Refuse).unwrap());
 }

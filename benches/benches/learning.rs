@@ -2,9 +2,9 @@
 //! inputs with five terms each, and 51 cells along each of four inputs, 6.8 million in all.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use evaluation::learning::{Row, cross_validate};
 use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
 use flagred_benches::{four_inputs, points};
+use flagred_evaluation::learning::{Row, cross_validate};
 use fuzzy::{
     Engine, Model,
     learn::{Learner, Settings},

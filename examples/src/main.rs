@@ -2,13 +2,13 @@
 
 use flagred::{flight::Assessment, log, shipped};
 
-fn assess(path: &str) -> Result<Assessment, flightlog::ReadError> {
-    let flight = flightlog::open(path, &flightlog::Options::default())?;
+fn assess(path: &str) -> Result<Assessment, flagred_flightlog::ReadError> {
+    let flight = flagred_flightlog::open(path, &flagred_flightlog::Options::default())?;
     Ok(log::assess(&flight, &shipped::flagred(), None))
 }
 
 #[allow(clippy::print_stdout)]
-fn main() -> Result<(), flightlog::ReadError> {
+fn main() -> Result<(), flagred_flightlog::ReadError> {
     let path = std::env::args().nth(1);
     let assessment = assess(path.as_deref().unwrap_or(STEADY))?;
     println!("{}", assessment.verdict);

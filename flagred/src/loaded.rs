@@ -174,7 +174,7 @@ pub fn examine(profile_text: &str, model: &Model) -> (Findings, Option<Estimator
 
 /// The findings of [`check::profile`] with the signals that logs carry.
 pub fn fit(profile_text: &str, model: &Model) -> (Findings, Option<Estimator>) {
-    let known = flightlog::known_signals();
+    let known = flagred_flightlog::known_signals();
     let signals: Vec<(&str, &str)> = known.iter().map(|s| (s.name, s.unit)).collect();
     check::profile(profile_text, model, &signals)
 }

@@ -2,7 +2,7 @@
 
 use alloc::{vec, vec::Vec};
 
-use flightlog::{Flight, Gap};
+use flagred_flightlog::{Flight, Gap};
 
 use crate::{
     estimator::Estimator,
@@ -16,13 +16,13 @@ use crate::{
 /// # Example: from a log to a verdict
 /// ```
 /// # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/flights/steady.BIN");
-/// let flight = flightlog::open(path, &flightlog::Options::default())?;
+/// let flight = flagred_flightlog::open(path, &flagred_flightlog::Options::default())?;
 /// let assessment = flagred::log::assess(&flight, &flagred::shipped::flagred(), None);
 /// assert_eq!(assessment.verdict.to_string(), "GOOD");
 /// for finding in &assessment.findings {
 ///     println!("{} from {:.1} to {:.1} s", finding.level, finding.from_s, finding.to_s);
 /// }
-/// # Ok::<(), flightlog::ReadError>(())
+/// # Ok::<(), flagred_flightlog::ReadError>(())
 /// ```
 pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> Assessment {
     let gaps = flight.gaps();

@@ -3,11 +3,11 @@
 
 use std::{env, error::Error, process::ExitCode};
 
+use flagred_flightlog::mavlink::Version;
 use flagred_tests::{
     vehicle::{StandIn, flight},
     wire::{Link, Speed, Wire},
 };
-use flightlog::mavlink::Version;
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
     let arguments: Vec<String> = env::args().skip(1).collect();

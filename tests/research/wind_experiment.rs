@@ -9,7 +9,7 @@ use flagred::{
     monitor::{Craft, Monitor, Sample},
     shipped,
 };
-use flightlog::Flight;
+use flagred_flightlog::Flight;
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 260.0;
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (Some(log), Some(picture)) = (arguments.next(), arguments.next()) else {
         return Err("usage: wind_experiment FLIGHT PICTURE.svg".into());
     };
-    let flight = flightlog::open(&log, &flightlog::Options::default())?;
+    let flight = flagred_flightlog::open(&log, &flagred_flightlog::Options::default())?;
     fs::write(picture, draw(&flight, &risks(&flight)?))?;
     Ok(())
 }

@@ -9,7 +9,7 @@ use flagred::{
     sample::{Estimate, Sample, Update},
     verdict::{Cause, Ended, Finding},
 };
-use flightlog::{Flight, Options};
+use flagred_flightlog::{Flight, Options};
 
 use crate::shared_data;
 
@@ -110,7 +110,7 @@ pub fn logs() -> Vec<PathBuf> {
     reason = "a flight that cannot be read fails the test"
 )]
 pub fn geometry(log: &std::path::Path) -> Vec<Factors> {
-    let flight = flightlog::open(log, &Options::default()).unwrap();
+    let flight = flagred_flightlog::open(log, &Options::default()).unwrap();
     let motors = flight.motors.len();
     let on_a_circle = |i: usize| {
         let (sin, cos) = (std::f64::consts::TAU * (i as f64 + 0.5) / motors as f64).sin_cos();
@@ -131,7 +131,7 @@ pub fn geometry(log: &std::path::Path) -> Vec<Factors> {
     reason = "a flight that cannot be read fails the test"
 )]
 pub fn moments(log: &std::path::Path, signals: &[&str]) -> Vec<Moment> {
-    let flight = flightlog::open(log, &Options::default()).unwrap();
+    let flight = flagred_flightlog::open(log, &Options::default()).unwrap();
     let mut moments = samples(&flight, signals);
     let Some(last) = moments.last().cloned() else {
         return moments;

@@ -1,4 +1,4 @@
-//! A check of JSON against the schemas in `cli/schemas`.
+//! A check of JSON against the schemas in `crates/cli/schemas`.
 //!
 //! It knows the keywords that these use and fails on any other. A validator of all of JSON Schema costs some fifty packages.
 #![expect(

@@ -11,13 +11,13 @@ use std::{
     thread,
 };
 
-use evaluation::{ErrorRecord, Span};
 use flagred::{
     estimator::Estimator,
     monitor::{Craft, Monitor, Sample},
     verdict::Level,
 };
-use flightlog::{ATTITUDE, Flight};
+use flagred_evaluation::{ErrorRecord, Span};
+use flagred_flightlog::{ATTITUDE, Flight};
 
 /// How far apart steps are, and how far they look ahead, in seconds.
 const STEP_S: f64 = 0.5;
@@ -120,9 +120,9 @@ pub fn flights(data: &Path) -> Vec<Simulated> {
 }
 
 fn read(path: &Path) -> Simulated {
-    let mut options = flightlog::Options::default();
+    let mut options = flagred_flightlog::Options::default();
     options.signals = Some(ATTITUDE.map(str::to_owned).to_vec());
-    let flight = flightlog::open(path, &options).unwrap();
+    let flight = flagred_flightlog::open(path, &options).unwrap();
     let said = |key: &str| {
         let found = flight.header.iter().find(|(k, _)| k == key);
         found.map(|(_, value)| value.as_str()).unwrap()

@@ -15,7 +15,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use flightlog::{
+use flagred_flightlog::{
     Flight,
     mavlink::{
         Key, Sender, Skipped, Stream, Version,
@@ -377,9 +377,9 @@ impl StandIn {
 /// Where it cannot be read.
 pub fn flight(log: &Path) -> Flight {
     let signals = Some(Vec::new());
-    let mut options = flightlog::Options::default();
+    let mut options = flagred_flightlog::Options::default();
     options.signals = signals;
-    flightlog::open(log, &options).unwrap()
+    flagred_flightlog::open(log, &options).unwrap()
 }
 
 fn output(name: &str) -> usize {

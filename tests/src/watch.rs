@@ -15,7 +15,7 @@ use std::{
     thread::JoinHandle,
 };
 
-use flightlog::{Flight, mavlink::Version};
+use flagred_flightlog::{Flight, mavlink::Version};
 use serde_json::Value;
 
 use crate::{

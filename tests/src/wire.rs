@@ -6,7 +6,7 @@ use std::{
     time::Duration,
 };
 
-use flightlog::mavlink::Stream;
+use flagred_flightlog::mavlink::Stream;
 
 /// What a link does to packets, both ways for what it loses, and to those of the vehicle else.
 #[derive(Debug, Clone, Copy, Default)]

@@ -7,11 +7,11 @@ use flagred::{
     log::assess,
     shipped,
 };
+use flagred_flightlog::{Flight, Gap, Options};
 use flagred_tests::{Folder, STEADY, flagred, log_writer::ULog, reference_data};
-use flightlog::{Flight, Gap, Options};
 
 fn open(path: &Path) -> Flight {
-    flightlog::open(path, &Options::default()).unwrap()
+    flagred_flightlog::open(path, &Options::default()).unwrap()
 }
 
 fn converted(log: &Path) -> Flight {
@@ -70,12 +70,12 @@ fn flights_of_other_formats_are_the_same_as_csv() {
 
 /// Verdict, reason, findings and summary of a log are those of its CSV.
 fn compare_assessments(log: &Path) {
-    let Ok(flight) = flightlog::open(log, &Options::default()) else {
+    let Ok(flight) = flagred_flightlog::open(log, &Options::default()) else {
         return;
     };
     let mut csv = Vec::new();
     flight.write_csv(&mut csv).unwrap();
-    let again = flightlog::read(&csv[..], &Options::default()).unwrap();
+    let again = flagred_flightlog::read(&csv[..], &Options::default()).unwrap();
     for estimator in [shipped::flagred(), shipped::flagred_paper()] {
         let [of_log, of_csv] = [&flight, &again].map(|flight| assess(flight, &estimator, None));
         let reason = |verdict: &Verdict| match verdict {
@@ -213,15 +213,15 @@ fn whether_in_the_air_stays_unknown() {
     for row in 0..50 {
         log.floats(1, 1_000_000 + 100_000 * row, &[0.4; 12]);
     }
-    let flight = flightlog::read(&log.bytes[..], &Options::default()).unwrap();
+    let flight = flagred_flightlog::read(&log.bytes[..], &Options::default()).unwrap();
     assert_eq!(flight.in_air, None);
     let mut csv = Vec::new();
     flight.write_csv(&mut csv).unwrap();
-    let again = flightlog::read(&csv[..], &Options::default()).unwrap();
+    let again = flagred_flightlog::read(&csv[..], &Options::default()).unwrap();
     assert_eq!((again.in_air, again.commands.len()), (None, 50));
     // A cell that says nothing changes nothing.
     let csv = "t_s,motor1,in_air\n0,0.5,1\n1,0.5,\n2,0.5,0\n3,0.5,\n";
-    let flight = flightlog::read(csv.as_bytes(), &Options::default()).unwrap();
+    let flight = flagred_flightlog::read(csv.as_bytes(), &Options::default()).unwrap();
     let in_air = [0.5, 1.5, 2.5, 3.0].map(|t_s| flight.is_in_air(t_s));
     assert_eq!(in_air, [Some(true), Some(true), Some(false), Some(false)]);
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use flagred::{log::assess, shipped};
-use flightlog::{Flight, Options, ReadError};
+use flagred_flightlog::{Flight, Options, ReadError};
 
 const HEAD: &str = "# pwm_low_us: 1000\n# pwm_high_us: 2000\n";
 const NAMES: &str = "t_s,pwm1,pwm2,pwm3,pwm4,in_air\n";
@@ -23,7 +23,7 @@ fn flight(header: &str, row: impl Fn(usize, f64) -> Option<String>) -> String {
 }
 
 fn read(csv: &str) -> Result<Flight, ReadError> {
-    flightlog::read(csv.as_bytes(), &Options::default())
+    flagred_flightlog::read(csv.as_bytes(), &Options::default())
 }
 
 #[track_caller]
@@ -241,7 +241,9 @@ fn what_convert_wrote_is_read_whatever_it_holds() {
     let rows = "t_s,pwm1,pwm2,pwm3,pwm4,in_air\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n\
                 1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n";
     let head = "# pwm_low_us: 1000\n# pwm_high_us: 2000\n";
-    let read = |text: String| flightlog::read(text.as_bytes(), &flightlog::Options::default());
+    let read = |text: String| {
+        flagred_flightlog::read(text.as_bytes(), &flagred_flightlog::Options::default())
+    };
     assert!(read(format!("{head}{rows}")).is_err());
     let flight = read(format!(
         "{head}# rebooted_in_air_s: 9000\n# written_by: flagred\n{rows}"
@@ -259,7 +261,8 @@ fn what_convert_wrote_is_read_whatever_it_holds() {
 #[test]
 fn quotes_around_names_are_dropped_however_many() {
     let text = "t_s, \"\"\"a\"\"\",motor1\n0,1,0.5\n0.1,2,0.5\n";
-    let flight = flightlog::read(text.as_bytes(), &flightlog::Options::default()).unwrap();
+    let flight =
+        flagred_flightlog::read(text.as_bytes(), &flagred_flightlog::Options::default()).unwrap();
     assert_eq!(flight.signals().next().unwrap().label.name, "a");
 }
 

@@ -162,9 +162,9 @@ fn a_torn_or_short_last_row_is_truncation() {
     let whole =
         "# pwm_low_us: 1000\n# pwm_high_us: 2000\nt_s,roll_deg,pwm1\n0,1,1500\n0.1,1,1600\n";
     let read = |log: &str, signals: Option<Vec<String>>| {
-        let mut options = flightlog::Options::default();
+        let mut options = flagred_flightlog::Options::default();
         options.signals = signals;
-        flightlog::read(log.as_bytes(), &options).unwrap()
+        flagred_flightlog::read(log.as_bytes(), &options).unwrap()
     };
     for signals in [None, Some(Vec::new())] {
         let flight = read(whole, signals.clone());

@@ -1,4 +1,4 @@
-//! What commands print as JSON is what the schemas in `cli/schemas` describe.
+//! What commands print as JSON is what the schemas in `crates/cli/schemas` describe.
 
 use std::fmt::Write as _;
 

@@ -9,8 +9,8 @@
 
 use std::{fs, path::Path, process::Command};
 
-use evaluation::{Answer, Judged, Span, judge};
 use flagred::{estimator::Estimator, shipped};
+use flagred_evaluation::{Answer, Judged, Span, judge};
 use flagred_tests::{
     Folder, flagred, reference_data,
     simulated::{self, AS_FLOWN, Simulated, on_all_cores},

@@ -1,18 +1,18 @@
 //! Damaged logs are read as far as they go. `mutations.rs` damages many more.
 
 use flagred::{flight::Verdict, log::assess, shipped};
+use flagred_flightlog::Options;
 use flagred_tests::{
     fuzzing::{check, mutation, seeds},
     log_writer::Value,
     reference_data,
 };
-use flightlog::Options;
 
 /// What is damaged is whole before.
 #[test]
 fn the_logs_that_are_damaged_are_whole() {
     for log in seeds::logs() {
-        let flight = flightlog::read(&log[..], &Options::default()).unwrap();
+        let flight = flagred_flightlog::read(&log[..], &Options::default()).unwrap();
         assert!(flight.report.is_clean(), "{:?}", flight.report);
         assert!(flight.statistics().is_ok(), "{:?}", flight.gaps());
         check(&flight, &log);
@@ -39,7 +39,7 @@ fn damaged_real_logs() {
                 let at = random.usize(..bytes.len());
                 bytes[at] = mutation::byte(&mut random);
             }
-            if let Ok(flight) = flightlog::read(&bytes[..], &Options::default()) {
+            if let Ok(flight) = flagred_flightlog::read(&bytes[..], &Options::default()) {
                 check(&flight, &bytes);
             }
         }
@@ -56,13 +56,13 @@ fn a_hole_costs_what_it_hits() {
         seeds::data_flash().text.into_bytes(),
     ];
     for mut log in logs {
-        let rows = flightlog::read(&log[..], &Options::default())
+        let rows = flagred_flightlog::read(&log[..], &Options::default())
             .unwrap()
             .commands
             .len();
         let middle = log.len() / 2;
         log[middle..middle + 200].fill(b'?');
-        let flight = flightlog::read(&log[..], &Options::default()).unwrap();
+        let flight = flagred_flightlog::read(&log[..], &Options::default()).unwrap();
         let lost = rows - flight.commands.len();
         assert!(
             (1..=6).contains(&lost),
@@ -72,7 +72,7 @@ fn a_hole_costs_what_it_hits() {
         let report = &flight.report;
         assert!(report.skipped_bytes + report.bad_messages > 0, "{report:?}");
         // Cut in the middle, all rows before are there.
-        let flight = flightlog::read(&log[..middle], &Options::default()).unwrap();
+        let flight = flagred_flightlog::read(&log[..middle], &Options::default()).unwrap();
         assert!(flight.commands.len() >= rows / 3, "{}", flight.format);
     }
 }
@@ -89,7 +89,7 @@ fn seconds_of_wild_time_stamps_are_left_out() {
             let pulse = Value::Number(f64::from(1450 + row % 100));
             log.write("RCOU", [time_us.into(), pulse, pulse, pulse, pulse]);
         }
-        flightlog::read(&log.bytes[..], &Options::default()).unwrap()
+        flagred_flightlog::read(&log.bytes[..], &Options::default()).unwrap()
     };
     let whole = log(None);
     let verdict = assess(&whole, &shipped::flagred(), None).verdict;

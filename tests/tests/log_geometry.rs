@@ -2,11 +2,11 @@
 
 use std::{fs, io::Read, path::Path};
 
+use flagred_flightlog::{Basis, Flight, Options};
 use flagred_tests::reference_data;
-use flightlog::{Basis, Flight, Options};
 
 fn open(path: &Path) -> Flight {
-    flightlog::open(path, &Options::default()).unwrap()
+    flagred_flightlog::open(path, &Options::default()).unwrap()
 }
 
 /// A flight CSV with a frame in its header.
@@ -16,7 +16,7 @@ fn declared(path: &Path, frame: &str) -> Flight {
     flate2::read::GzDecoder::new(file)
         .read_to_string(&mut log)
         .unwrap();
-    flightlog::read(log.as_bytes(), &Options::default()).unwrap()
+    flagred_flightlog::read(log.as_bytes(), &Options::default()).unwrap()
 }
 
 /// What a log tells of its geometry: the frame, how well that is known, and the source.

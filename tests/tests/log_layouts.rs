@@ -1,13 +1,13 @@
 //! Layouts of flight logs that pilots have and that cannot be shipped, written here.
 
+use flagred_flightlog::{Flight, Format, Options, VehicleKind};
 use flagred_tests::log_writer::{
     ATTITUDE, DataFlash, HEARTBEAT, NAV_CONTROLLER_OUTPUT, PARAM_VALUE, SERVO_OUTPUT_RAW,
     STATUSTEXT, Tlog, ULog, Value,
 };
-use flightlog::{Flight, Format, Options, VehicleKind};
 
 fn read(bytes: &[u8]) -> Flight {
-    flightlog::read(bytes, &Options::default()).unwrap()
+    flagred_flightlog::read(bytes, &Options::default()).unwrap()
 }
 
 /// Both forms of a DataFlash log must say the same.
@@ -31,7 +31,7 @@ fn read_both(log: &DataFlash) -> Flight {
 }
 
 fn outputs(flight: &Flight) -> Vec<(u16, &str)> {
-    let named = |motor: &flightlog::Motor| motor.number;
+    let named = |motor: &flagred_flightlog::Motor| motor.number;
     flight
         .motors
         .iter()

@@ -1,10 +1,10 @@
 //! What the logs of old firmware leave out, and limits that only it has.
 
+use flagred_flightlog::{Basis, Flight, Options, ReadError};
 use flagred_tests::log_writer::{DataFlash, ULog, Value};
-use flightlog::{Basis, Flight, Options, ReadError};
 
 fn read(bytes: &[u8]) -> Flight {
-    flightlog::read(bytes, &Options::default()).unwrap()
+    flagred_flightlog::read(bytes, &Options::default()).unwrap()
 }
 
 /// ArduCopter 3.2 with six outputs, `moving` of which follow the throttle from 1200 to `to_us`;
@@ -134,7 +134,7 @@ fn a_log_of_px4_before_ulog_is_told_as_what_it_is() {
     log.define(129, "TIME", "Q", "StartTime");
     log.define(2, "ATT", "ffff", "qw,qx,qy,qz");
     log.write("TIME", [1e6.into()]);
-    let error = flightlog::read(&log.bytes[..], &Options::default()).unwrap_err();
+    let error = flagred_flightlog::read(&log.bytes[..], &Options::default()).unwrap_err();
     assert!(matches!(error, ReadError::NotRead { .. }));
     assert!(error.to_string().contains("sdlog2"), "{error}");
     assert!(error.help().unwrap().contains("ULog"));
@@ -156,7 +156,7 @@ fn the_report_is_the_same_whatever_is_kept() {
         let all = read(bytes);
         let mut none = Options::default();
         none.signals = Some(Vec::new());
-        let few = flightlog::read(bytes, &none).unwrap();
+        let few = flagred_flightlog::read(bytes, &none).unwrap();
         assert!(all.report.bad_messages > 1 && all.signals().count() > 0);
         assert_eq!(few.report, all.report);
         assert_eq!(few.commands, all.commands);

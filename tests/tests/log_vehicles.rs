@@ -1,10 +1,10 @@
 //! A telemetry log and a live link understand a vehicle alike: the same messages, given to both.
 
-use flagred_tests::log_writer::{HEARTBEAT, Message, PARAM_VALUE, SERVO_OUTPUT_RAW, Tlog};
-use flightlog::{
+use flagred_flightlog::{
     Flight, Options,
     mavlink::{News, Next, Telemetry, next_packet, vehicle_of},
 };
+use flagred_tests::log_writer::{HEARTBEAT, Message, PARAM_VALUE, SERVO_OUTPUT_RAW, Tlog};
 
 const EXTENDED_SYS_STATE: Message = (245, 130, 2);
 const AUTOPILOT_VERSION: Message = (148, 178, 60);
@@ -63,7 +63,7 @@ impl Vehicle {
     }
 
     fn recorded(&self) -> Flight {
-        flightlog::read(&self.log.bytes[..], &Options::default()).unwrap()
+        flagred_flightlog::read(&self.log.bytes[..], &Options::default()).unwrap()
     }
 
     /// Live: the vehicle, and its rows of commands.

@@ -5,13 +5,13 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
+use flagred_flightlog::{Flight, Interval, Options, Range, Statistics};
 use flagred_tests::reference_data;
 use flate2::read::GzDecoder;
-use flightlog::{Flight, Interval, Options, Range, Statistics};
 use serde_json::Value;
 
 fn open(path: &Path) -> Flight {
-    flightlog::open(path, &Options::default()).unwrap()
+    flagred_flightlog::open(path, &Options::default()).unwrap()
 }
 
 fn gunzip(path: &Path) -> String {
@@ -419,7 +419,7 @@ fn computed_motor_commands_are_those_of_px4() {
                 .unwrap();
             bytes = unpacked;
         }
-        let recorded = flightlog::read(&bytes[..], &Options::default()).unwrap();
+        let recorded = flagred_flightlog::read(&bytes[..], &Options::default()).unwrap();
         for topic in [&b"actuator_motors"[..], b"actuator_outputs"] {
             let found = bytes.windows(topic.len()).enumerate();
             let places = found.filter(|(_, bytes)| *bytes == topic);
@@ -427,7 +427,7 @@ fn computed_motor_commands_are_those_of_px4() {
                 bytes[at] = b'x';
             }
         }
-        let computed = flightlog::read(&bytes[..], &Options::default()).unwrap();
+        let computed = flagred_flightlog::read(&bytes[..], &Options::default()).unwrap();
         assert_eq!(computed.motors.len(), recorded.motors.len());
         assert!(computed.assumed[0].contains("set points"), "{log}");
         let mut rows = computed.commands.rows().peekable();

@@ -24,7 +24,7 @@ struct Followed {
 }
 
 fn follow(path: &Path) -> Followed {
-    let flight = flightlog::open(path, &flightlog::Options::default()).unwrap();
+    let flight = flagred_flightlog::open(path, &flagred_flightlog::Options::default()).unwrap();
     let factors = flight.geometry.as_ref().map_or(&[][..], |g| &g.factors);
     let craft = Craft::new(flight.motors.len()).with_geometry(factors);
     let mut assessor = Assessor::new(&shipped::flagred(), craft, None).unwrap();

@@ -102,7 +102,7 @@ fn a_log_of_zeros_takes_no_memory() {
     let packed = packed.finish().unwrap();
     assert!(packed.len() < 2 << 20);
     let used = measure(|| {
-        let read = flightlog::read(&packed[..], &flightlog::Options::default());
+        let read = flagred_flightlog::read(&packed[..], &flagred_flightlog::Options::default());
         assert!(read.is_err());
     });
     assert!(used.bytes_max < 8 << 20, "{used:?}");

@@ -10,13 +10,13 @@ use std::{
     time::{Duration, Instant},
 };
 
+use flagred_flightlog::mavlink::{Sender, Version, dialect::MavType};
 use flagred_tests::{
     Folder, STEADY, flagred,
     vehicle::{StandIn, flight, heartbeat},
     wire::{Link, Speed, Wire},
     writing::{RULES, wild_flight},
 };
-use flightlog::mavlink::{Sender, Version, dialect::MavType};
 
 /// How a command ends whose reader takes so many bytes of its output, or all.
 fn ended(arguments: &[&str], read: Option<usize>) -> (Option<i32>, String) {

@@ -185,14 +185,14 @@ fn a_mistake_in_the_rule_set_is_shown_in_the_rule_set() {
 #[test]
 fn the_page_lists_every_signal() {
     let page = fs::read_to_string(format!("{ROOT}/docs/profiles.md")).unwrap();
-    for signal in flightlog::known_signals() {
+    for signal in flagred_flightlog::known_signals() {
         let formats: Vec<&str> = signal
             .formats
             .iter()
             .map(|format| match format {
-                flightlog::Format::DataFlash => "DataFlash",
-                flightlog::Format::ULog => "ULog",
-                flightlog::Format::Tlog => "tlog",
+                flagred_flightlog::Format::DataFlash => "DataFlash",
+                flagred_flightlog::Format::ULog => "ULog",
+                flagred_flightlog::Format::Tlog => "tlog",
                 other => panic!("{other}"),
             })
             .collect();

@@ -9,6 +9,7 @@ use flagred::{
     sample, shipped,
     verdict::{Level, Measure},
 };
+use flagred_flightlog::{Basis, Flight};
 use flagred_tests::{
     STEADY,
     reference::{
@@ -18,7 +19,6 @@ use flagred_tests::{
     },
     reference_data,
 };
-use flightlog::{Basis, Flight};
 
 /// Rounding: the sums are made in another order.
 const ROUNDING: f64 = 1e-9;
@@ -291,7 +291,7 @@ fn flights_are_what_the_documents_say() {
 }
 
 fn open(path: impl AsRef<std::path::Path>) -> Flight {
-    flightlog::open(path, &flightlog::Options::default()).unwrap()
+    flagred_flightlog::open(path, &flagred_flightlog::Options::default()).unwrap()
 }
 
 /// Holds a log's assessment against the reference; gives what the reference finds.

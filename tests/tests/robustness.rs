@@ -2,8 +2,8 @@
 //!
 //! `FLAGRED_SHARED=... cargo test -p flagred-tests --test robustness -- --ignored --nocapture` prints the figures.
 
-use evaluation::{Prediction, Ranking};
 use flagred::{estimator::Estimator, shipped};
+use flagred_evaluation::{Prediction, Ranking};
 use flagred_tests::{
     reference_data,
     simulated::{self, AS_FLOWN, Replay, Said, Simulated, on_all_cores},

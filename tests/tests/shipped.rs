@@ -1,21 +1,26 @@
-//! The rule sets and profiles in `rules/` that are shipped are the files in the package: links, and no copies.
+//! The rule sets and profiles that are shipped are those in `rules/`.
+//!
+//! A package holds only files below its own folder, so `flagred/rules/` has a copy of each. Edit the file in `rules/`, then
+//! run `UPDATE_DOCUMENTS=1 cargo test --workspace --test shipped`, which copies it.
 
-use std::{fs, path::Path};
+use std::{env, fs, path::Path};
 
 use flagred::shipped::{PROFILES, RULE_SETS};
 
 #[test]
-fn the_shipped_files_in_rules_are_those_of_the_package() {
+fn the_package_has_the_files_of_rules() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    for shipped in RULE_SETS.iter().chain(&PROFILES) {
-        let linked = root.join("rules").join(shipped.file);
-        let home = root.join("flagred/rules").join(shipped.file);
-        assert_eq!(
-            linked.canonicalize().unwrap(),
-            home.canonicalize().unwrap(),
-            "make rules/{0} a link to flagred/rules/{0}",
-            shipped.file
+    let files = RULE_SETS.iter().chain(&PROFILES).map(|shipped| shipped.file);
+    for file in files.chain(["profile-schema.json"]) {
+        let text = fs::read_to_string(root.join("rules").join(file)).unwrap();
+        let copy = root.join("flagred/rules").join(file);
+        if env::var_os("UPDATE_DOCUMENTS").is_some() {
+            fs::write(copy, text).unwrap();
+            continue;
+        }
+        assert!(
+            fs::read_to_string(copy).unwrap() == text,
+            "flagred/rules/{file} is another than rules/{file}: run UPDATE_DOCUMENTS=1 cargo test --workspace --test shipped"
         );
-        assert_eq!(fs::read_to_string(home).unwrap(), shipped.text);
     }
 }

@@ -7,11 +7,11 @@ use flagred::{
     log::assess,
     shipped,
 };
+use flagred_flightlog::{Options, ReadError};
 use flagred_tests::{
     Folder, flagred,
     log_writer::{DataFlash, ULog, Value},
 };
-use flightlog::{Options, ReadError};
 
 /// Runs `flagred assess` on a flight CSV; gives the exit code and what it printed.
 fn assess_csv(csv: &str, more: &[&str]) -> (Option<i32>, String) {
@@ -155,7 +155,8 @@ fn outputs_that_are_no_pulses_are_the_reason_for_no_verdict() {
         let high = if t_s > 30.0 { 2000 } else { 1500 };
         [1500, u16::MAX, high, 1500, u16::MAX, high]
     };
-    let flight = flightlog::read(&dataflash(outputs, None)[..], &Options::default()).unwrap();
+    let flight =
+        flagred_flightlog::read(&dataflash(outputs, None)[..], &Options::default()).unwrap();
     for estimator in [shipped::flagred(), shipped::flagred_paper()] {
         let verdict = assess(&flight, &estimator, None).verdict;
         assert!(
@@ -173,7 +174,7 @@ fn outputs_that_are_no_pulses_are_the_reason_for_no_verdict() {
 fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
     let calm = |_| [1500; 6];
     let estimator = shipped::flagred();
-    let read = |bytes: &[u8]| flightlog::read(bytes, &Options::default()).unwrap();
+    let read = |bytes: &[u8]| flagred_flightlog::read(bytes, &Options::default()).unwrap();
     let whole = read(&dataflash(calm, None));
     assert_eq!(assess(&whole, &estimator, None).verdict.to_string(), "GOOD");
     assert!(whole.rebooted_in_air_s.is_empty());
@@ -240,7 +241,7 @@ fn a_clock_of_px4_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
             }
             log.floats(1, us + 1000, &[0.4; 12]);
         }
-        let flight = flightlog::read(&log.bytes[..], &Options::default()).unwrap();
+        let flight = flagred_flightlog::read(&log.bytes[..], &Options::default()).unwrap();
         assess(&flight, &shipped::flagred(), None)
             .verdict
             .to_string()
@@ -328,7 +329,7 @@ fn cells_with_another_unit_are_refused_where_they_stand() {
         let row = |i: u32| format!("{},{motor},0.5,0.5,0.5\n", f64::from(i) * t_step);
         let rows: String = (0..1000).map(row).collect();
         let csv = format!("t_s,motor1,motor2,motor3,motor4\n{rows}");
-        let refused = flightlog::read(csv.as_bytes(), &Options::default()).unwrap_err();
+        let refused = flagred_flightlog::read(csv.as_bytes(), &Options::default()).unwrap_err();
         assert!(matches!(refused, ReadError::Csv { .. }), "{refused}");
         let (code, text) = assess_csv(&csv, &[]);
         assert_eq!(code, Some(3), "{text}");

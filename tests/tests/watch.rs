@@ -5,13 +5,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use flagred_flightlog::{Flight, mavlink::Version};
 use flagred_tests::{
     STEADY, reference_data, shared_data,
     vehicle::{StandIn, flight},
     watch::{Said, Watch, assess, check_texts, compare, fly_udp},
     wire::{Link, Speed, Wire},
 };
-use flightlog::{Flight, mavlink::Version};
 use serde_json::{Value, json};
 
 /// A good link and two bad ones.

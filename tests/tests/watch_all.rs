@@ -9,14 +9,14 @@ use std::{
     time::{Duration, Instant},
 };
 
+use flagred_flightlog::mavlink::{
+    Sender, Version,
+    dialect::{MavMessage, MavType},
+};
 use flagred_tests::{
     flagred,
     schema::{errors, schema},
     vehicle::{heartbeat, servo},
-};
-use flightlog::mavlink::{
-    Sender, Version,
-    dialect::{MavMessage, MavType},
 };
 use serde_json::Value;
 

@@ -5,12 +5,12 @@ use std::{fs, io::Read, path::Path};
 
 use flagred::{flight::Verdict, shipped};
 use flagred_cli::fuzzing::Watch;
-use flagred_tests::reference_data;
-use flightlog::mavlink::{
+use flagred_flightlog::mavlink::{
     Next,
     dialect::{MavCmd, MavMessage},
     next_packet,
 };
+use flagred_tests::reference_data;
 use serde_json::Value;
 
 /// How often a watch looks at the time.
@@ -97,7 +97,7 @@ fn stream(path: &Path) -> Vec<u8> {
 
 /// The verdict of `assess`, and what it assumes.
 fn assess(stream: &[u8]) -> (Verdict, Vec<String>) {
-    let flight = flightlog::read(stream, &flightlog::Options::default()).unwrap();
+    let flight = flagred_flightlog::read(stream, &flagred_flightlog::Options::default()).unwrap();
     let assessment = flagred::log::assess(&flight, &shipped::flagred(), None);
     (assessment.verdict, flight.assumed)
 }

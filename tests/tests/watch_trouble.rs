@@ -6,6 +6,7 @@ use std::{
     time::Duration,
 };
 
+use flagred_flightlog::mavlink::Version;
 use flagred_tests::{
     STEADY, flagred,
     log_writer::Tlog,
@@ -13,7 +14,6 @@ use flagred_tests::{
     watch::{Watch, check_texts, refused},
     wire::{Link, Speed, Wire},
 };
-use flightlog::mavlink::Version;
 use serde_json::json;
 
 #[test]
@@ -78,7 +78,7 @@ fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
 
 #[test]
 fn other_vehicles_and_ground_stations_are_not_followed() {
-    use flightlog::mavlink::{
+    use flagred_flightlog::mavlink::{
         Sender,
         dialect::{MavAutopilot, MavModeFlag, MavState, MavType},
     };
@@ -231,7 +231,7 @@ fn wild(vehicle: &mut StandIn, t_us: u32) {
 /// The checksum of these tests is that of the library, so that wild values arrive and are not skipped as damaged.
 #[test]
 fn wild_packets_are_packets() {
-    use flightlog::mavlink::{Next, next_packet};
+    use flagred_flightlog::mavlink::{Next, next_packet};
     for (message, extra, payload, _) in messages_read(1) {
         let bytes = packet(message, extra, &payload);
         let Next::Packet(packet) = next_packet(&bytes) else {

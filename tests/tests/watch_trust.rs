@@ -2,13 +2,7 @@
 
 use std::{net::TcpStream, path::Path, time::Duration};
 
-use flagred_tests::{
-    Folder, STEADY, schema,
-    vehicle::{StandIn, flight, servo},
-    watch::{Said, Watch, assess, compare, refused},
-    wire::{Link, Speed, Wire},
-};
-use flightlog::{
+use flagred_flightlog::{
     Flight,
     mavlink::{
         Key, Version,
@@ -16,6 +10,12 @@ use flightlog::{
             EXTENDED_SYS_STATE_DATA, MavLandedState, MavMessage, MavParamType, PARAM_VALUE_DATA,
         },
     },
+};
+use flagred_tests::{
+    Folder, STEADY, schema,
+    vehicle::{StandIn, flight, servo},
+    watch::{Said, Watch, assess, compare, refused},
+    wire::{Link, Speed, Wire},
 };
 use serde_json::json;
 
@@ -25,7 +25,7 @@ fn steady() -> (Flight, f64) {
     (flight, start_s)
 }
 
-/// Every line is one that cli/schemas/watch.json describes.
+/// Every line is one that crates/cli/schemas/watch.json describes.
 fn valid(said: &Said) {
     let schema = schema::schema("watch");
     for line in &said.events {

@@ -80,7 +80,7 @@ fn it_is_an_onboard_controller_of_the_vehicle_and_tells_values_once_in_half_a_se
         .messages
         .iter()
         .find_map(|(_, _, _, message)| match message {
-            flightlog::mavlink::dialect::MavMessage::HEARTBEAT(beat) => Some(beat),
+            flagred_flightlog::mavlink::dialect::MavMessage::HEARTBEAT(beat) => Some(beat),
             _ => None,
         });
     let beat = beat.unwrap();

@@ -9,7 +9,7 @@ import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
 export const repository = fileURLToPath(new URL('../../', import.meta.url));
-export const studio = join(repository, 'cli/page/studio.html');
+export const studio = join(repository, 'crates/cli/page/studio.html');
 export const page = join(repository, 'target/web/page');
 const types = {
   '.html': 'text/html',

@@ -107,7 +107,7 @@ test('every wrong rule set is shown with its message, and the page goes on', asy
     ).catch(() => assert.fail(`${file}: ${first.message}`));
   }
   // It still works.
-  await paste(page, await read('authoring/src/starter.yaml'));
+  await paste(page, await read('crates/authoring/src/starter.yaml'));
   await page.waitForFunction(() => document.querySelector('.problems .count').textContent === 'no findings');
 });
 
@@ -343,7 +343,7 @@ test('a defect is told and the page goes on', async (t) => {
 
 /** The page as `flagred studio FILE` serves it: one file, and the text of a file on disk. */
 async function studio(t, { readOnly = false } = {}) {
-  const html = await readFile(join(repository, 'cli/page/studio.html'));
+  const html = await readFile(join(repository, 'crates/cli/page/studio.html'));
   const disk = { text: await read('rules/tipper.yaml'), version: 1 };
   const made = createServer((request, response) => {
     if (request.url !== '/api/file') return response.writeHead(200, { 'Content-Type': 'text/html' }).end(html);

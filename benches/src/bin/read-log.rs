@@ -8,13 +8,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let log = arguments.next().ok_or("which log?")?;
     let runs: u32 = arguments.next().ok_or("how many runs?")?.parse()?;
     let signals: Vec<String> = arguments.collect();
-    let mut options = flightlog::Options::default();
+    let mut options = flagred_flightlog::Options::default();
     options.signals = (!signals.is_empty()).then_some(signals);
     let mut flight = None;
     let start_s = cpu_s()?;
     for _ in 0..runs {
         drop(flight.take());
-        flight = Some(flightlog::open(&log, &options)?);
+        flight = Some(flagred_flightlog::open(&log, &options)?);
     }
     let seconds = (cpu_s()? - start_s) / f64::from(runs);
     let flight = flight.ok_or("at least one run")?;

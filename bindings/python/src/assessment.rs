@@ -9,12 +9,12 @@ use flagred::{
     loaded::Loaded,
     monitor::Estimate,
 };
-use pyo3::prelude::*;
-use report::{
+use flagred_report::{
     document::{FindingDocument, document},
     finding::Teller,
     page::{self, Subject},
 };
+use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::{

@@ -2,13 +2,13 @@
 
 use std::io;
 
-use flightlog::ReadError;
+use flagred_flightlog::ReadError;
+use flagred_report::diagnostics::{Style, draw};
 use fuzzy::{
     Findings,
     diagnostic::{Diagnostic, Severity},
 };
 use pyo3::{exceptions::PyOSError, prelude::*, sync::PyOnceLock, types::PyType};
-use report::diagnostics::{Style, draw};
 
 pyo3::import_exception!(flagred._errors, DataError);
 pyo3::import_exception!(flagred._errors, LogError);
@@ -19,7 +19,7 @@ const STYLE: Style = Style {
     advice: |_| None,
     all: "`findings` of the error lists them",
     is_quoted: |text| {
-        interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
+        flagred_interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
     },
 };
 

@@ -10,12 +10,12 @@ use std::{
 
 use arrow_array::{ArrayRef, BooleanArray, Int32Array, RecordBatch};
 use arrow_schema::{Field, Schema};
-use evaluation::{
+use flagred::shipped;
+use flagred_evaluation::{
     Case, Document, ERROR, Estimators, Evaluation, LeftOut, Record, Rows, Unusable, cases, files,
     page, svg, words,
 };
-use flagred::shipped;
-use flightlog::Flight;
+use flagred_flightlog::Flight;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, prelude::*};
@@ -311,7 +311,7 @@ impl EvaluationData {
 
     /// The evaluation as one HTML page that needs nothing beside it.
     fn html(&self) -> String {
-        report::page::around("Evaluation", page::body(&self.evaluation))
+        flagred_report::page::around("Evaluation", page::body(&self.evaluation))
     }
 
     /// The ROC curves and the reliability as SVG.

@@ -4,7 +4,7 @@ use std::{io, path::PathBuf, sync::Arc};
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
 use arrow_schema::{DataType, Field, Schema};
-use flightlog::{Flight, Options, PulseRange, Series, Signal};
+use flagred_flightlog::{Flight, Options, PulseRange, Series, Signal};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::{exceptions::PyValueError, prelude::*, types::PyBytes};
 use serde_json::json;
@@ -33,8 +33,8 @@ type Column<'py> = Bound<'py, PyArray1<f64>>;
 /// Reads a log while Ctrl-C is listened to.
 fn read(py: Python<'_>, source: Source, options: Options) -> PyResult<Flight> {
     let flight = interruptible(py, move || match source {
-        Source::Path(path) => flightlog::open(path, &options),
-        Source::Bytes(bytes) => flightlog::read(io::Cursor::new(bytes), &options),
+        Source::Path(path) => flagred_flightlog::open(path, &options),
+        Source::Bytes(bytes) => flagred_flightlog::read(io::Cursor::new(bytes), &options),
     })?;
     flight.map_err(|error| read_error(py, &error))
 }

@@ -2,13 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use fuzzy::yaml;
-use numpy::PyReadonlyArray1;
-use pyo3::prelude::*;
-use tuning::{
+use flagred_tuning::{
     Data,
     identify::{Antecedents, Consequents, Identification, identify, judge},
 };
+use fuzzy::yaml;
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
 
 use crate::{
     rows::{Failed, choice},
@@ -112,8 +112,8 @@ pub(crate) fn _identify(
         Ok((found, judged))
     })?;
     let (found, judged) =
-        found.map_err(|error: tuning::TuneError| Failed::from(error).raise(py))?;
-    let figure = |interval: tuning::Interval| (interval.value, interval.low, interval.high);
+        found.map_err(|error: flagred_tuning::TuneError| Failed::from(error).raise(py))?;
+    let figure = |interval: flagred_tuning::Interval| (interval.value, interval.low, interval.high);
     let steps = found.steps.into_iter();
     Ok(Identified {
         model: yaml::to_string(&found.model),

@@ -1,7 +1,7 @@
 //! Rules from rows: `flagred.learn`.
 
-use evaluation::learning::{self, Row};
 use flagred::gap::GapSettings;
+use flagred_evaluation::learning::{self, Row};
 use fuzzy::{
     Engine, Model,
     check::counterexamples,

@@ -6,8 +6,8 @@ use flagred::{
     flight::Assessor,
     monitor::{Craft, Sample, Update as Said, counted},
 };
+use flagred_report::{document::FindingDocument, finding::Teller};
 use pyo3::prelude::*;
-use report::{document::FindingDocument, finding::Teller};
 use serde_json::json;
 
 use crate::{

@@ -1,6 +1,6 @@
 //! Rows to learn from, and what `flagred.learn` and `flagred.tune` ask alike.
 
-use evaluation::learning::Row;
+use flagred_evaluation::learning::Row;
 use fuzzy::{
     Findings,
     check::{Direction, Monotone},

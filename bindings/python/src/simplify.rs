@@ -1,9 +1,9 @@
 //! The same said with fewer rules: `flagred.simplify`.
 
+use flagred_tuning::{SimplifyError, SimplifySettings, simplify};
 use fuzzy::{Model, yaml};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
-use tuning::{SimplifyError, SimplifySettings, simplify};
 
 use crate::{rows::Failed, rule_set::RuleSet, threads::interruptible};
 

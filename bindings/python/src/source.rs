@@ -53,7 +53,7 @@ impl Source {
 
 fn document(text: &str, unfinished: bool) -> Result<Document, Findings> {
     if !unfinished {
-        return interchange::document(text);
+        return flagred_interchange::document(text);
     }
     let tree = yaml::read(text)?;
     format::read_unfinished(&tree).map_err(|findings| Findings::locate(findings, text))

@@ -8,10 +8,10 @@ use std::{
     },
 };
 
-use evaluation::learning::Row;
+use flagred_evaluation::learning::Row;
+use flagred_tuning::{Data, Loss, Settings, TuneError, cross_validate};
 use fuzzy::{Model, yaml};
 use pyo3::prelude::*;
-use tuning::{Data, Loss, Settings, TuneError, cross_validate};
 
 use crate::{
     rows::{Failed, Rows, choice, claims},
@@ -132,12 +132,12 @@ fn tune_numbers(
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    let tuned = tuning::tune(model, &data, settings, &mut |_| flow())?;
+    let tuned = flagred_tuning::tune(model, &data, settings, &mut |_| flow())?;
     let validation = match folds {
         Some(folds) => cross_validate(model, &data, settings, folds, &mut |_, _| flow())?,
         None => None,
     };
-    let interval = |figure: tuning::Interval| (figure.value, figure.low, figure.high);
+    let interval = |figure: flagred_tuning::Interval| (figure.value, figure.low, figure.high);
     let moved = tuned.moved.into_iter();
     Ok(Tuned {
         model: yaml::to_string(&tuned.model),

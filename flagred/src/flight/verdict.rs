@@ -73,7 +73,7 @@ pub enum Reason {
     /// The log lacks something that an assessment needs.
     #[cfg(feature = "flightlog")]
     #[error("{0}")]
-    Log(flightlog::Gap),
+    Log(flagred_flightlog::Gap),
     /// The profile cannot be used on this flight.
     #[error("{0}")]
     Monitor(#[from] MonitorError),

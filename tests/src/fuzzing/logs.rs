@@ -1,12 +1,12 @@
 //! Flight logs: what is read, and what is written of it.
 
 use flagred_cli::fuzzing::{converted, documents};
-use flightlog::{Flight, Options, ReadError};
+use flagred_flightlog::{Flight, Options, ReadError};
 
 use super::{SHIPPED, assert_harmless, without};
 
 fn read(bytes: &[u8]) -> Option<Flight> {
-    match flightlog::read(bytes, &Options::default()) {
+    match flagred_flightlog::read(bytes, &Options::default()) {
         Ok(flight) => Some(flight),
         Err(ReadError::Io { source, .. }) => panic!("{source}"),
         Err(_) => None,
@@ -39,7 +39,7 @@ pub fn check(flight: &Flight, log: &[u8]) {
         assert!(range.high > range.low, "{range:?}");
     }
     for intervals in flight.in_air.iter().chain(&flight.armed) {
-        let ends = |span: &flightlog::Interval| span.end_s >= span.start_s;
+        let ends = |span: &flagred_flightlog::Interval| span.end_s >= span.start_s;
         assert!(intervals.spans.iter().all(ends), "{intervals:?}");
     }
     if let Ok(statistics) = flight.statistics() {
@@ -70,7 +70,7 @@ fn is_read_back(flight: &Flight) {
         return;
     }
     let text = String::from_utf8_lossy(&written);
-    let again = flightlog::read(&written[..], &Options::default());
+    let again = flagred_flightlog::read(&written[..], &Options::default());
     let again = again.unwrap_or_else(|error| panic!("{error}\n{text}"));
     assert_eq!(again.commands.t_s(), flight.commands.t_s());
     for ((t_s, row), (_, same)) in flight.commands.rows().zip(again.commands.rows()) {
@@ -93,7 +93,7 @@ fn is_read_back(flight: &Flight) {
     }
     let twice = converted(&again).unwrap();
     assert_same_lines(&written, &twice, true);
-    let again = flightlog::read(&twice[..], &Options::default()).unwrap();
+    let again = flagred_flightlog::read(&twice[..], &Options::default()).unwrap();
     assert_same_lines(&twice, &converted(&again).unwrap(), false);
 }
 

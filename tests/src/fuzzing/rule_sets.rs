@@ -2,8 +2,8 @@
 
 use flagred::monitor::{Craft, Monitor, Sample};
 use flagred_cli::fuzzing::{Profile, checked};
+use flagred_interchange::{Format, Losses};
 use fuzzy::Engine;
-use interchange::{Format, Losses};
 
 use super::assert_harmless;
 use crate::board::{findings, told};
@@ -18,7 +18,7 @@ pub fn other_programs(bytes: &[u8]) {
         return;
     };
     for losses in [Losses::Refuse, Losses::Accept] {
-        let (model, findings) = match interchange::read(text, format, losses) {
+        let (model, findings) = match flagred_interchange::read(text, format, losses) {
             Ok(document) => (Some(document.model), document.warnings),
             Err(findings) => (None, findings),
         };
@@ -28,9 +28,9 @@ pub fn other_programs(bytes: &[u8]) {
         for format in Format::ALL {
             let written = model
                 .as_ref()
-                .map(|model| interchange::write(model, format, losses));
+                .map(|model| flagred_interchange::write(model, format, losses));
             let Some(Ok(written)) = written else { continue };
-            let again = interchange::read(&written.text, format, Losses::Accept);
+            let again = flagred_interchange::read(&written.text, format, Losses::Accept);
             assert!(again.is_ok(), "{}\n{}", again.unwrap_err(), written.text);
         }
     }

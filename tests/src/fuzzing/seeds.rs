@@ -142,8 +142,9 @@ pub fn other_programs() -> Vec<Vec<u8>> {
     });
     // A format that lacks the shape of a term takes none of the rule set.
     let written = models.flat_map(|model| {
-        interchange::Format::ALL.map(|format| {
-            let written = interchange::write(&model, format, interchange::Losses::Accept);
+        flagred_interchange::Format::ALL.map(|format| {
+            let written =
+                flagred_interchange::write(&model, format, flagred_interchange::Losses::Accept);
             written.ok().map(|written| written.text.into_bytes())
         })
     });

@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 
 use flagred_cli::fuzzing::Watch;
-use flightlog::mavlink::{
+use flagred_flightlog::mavlink::{
     Next, Sender, Version,
     dialect::{
         HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType, PARAM_VALUE_DATA,

@@ -54,7 +54,7 @@ pub struct Row {
 }
 
 /// The samples of a log, without signals.
-pub fn samples(flight: &flightlog::Flight) -> Vec<Sample> {
+pub fn samples(flight: &flagred_flightlog::Flight) -> Vec<Sample> {
     let effective = |raw: &f64| flight.effective_command(*raw).unwrap_or(f64::NAN);
     let rows = flight.commands.rows().map(|(t_s, raw)| Sample {
         t_s,

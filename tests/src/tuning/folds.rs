@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use evaluation::{Prediction, Ranking};
+use flagred_evaluation::{Prediction, Ranking};
 use rayon::prelude::*;
 
 use super::{objective::Area, rows::Row, search::tune, votes::Votes};

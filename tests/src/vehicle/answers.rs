@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use flightlog::{
+use flagred_flightlog::{
     Flight,
     mavlink::dialect::{COMMAND_ACK_DATA, MavCmd, MavMessage, MavResult},
 };

@@ -5,7 +5,7 @@ use std::{
     time::Instant,
 };
 
-use flightlog::mavlink::dialect::MavMessage;
+use flagred_flightlog::mavlink::dialect::MavMessage;
 
 /// What the other side said.
 #[derive(Debug, Default)]

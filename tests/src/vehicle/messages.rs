@@ -1,6 +1,6 @@
 //! The messages of an autopilot.
 
-use flightlog::mavlink::dialect::{
+use flagred_flightlog::mavlink::dialect::{
     ATTITUDE_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA, MavAutopilot, MavLandedState,
     MavMessage, MavModeFlag, MavParamType, MavState, MavType, PARAM_VALUE_DATA,
     SERVO_OUTPUT_RAW_DATA,

@@ -10,8 +10,8 @@ use std::{
 };
 
 use flagred::{board::Factors, verdict::Level};
+use flagred_flightlog::{Flight, ardupilot_frames};
 use flagred_tests::Folder;
-use flightlog::{Flight, ardupilot_frames};
 
 /// The most instructions of a call, of the 10,000 of SCR_VM_I_COUNT.
 const BUDGET: f64 = 8_000.0;

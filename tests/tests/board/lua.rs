@@ -6,12 +6,12 @@ use flagred::{
     monitor::{Craft, Monitor, Sample},
     verdict::Level,
 };
+use flagred_flightlog::Options;
 use flagred_tests::{
     Folder,
     board::{PROFILES, estimator, logs},
     flagred,
 };
-use flightlog::Options;
 
 use crate::autopilot::{Record, Run, Said, Vehicle, records, run};
 
@@ -97,7 +97,7 @@ fn the_script_says_what_the_monitor_says_of_every_flight() {
         let estimator = estimator(profile);
         let script = script(profile, &folder);
         for log in logs() {
-            let flight = flightlog::open(&log, &Options::default()).unwrap();
+            let flight = flagred_flightlog::open(&log, &Options::default()).unwrap();
             let (vehicle, records) = (Vehicle::of(&flight), records(&flight));
             let what = format!("{profile}, {}", log.display());
             let expected = by_the_monitor(&estimator, &vehicle, &records);

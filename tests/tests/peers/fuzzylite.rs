@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use fastrand::Rng;
+use flagred_interchange::Format;
 use flagred_tests::Folder;
 use fuzzy::Model;
-use interchange::Format;
 
 use super::{SHIPPED, ask, model, python, write};
 

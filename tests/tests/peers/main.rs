@@ -9,9 +9,9 @@ mod pyit2fls;
 use std::{path::Path, process::Command};
 
 use fastrand::Rng;
+use flagred_interchange::{Format, Losses};
 use flagred_tests::Folder;
 use fuzzy::{Engine, Model};
-use interchange::{Format, Losses};
 
 /// Rule sets that come with the program.
 const SHIPPED: [(&str, &str); 3] = [
@@ -31,10 +31,10 @@ fn model(text: &str) -> Model {
 /// Writes a rule set in a format, and beside it a table of its values at so many points that are spread over its inputs. Where
 /// rules hardly fire, programs differ in what they take for none.
 fn write(folder: &Folder, name: &str, model: &Model, format: Format, points: usize) {
-    let written = interchange::write(model, format, Losses::Refuse);
+    let written = flagred_interchange::write(model, format, Losses::Refuse);
     let written = written.unwrap_or_else(|findings| panic!("{name}: {findings}"));
     // What fuzzylite samples is sampled here: the values are those of the text as it is read again.
-    let read = interchange::read(&written.text, format, Losses::Refuse).unwrap();
+    let read = flagred_interchange::read(&written.text, format, Losses::Refuse).unwrap();
     let engine = Engine::new(&read.model).unwrap();
     let names = engine.input_names().chain(engine.output_names());
     let mut table = names.collect::<Vec<_>>().join(",") + "\n";

@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use flagred::loaded::Loaded;
-use report::Stretch;
-use report::{
+use flagred_report::Stretch;
+use flagred_report::{
     document, moment,
     page::{self, Part, Report, Subject},
     steps,

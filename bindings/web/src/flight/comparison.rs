@@ -2,8 +2,8 @@
 
 use std::rc::Rc;
 
-use report::Stretch;
-use report::page::{self, Subject};
+use flagred_report::Stretch;
+use flagred_report::page::{self, Subject};
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 
 use super::assessment::{Assessment, documents, table};

@@ -12,8 +12,8 @@ use std::{
     sync::Arc,
 };
 
+use flagred_report::{page::Subject, steps::STEP_S};
 use js_sys::Function;
-use report::{page::Subject, steps::STEP_S};
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 
 use crate::failure::failure;
@@ -27,14 +27,14 @@ const PIECE: usize = 1 << 20;
 /// The style sheet of the parts of a report.
 #[wasm_bindgen(js_name = reportStyle)]
 pub fn report_style() -> String {
-    report::page::style()
+    flagred_report::page::style()
 }
 
 /// A flight that was read from a log.
 #[wasm_bindgen]
 pub struct Flight {
     name: String,
-    flight: Arc<flightlog::Flight>,
+    flight: Arc<flagred_flightlog::Flight>,
     /// The signals that were read; `None` for all.
     signals: Option<Vec<String>>,
 }
@@ -49,9 +49,9 @@ impl Flight {
         read: &Function,
         signals: Option<Vec<String>>,
     ) -> Result<Flight, JsError> {
-        let mut options = flightlog::Options::default();
+        let mut options = flagred_flightlog::Options::default();
         options.signals = signals;
-        match flightlog::read(Source::new(read), &options) {
+        match flagred_flightlog::read(Source::new(read), &options) {
             Ok(flight) => Ok(Flight {
                 name,
                 flight: Arc::new(flight),
@@ -87,13 +87,13 @@ impl Flight {
     #[wasm_bindgen(js_name = writeCsv)]
     pub fn write_csv(&self, write: &Function) -> Result<(), JsError> {
         let mut out = BufWriter::with_capacity(PIECE, Sink(write));
-        let written = report::table::write_flight(&mut out, &self.flight);
+        let written = flagred_report::table::write_flight(&mut out, &self.flight);
         let written = written.and_then(|()| out.flush());
         written.map_err(|error| failure(error, None))
     }
 
     /// What is to be told beside a conversion: the warnings of `flagred convert`.
     pub fn warnings(&self) -> Vec<String> {
-        report::words::conversion(&self.name, &self.flight)
+        flagred_report::words::conversion(&self.name, &self.flight)
     }
 }

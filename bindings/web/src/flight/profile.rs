@@ -7,7 +7,7 @@ use flagred::{
     shipped::{self, PROFILES},
     verdict::{LevelSettings, VerdictSettings},
 };
-use report::diagnostics::{Style, draw};
+use flagred_report::diagnostics::{Style, draw};
 use serde_json::Value;
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 
@@ -74,7 +74,7 @@ impl Profile {
     /// The signals that are to be read of a log to assess it and to draw the report.
     #[wasm_bindgen(getter)]
     pub fn signals(&self) -> Vec<String> {
-        let options = report::options(&self.loaded.estimator, true);
+        let options = flagred_report::options(&self.loaded.estimator, true);
         options.signals.unwrap_or_default()
     }
 

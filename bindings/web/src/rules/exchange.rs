@@ -1,7 +1,7 @@
 //! Rule sets of other programs, in and out.
 
+use flagred_interchange::{Format, Losses};
 use fuzzy::Findings;
-use interchange::{Format, Losses};
 use serde::Serialize;
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 
@@ -28,7 +28,7 @@ pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
             notes: Vec::new(),
         });
     };
-    let read = interchange::read(text, format, losses(lossy)).map_err(refused)?;
+    let read = flagred_interchange::read(text, format, losses(lossy)).map_err(refused)?;
     read.validate(text).map_err(refused)?;
     json(&Exchanged {
         text: fuzzy::yaml::to_string(&read.model),
@@ -46,8 +46,8 @@ pub fn export(text: &str, format: &str, lossy: bool) -> Result<String, JsError> 
         let help = Format::ALL.map(Format::name).join(", ");
         failure(format!("`{format}` is not a format"), Some(&help))
     })?;
-    let document = interchange::document(text).map_err(refused)?;
-    match interchange::write(&document.model, known, losses(lossy)) {
+    let document = flagred_interchange::document(text).map_err(refused)?;
+    match flagred_interchange::write(&document.model, known, losses(lossy)) {
         Ok(written) => json(&Exchanged {
             notes: notes(&written.findings),
             text: written.text,

@@ -4,8 +4,8 @@ pub mod exchange;
 pub mod set;
 pub mod text;
 
-use authoring::{answers::Checked, starter};
 use flagred::shipped;
+use flagred_authoring::{answers::Checked, starter};
 use fuzzy::{
     check,
     drawing::{distinct, distinct_line, viridis},
@@ -18,7 +18,7 @@ use crate::failure::failure;
 /// The document of `flagred check --json`. A rule set that a profile names is a shipped one.
 #[wasm_bindgen(js_name = checkRules)]
 pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
-    if authoring::is_profile(text) {
+    if flagred_authoring::is_profile(text) {
         let document = text::document(text);
         let name = document.profile().map(|profile| profile.name.as_str());
         let alone = document.alone();
@@ -29,7 +29,7 @@ pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
             &alone,
         ));
     }
-    let examined = authoring::examine(text, &check::Options::default());
+    let examined = flagred_authoring::examine(text, &check::Options::default());
     let examined =
         examined.map_err(|finding| failure(&finding.message, finding.help.as_deref()))?;
     json(&Checked::rules(file, &examined))

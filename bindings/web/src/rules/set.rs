@@ -1,12 +1,12 @@
 //! A rule set, compiled: its values, their reasons, maps and pictures.
 
-use authoring::{
-    answers::Explained,
-    slice::{self, Mapped},
-};
 use flagred::{
     gap::Filling,
     loaded::{self, LoadError},
+};
+use flagred_authoring::{
+    answers::Explained,
+    slice::{self, Mapped},
 };
 use fuzzy::{
     Engine, Model,
@@ -118,10 +118,10 @@ impl RuleSet {
     /// Compiles a rule set in YAML, FIS, FLL, FCL or FML, or the rule set of a profile.
     #[wasm_bindgen(constructor)]
     pub fn new(text: &str) -> Result<RuleSet, JsError> {
-        if authoring::is_profile(text) {
+        if flagred_authoring::is_profile(text) {
             return of_profile(text);
         }
-        let document = interchange::document(text).map_err(refused)?;
+        let document = flagred_interchange::document(text).map_err(refused)?;
         document.validate(text).map_err(refused)?;
         Ok(RuleSet {
             engine: Engine::new(&document.model).map_err(refused)?,

@@ -1,7 +1,7 @@
 //! An open text: findings, completion, names, layout, terms and the points by which they are dragged.
 
-use authoring::{Document, Edit, completion, handles, layout, names, slice};
 use flagred::{loaded, profile::Profile};
+use flagred_authoring::{Document, Edit, completion, handles, layout, names, slice};
 use fuzzy::{
     diagnostic::{Diagnostic, Severity},
     model::{Defuzzifier, Term, Variable},

@@ -1,0 +1,230 @@
+//! `flagred check`: errors, gaps and conflicts in a rule set; whether a profile fits its rule set.
+
+mod format;
+
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use flagred::{
+    check::{Alone, alone},
+    profile::Profile,
+    verdict::Level,
+};
+use flagred_authoring::{Examined, answers::Checked, is_profile, provenance};
+use fuzzy::{
+    check,
+    diagnostic::{Findings, Severity},
+    drawing::{number, visible},
+};
+
+use self::format::{Format, Sarif, write_github};
+use crate::{
+    built_in,
+    diagnostics::{draw, read_text},
+    failure::{Exit, Failure},
+    output::{Files, Stdout},
+    profile,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Rule sets or profiles in YAML, or rule sets in FIS, FLL, FCL or FML; the name of a built-in profile; `-` is standard input
+    #[arg(required = true, value_name = "MODEL")]
+    models: Vec<PathBuf>,
+    /// How to print the findings
+    #[arg(long, value_enum, default_value = "text", value_name = "FORMAT")]
+    format: Format,
+    /// The same as `--format json`
+    #[arg(long, conflicts_with = "format")]
+    json: bool,
+    /// Check that the output never falls (INPUT:increasing) or never rises (INPUT:decreasing) when an input rises;
+    /// with several outputs, INPUT:increasing:OUTPUT
+    #[arg(long, value_name = "CLAIM", num_args = 1..)]
+    monotone: Vec<check::Monotone>,
+    /// Warn where no rule fires with at least this strength
+    #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = degree)]
+    coverage: f64,
+    /// Exit with 1 for these too; errors always do
+    #[arg(long, value_name = "SEVERITY")]
+    deny: Option<Deny>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Deny {
+    /// Warnings
+    Warnings,
+    /// Warnings and notes
+    Notes,
+}
+
+fn degree(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(degree) if degree > 0.0 && degree <= 1.0 => Ok(degree),
+        _ => Err("write a number above 0 and at most 1".into()),
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let worst_allowed = match arguments.deny {
+        None => Severity::Warning,
+        Some(Deny::Warnings) => Severity::Note,
+        Some(Deny::Notes) => return check_all(arguments, None),
+    };
+    check_all(arguments, Some(worst_allowed))
+}
+
+fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<Exit, Failure> {
+    Files::reading(&arguments.models)?;
+    let format = if arguments.json {
+        Format::Json
+    } else {
+        arguments.format
+    };
+    let mut sarif = Sarif::default();
+    let mut exit = Exit::Clean;
+    for path in &arguments.models {
+        // A name that is built in is that of a profile, as in `assess`.
+        let text = match built_in::profile_at(path) {
+            Some(known) => known.text.to_owned(),
+            None => read_text(path)?,
+        };
+        let file = path.display().to_string();
+        let (profile, examined) = if is_profile(&text) {
+            let (name, findings, alone) = examine_profile(path, &text)?;
+            let analysed = None;
+            (Some((name, alone)), Examined { findings, analysed })
+        } else {
+            (None, examine(&text, arguments)?)
+        };
+        let findings = &examined.findings;
+        // Only what people read has colours.
+        let mut out = match format {
+            Format::Text => Stdout::text(),
+            _ => Stdout::data(),
+        };
+        match format {
+            Format::Text => {
+                write!(out, "{}", draw(&findings.0, &file, &text, true))?;
+                let steps = examined
+                    .analysed
+                    .iter()
+                    .flat_map(|(document, _)| &document.model.provenance);
+                for step in steps {
+                    let made = visible(&provenance::words(step)).to_string();
+                    writeln!(out, "{}: made by {made}", visible(&file))?;
+                }
+                if let Some((_, alone)) = &profile {
+                    write_alone(&mut out, &file, alone)?;
+                }
+                writeln!(out, "{}: {}", visible(&file), summary(findings))?;
+            }
+            Format::Json => {
+                let json = match &profile {
+                    Some((name, alone)) => {
+                        Checked::profile(&file, name.as_deref(), &findings.0, alone)
+                    }
+                    None => Checked::rules(&file, &examined),
+                };
+                serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
+                writeln!(out)?;
+            }
+            Format::Sarif => sarif.add(&findings.0, &file, &text),
+            Format::Github => write_github(&mut out, &findings.0, &file, &text)?,
+        }
+        out.finish()?;
+        let worst = findings.0.iter().map(|finding| finding.severity).max();
+        if worst > worst_allowed {
+            exit = Exit::Findings;
+        }
+    }
+    if format == Format::Sarif {
+        let mut out = Stdout::data();
+        sarif.write(&mut out)?;
+        out.finish()?;
+    }
+    Ok(exit)
+}
+
+/// All findings, and the analysis where the rule set can be analysed.
+fn examine(text: &str, arguments: &Arguments) -> Result<Examined, Failure> {
+    let mut options = check::Options::default();
+    options.coverage = arguments.coverage;
+    options.monotone.clone_from(&arguments.monotone);
+    flagred_authoring::examine(text, &options).map_err(|finding| {
+        Failure::usage(format!("--monotone: {}", finding.message)).help_if(finding.help)
+    })
+}
+
+/// The name of a profile, all findings about it and the rule set that it names, and what its inputs reach alone. A rule set with
+/// errors is refused: they are in another file.
+fn examine_profile(
+    path: &Path,
+    text: &str,
+) -> Result<(Option<String>, Findings, Vec<Alone>), Failure> {
+    let profile = match text.parse::<Profile>() {
+        Ok(profile) => profile,
+        Err(findings) => return Ok((None, findings, Vec::new())),
+    };
+    let is_file = path != Path::new("-") && built_in::profile_at(path).is_none();
+    let folder = is_file.then(|| path.parent()).flatten();
+    let (model, _) = profile::model(&profile, folder)?;
+    let (findings, estimator) = profile::examine(text, &model);
+    let alone = estimator.as_ref().map(alone).unwrap_or_default();
+    Ok((Some(profile.name), findings, alone))
+}
+
+/// A line for each input: `battery  0 (empty)  battery_risk 95 %, FAIL`.
+fn write_alone(out: &mut impl Write, file: &str, alone: &[Alone]) -> Result<(), Failure> {
+    if alone.is_empty() {
+        return Ok(());
+    }
+    let file = visible(file);
+    writeln!(
+        out,
+        "{file}: the highest risk of each input while all others are calm:"
+    )?;
+    let rows: Vec<[String; 3]> = alone.iter().map(row).collect();
+    let width = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        cells.max().unwrap_or(0)
+    };
+    let (first, second) = (width(0), width(1));
+    for [input, value, risk] in &rows {
+        writeln!(out, "  {input:<first$}  {value:<second$}  {risk}")?;
+    }
+    Ok(())
+}
+
+fn row(one: &Alone) -> [String; 3] {
+    let value = number(one.value, 4);
+    let value = match &one.term {
+        Some(term) => format!("{value} ({})", visible(term)),
+        None => value,
+    };
+    let mut risk = format!("{} {:.0} %", visible(&one.risk), one.risk_pct);
+    if one.level > Level::Good {
+        risk += &format!(", {}", one.level);
+    }
+    [visible(&one.input).to_string(), value, risk]
+}
+
+fn summary(findings: &Findings) -> String {
+    let count = |severity: Severity, word: &str| {
+        let count = findings.0.iter().filter(|f| f.severity == severity).count();
+        let plural = if count == 1 { "" } else { "s" };
+        (count > 0).then(|| format!("{count} {word}{plural}"))
+    };
+    let counts = [
+        count(Severity::Error, "error"),
+        count(Severity::Warning, "warning"),
+        count(Severity::Note, "note"),
+    ];
+    let counts: Vec<String> = counts.into_iter().flatten().collect();
+    if counts.is_empty() {
+        "no findings".into()
+    } else {
+        counts.join(", ")
+    }
+}

@@ -1,0 +1,194 @@
+//! Rows from a flight log.
+
+use flagred::{estimator::Estimator, log, monitor::Monitor, profile::Profile, sample::Unknown};
+use flagred_evaluation::{
+    ErrorRecord, Span, header, judged_by_header, judged_spans, risk_pct, rmse_deg,
+};
+use flagred_flightlog::{Attitude, Flight};
+use fuzzy::{
+    Model,
+    model::{Output, Variable},
+    rule::{Condition, Rule},
+};
+
+use super::{BEFORE_S, Cut, Plan, Row, Rows};
+use crate::{failure::Failure, flights::open_complete};
+
+/// Rows that look ahead leave out so many seconds after take-off and before the end of a time in the air, where the
+/// header names no judged time.
+const AFTER_TAKE_OFF_S: f64 = 2.0;
+const BEFORE_END_S: f64 = 1.0;
+
+pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
+    let names = plan.profile.signals();
+    let flight = open_complete(log, &names, "makes no rows")?;
+    let said = |key: &str| header(&flight, key);
+    let carried = log::carried(&flight, &names);
+    if let Some(lacking) = names.iter().find(|name| !carried.contains(name)) {
+        return Err(Failure::unreadable(format!(
+            "`{log}` makes no rows: it does not carry the signal `{lacking}`"
+        ))
+        .help("`flagred inspect` lists the signals a log carries"));
+    }
+    let errors: Vec<(f64, Attitude)> = flight.attitudes().collect();
+    let mut made = Rows {
+        rows: Vec::new(),
+        notes: Vec::new(),
+    };
+    let mut refused = 0;
+    for Part { air_s, span } in parts(&flight, plan) {
+        let moments = moments(plan.cut, span.from_s, span.to_s);
+        let length_s = match plan.cut {
+            Cut::Flights => Some(span.length_s()),
+            Cut::Windows { length_s } => Some(length_s),
+            Cut::Ahead { .. } => None,
+        };
+        // Errors on the ground are none of the flight's.
+        let in_air = errors.iter().filter(|(t_s, _)| air_s.contains(*t_s));
+        let record = ErrorRecord::new(in_air.copied());
+        let inputs = inputs(&flight, plan, &carried, length_s, &moments)?;
+        for (t_s, inputs) in moments.into_iter().zip(inputs) {
+            let error_deg = match plan.cut {
+                Cut::Ahead { horizon_s, .. } => record.largest_within(t_s, horizon_s),
+                _ => rmse(&errors, t_s - length_s.unwrap_or(0.0), t_s),
+            };
+            let known = inputs.iter().all(|value| value.is_finite());
+            let (Some(att_rmse_deg), true) = (error_deg, known) else {
+                refused += 1;
+                continue;
+            };
+            let before = |before_s| record.largest_within(t_s - before_s, before_s);
+            made.rows.push(Row {
+                vehicle: said("vehicle").unwrap_or("").to_owned(),
+                kind: said("kind").or(said("real_class")).unwrap_or("").to_owned(),
+                from_s: Some(length_s.map_or(air_s.from_s, |length_s| t_s - length_s)),
+                to_s: Some(t_s),
+                inputs,
+                errors_before_deg: match plan.cut {
+                    Cut::Ahead { .. } => BEFORE_S.map(before).to_vec(),
+                    _ => Vec::new(),
+                },
+                att_rmse_deg,
+                risk_pct: risk_pct(att_rmse_deg, plan.critical_deg),
+            });
+        }
+    }
+    if made.rows.is_empty() {
+        made.notes
+            .push("no row: too short a time in the air, or nothing known in it".to_owned());
+    } else if refused > 0 {
+        made.notes.push(format!(
+            "{refused} rows left out: an input or the attitude is unknown"
+        ));
+    }
+    Ok(made)
+}
+
+/// A part of a flight that rows are made of.
+struct Part {
+    /// The time in the air that it belongs to.
+    air_s: Span,
+    /// What of it counts.
+    span: Span,
+}
+
+fn parts(flight: &Flight, plan: &Plan) -> Vec<Part> {
+    let Cut::Ahead { .. } = plan.cut else {
+        let judged = judged_spans(flight, &plan.profile.verdict);
+        let parts = judged.into_iter().map(|span| Part { air_s: span, span });
+        return parts.collect();
+    };
+    let judged = judged_by_header(flight);
+    let air = flight.in_air.iter().flat_map(|air| &air.spans);
+    let parts = air.map(|air| {
+        let (from_s, to_s) = (air.start_s, air.end_s);
+        let span = match judged {
+            Some(judged) => Span {
+                from_s: judged.from_s.max(from_s),
+                to_s: judged.to_s.min(to_s),
+            },
+            None => Span {
+                from_s: from_s + AFTER_TAKE_OFF_S,
+                to_s: to_s - BEFORE_END_S,
+            },
+        };
+        let air_s = Span { from_s, to_s };
+        Part { air_s, span }
+    });
+    parts.collect()
+}
+
+/// The times at which rows are made, in order.
+fn moments(cut: Cut, from_s: f64, to_s: f64) -> Vec<f64> {
+    let every = |first_s: f64, step_s: f64| {
+        let count = ((to_s - first_s) / step_s + 1e-9).floor();
+        (0..=count.max(-1.0) as i64).map(move |i| first_s + i as f64 * step_s)
+    };
+    match cut {
+        Cut::Flights => vec![to_s],
+        Cut::Windows { length_s } if from_s + length_s > to_s => Vec::new(),
+        Cut::Windows { length_s } => every(from_s + length_s, length_s).collect(),
+        Cut::Ahead { step_s, .. } => every(from_s, step_s).collect(),
+    }
+}
+
+/// The inputs at each moment as a monitor sees them, over windows of one length or over their own; NaN is unknown.
+fn inputs(
+    flight: &Flight,
+    plan: &Plan,
+    carried: &[&str],
+    length_s: Option<f64>,
+    moments: &[f64],
+) -> Result<Vec<Vec<f64>>, Failure> {
+    let mut profile = plan.profile.clone();
+    // The rules below have one output.
+    profile.other_risks.clear();
+    for input in &mut profile.inputs {
+        input.source.window_s = length_s.unwrap_or(input.source.window_s);
+    }
+    let refuse =
+        |error: String| Failure::unreadable(format!("profile `{}`: {error}", profile.name));
+    let estimator = Estimator::new(&profile, &any_rules(&profile))
+        .map_err(|error| refuse(error.to_string()))?;
+    let mut monitor = Monitor::new(&estimator, log::craft(flight, carried))
+        .map_err(|error| refuse(error.to_string()))?;
+    let mut rows = Vec::with_capacity(moments.len());
+    let mut now = vec![f64::NAN; profile.inputs.len()];
+    log::for_each_sample(flight, carried, |sample| {
+        // The state at a moment is that after the newest sample up to it. A touch of the ground does not count.
+        while moments
+            .get(rows.len())
+            .is_some_and(|t_s| *t_s + 1e-6 < sample.t_s)
+        {
+            rows.push(now.clone());
+        }
+        let update = monitor.push(sample);
+        if update.risk != Err(Unknown::OnGround) {
+            now.copy_from_slice(monitor.inputs());
+        }
+    });
+    rows.resize(moments.len(), now);
+    Ok(rows)
+}
+
+/// Rules for a monitor that is asked for its inputs only: the profile's own may still have to be learned.
+fn any_rules(profile: &Profile) -> Model {
+    let terms = ["low", "high"];
+    let mut model = Model::builder("any");
+    for input in &profile.inputs {
+        let condition = Condition::is(&input.name, "low");
+        model = model
+            .input(Variable::new(&input.name, 0.0, 1.0).partition(terms))
+            .rule(Rule::new(condition, &profile.output, "low"));
+    }
+    let output = Variable::new(&profile.output, 0.0, 100.0).partition(terms);
+    model.output(Output::new(output)).build()
+}
+
+/// The root mean square over `(from_s, to_s]`.
+fn rmse(errors: &[(f64, Attitude)], from_s: f64, to_s: f64) -> Option<f64> {
+    let first = errors.partition_point(|(t_s, _)| *t_s <= from_s + 1e-6);
+    let end = errors.partition_point(|(t_s, _)| *t_s <= to_s + 1e-6);
+    let errors = errors.get(first..end).unwrap_or(&[]);
+    rmse_deg(errors.iter().map(|(_, attitude)| attitude))
+}

@@ -1,0 +1,167 @@
+//! Files with rule sets and profiles: reading them, and what is wrong with them on standard error.
+
+use std::{
+    fs,
+    io::{self, Read, Write},
+    path::Path,
+};
+
+use flagred_report::diagnostics::{self, Style};
+use fuzzy::{
+    diagnostic::{Diagnostic, Findings},
+    yaml::LARGEST_BYTES,
+};
+
+use crate::failure::Failure;
+
+/// Draws findings with their lines. `colored` text goes through `anstream`, which drops colours that a terminal lacks.
+pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: bool) -> String {
+    let style = Style {
+        colored,
+        advice: command,
+        all: "`flagred check --json` lists them",
+        is_quoted: is_meant_as_rules,
+    };
+    diagnostics::draw(findings, file, text, style)
+}
+
+/// Whether a text is a rule set, of another program too, or a profile.
+pub(crate) fn is_meant_as_rules(text: &str) -> bool {
+    flagred_interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
+}
+
+/// The command that helps with a finding: the engine knows no commands.
+fn command(code: &str) -> Option<&'static str> {
+    match code {
+        "empty-file" => Some("`flagred new NAME` writes a rule set to start from"),
+        "no-rules" => Some("`flagred learn` writes rules from data"),
+        "several-blocks" => Some("`flagred import --block NAME` writes one in YAML"),
+        "not-monotone" => Some("`flagred explain` shows the rules that fire at a point"),
+        _ => None,
+    }
+}
+
+/// Draws findings on standard error.
+pub(crate) fn show(findings: &Findings, file: &str, text: &str) {
+    let mut err = anstream::stderr().lock();
+    // Nothing is left to tell a user whose standard error is closed.
+    let _ = write!(err, "{}", draw(&findings.0, file, text, true));
+}
+
+/// Draws the findings that make a file unusable on standard error, and returns the exit code.
+pub(crate) fn refuse(findings: &Findings, file: &str, text: &str) -> Failure {
+    show(findings, file, text);
+    Failure::shown(3)
+}
+
+/// Reads a rule set or a profile, or standard input for `-`.
+pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
+    let shown = path.display();
+    let bytes = if path == Path::new("-") {
+        read_up_to_limit(io::stdin().lock())
+    } else {
+        fs::File::open(path).and_then(read_up_to_limit)
+    };
+    let shown = shown.to_string();
+    text(whole(bytes, &shown)?, &shown)
+}
+
+/// Reads the bytes of an open rule set or profile.
+pub(crate) fn read_bytes(file: fs::File, shown: &str) -> Result<Vec<u8>, Failure> {
+    whole(read_up_to_limit(file), shown)
+}
+
+/// The bytes of a rule set or profile that could be read and is not too large.
+fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
+    let bytes = bytes.map_err(|error| {
+        Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
+    })?;
+    match bytes.len() > LARGEST_BYTES {
+        true => {
+            let limit = LARGEST_BYTES / 1_000_000;
+            let failure = Failure::unreadable(format!("`{shown}` is larger than {limit} MB"));
+            Err(failure.help("rule sets and profiles are small YAML files"))
+        }
+        false => Ok(bytes),
+    }
+}
+
+/// The text of a rule set or profile.
+pub(crate) fn text(bytes: Vec<u8>, shown: &str) -> Result<String, Failure> {
+    decoded(bytes).map_err(|error| error.failure(shown))
+}
+
+/// Whether bytes are announced as UTF-16.
+pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
+    matches!(bytes.get(..2), Some([0xff, 0xfe] | [0xfe, 0xff]))
+}
+
+/// Why bytes are no text.
+struct NoText {
+    /// The line that holds the first byte that is none, and the byte; `None` in UTF-16.
+    at: Option<(usize, u8)>,
+}
+
+impl NoText {
+    fn failure(&self, file: &str) -> Failure {
+        let failure = Failure::unreadable(match self.at {
+            Some((line, byte)) => {
+                format!("`{file}` is not UTF-8: line {line} holds the byte {byte:02X}")
+            }
+            None => format!("`{file}` is not UTF-16, which its first two bytes announce"),
+        });
+        failure.help(match self.at {
+            // A control character in Latin-1, and so hardly a text in it.
+            Some((_, byte)) if byte >= 0xa0 => {
+                let letter = char::from(byte);
+                format!("it may be Latin-1, where the byte is `{letter}`; save the file as UTF-8")
+            }
+            _ => String::from("save the file as UTF-8"),
+        })
+    }
+}
+
+/// The text of a file: UTF-8, or UTF-16 behind a byte order mark.
+fn decoded(bytes: Vec<u8>) -> Result<String, NoText> {
+    let low_first = match bytes.get(..2) {
+        Some([0xff, 0xfe]) => true,
+        Some([0xfe, 0xff]) => false,
+        _ => {
+            return String::from_utf8(bytes).map_err(|error| {
+                let good = error.utf8_error().valid_up_to();
+                let bytes = error.as_bytes();
+                let lines = bytes
+                    .iter()
+                    .take(good)
+                    .filter(|byte| **byte == b'\n')
+                    .count();
+                NoText {
+                    at: bytes.get(good).map(|byte| (lines + 1, *byte)),
+                }
+            });
+        }
+    };
+    let (units, rest) = bytes.get(2..).unwrap_or_default().as_chunks::<2>();
+    let unit = |&[first, second]: &[u8; 2]| {
+        let (low, high) = if low_first {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        u16::from(high) << 8 | u16::from(low)
+    };
+    let units: Vec<u16> = units.iter().map(unit).collect();
+    match String::from_utf16(&units) {
+        Ok(text) if rest.is_empty() => Ok(text),
+        _ => Err(NoText { at: None }),
+    }
+}
+
+/// All bytes, or one more than are allowed.
+fn read_up_to_limit(source: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    source
+        .take(LARGEST_BYTES as u64 + 1)
+        .read_to_end(&mut bytes)?;
+    Ok(bytes)
+}

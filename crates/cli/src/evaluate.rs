@@ -1,0 +1,168 @@
+//! `flagred evaluate`: how good are the risks of profiles, beside predictors that need no rules?
+
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use flagred::shipped;
+use flagred_evaluation::{
+    Document, Estimators, Evaluation, LeftOut, Record, Rows, Unusable, files, svg, words,
+};
+
+use crate::{
+    dataset::summary::refuse,
+    failure::{Exit, Failure},
+    output::{self, Files, Stdout},
+    parallel, profile,
+    table::Table,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Flight logs with attitude (ArduPilot, PX4, tlog, flight CSV; plain or gzipped), and folders of them
+    #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
+    flights: Vec<PathBuf>,
+
+    /// Evaluate a table with a row for each flight instead of logs, as `flagred dataset` writes it
+    #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
+    rows: Option<PathBuf>,
+
+    /// A profile to compare with the built-in ones, a file; may be repeated
+    #[arg(long = "profile", value_name = "FILE")]
+    profiles: Vec<String>,
+
+    /// How many seconds ahead the risk should predict
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = horizon)]
+    horizon: f64,
+
+    /// Print a JSON document instead of text
+    #[arg(long)]
+    json: bool,
+
+    /// Write an SVG picture of the ROC curves and the reliability to this file; `-` is standard output
+    #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
+    svg: Option<PathBuf>,
+}
+
+fn horizon(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(horizon_s) if horizon_s > 0.0 && horizon_s.is_finite() => Ok(horizon_s),
+        _ => Err("a horizon is a number of seconds above 0".to_owned()),
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let inputs = arguments.flights.iter().chain(&arguments.rows).cloned();
+    let inputs = inputs.chain(arguments.profiles.iter().map(PathBuf::from));
+    let mut files = Files::reading(inputs)?;
+    files.optional(arguments.svg.as_ref())?;
+    let estimators = estimators(&arguments.profiles)?;
+    let (evaluation, exit) = match &arguments.rows {
+        Some(table) => (rows(table, &estimators)?, Exit::Clean),
+        None => flights(arguments, &estimators)?,
+    };
+    // Flights in folders are known only now.
+    let mut files = Files::reading(evaluation.records().iter().map(Record::file))?;
+    let svg = files.optional(arguments.svg.as_ref())?;
+    let drawn = match &svg {
+        Some(svg) => svg.write(&svg::draw(&evaluation)),
+        None => Ok(()),
+    };
+    let documents: Vec<&output::Output> = svg.iter().collect();
+    let mut out = Stdout::beside(&documents);
+    if arguments.json {
+        let document = Document::new(&evaluation);
+        serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        out.write_all(words::text(&evaluation).as_bytes())?;
+    }
+    out.finish()?;
+    drawn?;
+    Ok(exit)
+}
+
+/// The shipped profiles that read the motors alone, and those that were asked for.
+fn estimators(asked: &[String]) -> Result<Estimators, Failure> {
+    let mut estimators = Estimators::default();
+    let shipped = shipped::motor_profile_names().map(str::to_owned);
+    for wanted in shipped.chain(asked.iter().cloned()) {
+        if !estimators.has(&wanted) {
+            estimators.add(&wanted, profile::load(&wanted)?.estimator);
+        }
+    }
+    Ok(estimators)
+}
+
+/// Evaluates every flight; one that cannot be read stops no other.
+fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation, Exit), Failure> {
+    let files = files(&arguments.flights)?;
+    let mut records = Vec::new();
+    let (mut left_out, mut exit) = (Vec::new(), Exit::Clean);
+    parallel::in_order(
+        &files,
+        "flights",
+        |file| Record::read(&file.path, estimators, arguments.horizon),
+        |file, evaluated| {
+            match evaluated {
+                Ok(record) => records.push(record),
+                Err(why) => {
+                    left_out.push(LeftOut::new(file.path.display().to_string(), &why));
+                    // A folder may hold other things than flights.
+                    if file.is_named {
+                        Failure::from(why).report();
+                        exit = Exit::Unreadable;
+                    }
+                }
+            }
+            true
+        },
+    );
+    let evaluation = scored(estimators, |done| {
+        Evaluation::of_flights(estimators, arguments.horizon, records, left_out, done)
+    });
+    let evaluation = evaluation.ok_or_else(|| {
+        Failure::unreadable("there is no step to evaluate in these files").help(
+            "`flagred inspect` shows what is in a log: it takes motors, attitude, and 20 s in the air",
+        )
+    })?;
+    Ok((evaluation, exit))
+}
+
+/// Evaluates a table with a row for each flight.
+fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
+    let table = Table::read(path, b',')?;
+    table.header.require(
+        flagred_evaluation::ERROR,
+        "without an attitude error nobody knows what was critical",
+    )?;
+    let rows = Rows {
+        columns: table.header.names.iter().map(String::as_str).collect(),
+        len: table.len(),
+        number: &|row, column| table.number(row, column),
+        text: &|row, column| table.text(row, column),
+    };
+    let cases = flagred_evaluation::cases(&rows, estimators);
+    let (cases, notes) = cases.map_err(|bad| refuse(&table, &bad))?;
+    for note in notes {
+        output::say(&note);
+    }
+    Ok(scored(estimators, |done| {
+        Evaluation::of_cases(estimators, cases, done)
+    }))
+}
+
+/// Scores the estimators with a progress bar.
+fn scored<T>(estimators: &Estimators, score: impl FnOnce(&(dyn Fn() + Sync)) -> T) -> T {
+    let bar = parallel::progress(estimators.names().count(), "estimators");
+    let scored = score(&|| bar.inc(1));
+    bar.finish_and_clear();
+    scored
+}
+
+impl From<Unusable> for Failure {
+    fn from(why: Unusable) -> Failure {
+        Failure::unreadable(&why).help_if(why.help())
+    }
+}

@@ -1,0 +1,307 @@
+//! `flagred export`: a profile and its rule set, or a rule set alone, as constant data for firmware; or a rule set for another
+//! program.
+
+use std::{
+    fmt::Debug,
+    path::{Path, PathBuf},
+};
+
+use flagred::{
+    board::{
+        Plan, Rules,
+        table::{self, Table},
+    },
+    estimator::Estimator,
+    flight::Words,
+    gap::FilledKnots,
+    plan::NoPlan,
+    verdict::Measure,
+};
+use flagred_interchange::{Format, Losses};
+use fuzzy::drawing::visible;
+
+use crate::{
+    diagnostics::is_meant_as_rules,
+    failure::{Exit, Failure},
+    output::{Files, Replace, say},
+    profile, rule_set,
+};
+
+mod c;
+mod lua;
+mod rules;
+mod rust;
+
+#[derive(clap::Args)]
+#[command(group = clap::ArgGroup::new("language").required(true))]
+pub(crate) struct Arguments {
+    /// Write Rust: a profile for the crate `flagred`, a rule set for `flagred-fuzzy`, with `default-features = false`
+    #[arg(long, group = "language")]
+    rust: bool,
+    /// Write C for `flagred.h` and the library of `flagred-c`
+    #[arg(long, group = "language")]
+    c: bool,
+    /// Write a Lua script that ArduPilot runs from its card: docs/on-ardupilot.md
+    #[arg(long, group = "language")]
+    lua: bool,
+    /// Write a rule set as FIS, for MATLAB and Octave
+    #[arg(long, group = "language")]
+    fis: bool,
+    /// Write a rule set as FLL, for fuzzylite
+    #[arg(long, group = "language")]
+    fll: bool,
+    /// Write a rule set as FCL, for jFuzzyLogic and other programs of IEC 61131-7
+    #[arg(long, group = "language")]
+    fcl: bool,
+    /// Write a rule set as FML, for JFML and other programs of IEEE 1855
+    #[arg(long, group = "language")]
+    fml: bool,
+    /// Leave out what the format cannot say, and `samples` in Rust and C: values may be others
+    #[arg(long, conflicts_with = "lua")]
+    lossy: bool,
+    /// Profile: `flagred`, `flagred-battery`, `flagred-paper`, or a file; except for Lua, a rule set in any format, too
+    #[arg(value_name = "FILE", default_value = profile::DEFAULT)]
+    file: String,
+    /// The file to write; `-` is standard output
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if let Some(format) = arguments.format() {
+        return to_program(arguments, format);
+    }
+    let path = Path::new(&arguments.file);
+    let loaded = if arguments.lua || profile::is_shipped(&arguments.file) {
+        profile::load(&arguments.file)?
+    } else {
+        let text = profile::file_text(path)?;
+        if is_meant_as_rules(&text) && !flagred_authoring::is_profile(&text) {
+            return rules::export(arguments, &text);
+        }
+        profile::from_text(path, text)?
+    };
+    if arguments.lossy {
+        return Err(Failure::usage(
+            "`--lossy` is for rule sets, and this is a profile",
+        ));
+    }
+    let output = Files::reading(&loaded.files)?.output(&arguments.output, Replace::Yes)?;
+    let plan = loaded.estimator.plan().map_err(|error| {
+        let rules = &loaded.estimator.profile().rules;
+        Failure::unreadable(format!("rule set `{rules}`: {error}")).help(error.help())
+    })?;
+    let rules = &loaded.estimator.profile().rules;
+    let signals = loaded.estimator.profile().signals();
+    let words = FindingWords::of(&loaded.estimator);
+    let text = if arguments.rust {
+        rust::text(&plan, rules, &signals, &words)
+    } else if arguments.c {
+        c::text(&plan, rules, &signals, &words)
+    } else {
+        lua::text(&loaded.estimator, &plan)
+            .map_err(|refused| Failure::unreadable(refused.message).help(refused.help))?
+    };
+    output.write(&text)?;
+    Ok(Exit::Clean)
+}
+
+impl Arguments {
+    /// The format of another program.
+    fn format(&self) -> Option<Format> {
+        let chosen = [self.fis, self.fll, self.fcl, self.fml];
+        let mut formats = Format::ALL.into_iter().zip(chosen);
+        formats
+            .find(|(_, chosen)| *chosen)
+            .map(|(format, _)| format)
+    }
+}
+
+/// Writes a rule set for another program.
+fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
+    let path = Path::new(&arguments.file);
+    // The name of a built-in profile is that of its rule set, too.
+    let (document, text) = rule_set::read(path)?;
+    rule_set::compile(&document, &arguments.file, &text)?;
+    let output = Files::reading([path])?.output(&arguments.output, Replace::Yes)?;
+    let losses = match arguments.lossy {
+        true => Losses::Accept,
+        false => Losses::Refuse,
+    };
+    let tell = |findings: &fuzzy::Findings| findings.to_string().lines().for_each(say);
+    match flagred_interchange::write(&document.model, format, losses) {
+        Ok(written) => {
+            tell(&written.findings);
+            output.write(&written.text)?;
+            Ok(Exit::Clean)
+        }
+        Err(findings) => {
+            tell(&findings);
+            let message = format!(
+                "`{}` cannot be written as {}",
+                arguments.file,
+                format.name()
+            );
+            Err(Failure::unreadable(message)
+                .help("`--lossy` leaves out what the format cannot say"))
+        }
+    }
+}
+
+/// What a pilot reads of findings.
+struct FindingWords {
+    /// Where an input raised the risk: a row for each proposition of the plan.
+    causes: Vec<Words>,
+    /// Otherwise: a row for each measure.
+    notices: Vec<Words>,
+}
+
+impl FindingWords {
+    fn of(estimator: &Estimator) -> FindingWords {
+        let causes = estimator.propositions();
+        let notices = Measure::ALL.into_iter().map(Words::of_measure);
+        FindingWords {
+            causes: causes
+                .map(|(input, term)| Words::of_cause(estimator, input, term))
+                .collect(),
+            notices: notices.collect(),
+        }
+    }
+}
+
+/// Words as string literals of Rust and C: code, brief, text and advice.
+fn literals(words: &Words) -> [String; 4] {
+    let Words {
+        code,
+        brief,
+        text,
+        advice,
+    } = words;
+    [code, &brief.concat(), text, advice].map(|text| format!("{:?}", visible(text)))
+}
+
+/// A profile in every language.
+pub(crate) fn texts(estimator: &Estimator) -> Result<[String; 2], NoPlan> {
+    let plan = estimator.plan()?;
+    let rules = &estimator.profile().rules;
+    let signals = estimator.profile().signals();
+    let words = FindingWords::of(estimator);
+    Ok([
+        rust::text(&plan, rules, &signals, &words),
+        c::text(&plan, rules, &signals, &words),
+    ])
+}
+
+/// The comment above the data.
+fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<String> {
+    let mut lines = vec![
+        origin(plan, rules, option),
+        format!(
+            "{} bytes of constants, {} of them to fill gaps of the rules. A monitor of 4 motors takes {} bytes of memory.",
+            bytes(plan),
+            bytes_of_filling(plan),
+            plan.bytes(4)
+        ),
+    ];
+    if !signals.is_empty() {
+        lines.push(format!(
+            "Signals of a sample, in this order: {}.",
+            signals.join(", ")
+        ));
+    }
+    lines.into_iter().map(harmless).collect()
+}
+
+/// A line of a comment: a name from outside must not end it.
+fn harmless(line: String) -> String {
+    visible(&line).replace("*/", "* /")
+}
+
+/// What a file was made of.
+fn origin(plan: &Plan<'_>, rules: &str, option: &str) -> String {
+    format!(
+        "The profile `{}` with the rule set `{rules}`, written by `flagred export {option}` {}. Do not edit.",
+        plan.name,
+        env!("CARGO_PKG_VERSION")
+    )
+}
+
+/// An array of a plan, as text.
+struct Array {
+    field: &'static str,
+    /// The type of its items.
+    item: &'static str,
+    bytes: usize,
+    /// The debug form of each item.
+    items: Vec<String>,
+}
+
+impl Array {
+    fn new<T: Debug>(field: &'static str, item: &'static str, items: &[T]) -> Self {
+        Array {
+            field,
+            item,
+            bytes: size_of_val(items),
+            items: items.iter().map(|item| format!("{item:?}")).collect(),
+        }
+    }
+}
+
+/// The arrays of a table.
+fn arrays(table: &Table<'_>) -> Vec<Array> {
+    macro_rules! list {
+        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+            vec![$(Array::new(stringify!($array), stringify!($item), table.$array)),*]
+        };
+    }
+    table::arrays!(list!)
+}
+
+/// The arrays of a filling.
+fn filling(knots: &FilledKnots<'_>) -> [Array; 4] {
+    [
+        Array::new("coordinates", "f64", knots.coordinates),
+        Array::new("starts", "u32", knots.starts),
+        Array::new("values", "f64", knots.values),
+        Array::new("distances", "f64", knots.distances),
+    ]
+}
+
+/// The size of the constants that fill gaps.
+fn bytes_of_filling(plan: &Plan<'_>) -> usize {
+    let arrays = plan.filled.as_ref().map(filling);
+    arrays.iter().flatten().map(|array| array.bytes).sum()
+}
+
+/// The size of all constants.
+fn bytes(plan: &Plan<'_>) -> usize {
+    let profile = size_of_val(plan.order)
+        + size_of_val(plan.channels)
+        + size_of_val(plan.inputs)
+        + size_of_val(plan.propositions);
+    size_of_val(plan) + bytes_of_rules(&plan.rules) + profile + bytes_of_filling(plan)
+}
+
+/// The size of the arrays of a rule set.
+fn bytes_of_rules(rules: &Rules<'_>) -> usize {
+    let arrays = arrays(&rules.table);
+    let table: usize = arrays.iter().map(|array| array.bytes).sum();
+    table + size_of_val(rules.stages) + size_of_val(rules.places)
+}
+
+/// Items in lines of about a hundred characters.
+fn rows(items: &[String]) -> Vec<String> {
+    let (mut row, mut rows) = (String::new(), Vec::new());
+    for item in items {
+        if !row.is_empty() && row.len() + item.len() > 100 {
+            rows.push(std::mem::take(&mut row));
+        }
+        if !row.is_empty() {
+            row.push(' ');
+        }
+        row.push_str(item);
+        row.push(',');
+    }
+    rows.push(row);
+    rows
+}

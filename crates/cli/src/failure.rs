@@ -1,0 +1,177 @@
+//! How a command ends: its exit code, and what it says when it cannot go on.
+
+use std::{fmt, io, io::Write, path::Path, process::ExitCode};
+
+use clap::error::{ContextKind, ContextValue};
+use fuzzy::drawing::{visible, visible_lines};
+
+/// How a command that ran to its end ended. Of several inputs the last of these counts: a finding is known, whatever else is not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Exit {
+    /// Nothing to report: 0.
+    Clean,
+    /// Ran, but some of the input could not be read or was no multirotor: 3.
+    Unreadable,
+    /// Findings at or over what the user asked to fail on: 1.
+    Findings,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        ExitCode::from(match exit {
+            Exit::Clean => 0,
+            Exit::Findings => 1,
+            Exit::Unreadable => 3,
+        })
+    }
+}
+
+/// Why a command could not go on. Messages are lower case, hints say what to do.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    code: u8,
+    message: String,
+    /// What the message is about, one line each.
+    details: Vec<String>,
+    help: Option<String>,
+}
+
+impl Failure {
+    /// The command line asks for something that cannot be done, or an output cannot be written: exit code 2.
+    pub(crate) fn usage(message: impl fmt::Display) -> Self {
+        Failure {
+            code: 2,
+            message: message.to_string(),
+            details: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// A file cannot be read or is not what it should be: exit code 3.
+    pub(crate) fn unreadable(message: impl fmt::Display) -> Self {
+        Failure {
+            code: 3,
+            message: message.to_string(),
+            details: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// The findings have been shown already; only the exit code is left to give.
+    pub(crate) fn shown(code: u8) -> Self {
+        Failure {
+            code,
+            message: String::new(),
+            details: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// Adds what the message is about, one line each.
+    pub(crate) fn details(mut self, details: Vec<String>) -> Self {
+        self.details = details;
+        self
+    }
+
+    /// As [`Failure::unreadable`], for an error that may have several lines, such as findings: all but the first are details.
+    pub(crate) fn unusable(what: impl fmt::Display, error: &impl fmt::Display) -> Self {
+        let error = error.to_string();
+        let mut lines = error.lines();
+        let first = lines.next().unwrap_or_default();
+        let details = lines.map(|line| line.trim_start().to_owned());
+        Failure::unreadable(format!("{what}: {first}")).details(details.collect())
+    }
+
+    /// Adds what to do about it.
+    pub(crate) fn help(mut self, help: impl fmt::Display) -> Self {
+        self.help = Some(help.to_string());
+        self
+    }
+
+    /// Adds what to do about it, where that is known.
+    pub(crate) fn help_if(self, help: Option<impl fmt::Display>) -> Self {
+        match help {
+            Some(help) => self.help(help),
+            None => self,
+        }
+    }
+
+    /// What is wrong, without what to do about it.
+    pub(crate) fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// Tells the user, and gives the exit code.
+    pub(crate) fn report(self) -> ExitCode {
+        if !self.message.is_empty() {
+            let mut err = anstream::stderr().lock();
+            let red = anstyle::AnsiColor::Red.on_default().bold();
+            // Nothing is left to tell a user whose standard error is closed.
+            let _ = writeln!(err, "{red}error{red:#}: {}", visible(&self.message));
+            for detail in &self.details {
+                let _ = writeln!(err, "  {}", visible(detail));
+            }
+            if let Some(help) = &self.help {
+                let _ = writeln!(err, "  help: {}", visible(help));
+            }
+        }
+        ExitCode::from(self.code)
+    }
+}
+
+/// In plain words, for a reader who is not at the terminal.
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)?;
+        let help = self.help.iter().map(|help| format!("help: {help}"));
+        let mut lines = self.details.iter().cloned().chain(help);
+        lines.try_for_each(|line| write!(f, "\n  {line}"))
+    }
+}
+
+/// A file where the command should stand, as in `flagred flight.bin`.
+pub(crate) fn command_forgotten(error: &clap::Error) -> Option<Failure> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {
+        return None;
+    };
+    Path::new(word).exists().then(|| {
+        Failure::usage(format!("`{word}` is a file, and no command"))
+            .help(format!("how risky a flight was: `flagred assess {word}`"))
+    })
+}
+
+/// A log that cannot be read: exit code 3.
+impl From<flagred_flightlog::ReadError> for Failure {
+    fn from(error: flagred_flightlog::ReadError) -> Self {
+        Failure::unreadable(&error).help_if(error.help())
+    }
+}
+
+/// Ends the program for a command line that clap refuses, or that asks for help. What the user typed is shown as text.
+pub(crate) fn refuse(error: &clap::Error) -> ExitCode {
+    let text = error.render().to_string();
+    let shown = visible_lines(&text);
+    if shown == text {
+        error.exit();
+    }
+    // Nothing is left to tell a user whose standard error is closed.
+    let _ = write!(anstream::stderr(), "{shown}");
+    ExitCode::from(2)
+}
+
+/// Standard output could not be written: exit code 2. That its reader went is no error (`output::Stdout`).
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Failure::usage(format!("the output cannot be written: {error}"))
+    }
+}
+
+/// Standard output could not be written as a table.
+impl From<csv::Error> for Failure {
+    fn from(error: csv::Error) -> Self {
+        match error.into_kind() {
+            csv::ErrorKind::Io(error) => Failure::from(error),
+            kind => Failure::usage(format!("the output cannot be written: {kind:?}")),
+        }
+    }
+}

@@ -1,0 +1,233 @@
+//! What commands make of bytes, without files, sockets or a terminal: for the fuzz targets and the tests that share their
+//! bodies. No interface: it changes without notice.
+
+use std::{net::SocketAddr, sync::Arc};
+
+use flagred::{estimator::Estimator, log::assess, profile, shipped};
+use flagred_flightlog::{
+    Flight,
+    mavlink::{Sender, Stream},
+};
+use fuzzy::{Findings, Model, check};
+
+use flagred_report::{
+    document,
+    page::{self, Subject},
+    steps, words,
+};
+
+use crate::{
+    diagnostics::draw,
+    export, inspect,
+    profile::Loaded,
+    watch::{
+        jsonl,
+        lines::Words,
+        screen::Screen,
+        session::{Out, Session},
+    },
+};
+
+/// A profile and its rule set.
+pub struct Profile(Loaded);
+
+impl Profile {
+    /// A profile with a rule set, where they compile.
+    pub fn new(profile_text: &str, rules_text: &str) -> Option<Profile> {
+        let profile = profile_text.parse::<profile::Profile>().ok()?;
+        let model = rules_text.parse::<Model>().ok()?;
+        Some(Profile(Loaded {
+            estimator: Estimator::new(&profile, &model).ok()?,
+            profile_text: profile_text.to_owned(),
+            rules_text: rules_text.to_owned(),
+            warnings: Findings(Vec::new()),
+            files: Vec::new(),
+        }))
+    }
+
+    /// The default one.
+    pub fn shipped() -> Option<Profile> {
+        Profile::new(shipped::PROFILES[0].text, shipped::RULE_SETS[0].text)
+    }
+
+    /// It, compiled.
+    pub fn estimator(&self) -> &Estimator {
+        &self.0.estimator
+    }
+
+    /// What `export` writes, where there is a closed form: Rust and C.
+    pub fn exported(&self) -> Option<[String; 2]> {
+        export::texts(&self.0.estimator).ok()
+    }
+}
+
+/// What is said of a flight.
+#[derive(Debug, Default)]
+pub struct Documents {
+    /// The words of `assess` and `inspect`.
+    pub words: Vec<u8>,
+    /// The documents of `assess --json` and `inspect --json`.
+    pub json: Vec<String>,
+    /// The table of `assess --csv`.
+    pub csv: Vec<u8>,
+    /// The report, the picture, and the comparison with itself.
+    pub pages: Vec<String>,
+}
+
+/// All that `assess` and `inspect` write of a flight.
+///
+/// # Errors
+///
+/// None: memory takes what is written.
+pub fn documents(name: &str, flight: Flight, profile: &Profile) -> std::io::Result<Documents> {
+    let mut all = Documents::default();
+    let loaded = &profile.0;
+    let estimator = &loaded.estimator;
+    let assessed = assess(&flight, estimator, Some(0.1));
+    inspect::text::write(&mut all.words, name, &flight)?;
+    words::write(&mut all.words, name, &flight, estimator, &assessed, true)?;
+    all.json = vec![
+        serde_json::to_string(&inspect::json::Document::new(name, &flight))?,
+        serde_json::to_string(&document::document(name, &flight, estimator, &assessed))?,
+    ];
+    steps::write_csv(&mut all.csv, Some(name), true, estimator, &assessed)?;
+    let subject = Subject {
+        name: name.to_owned(),
+        flight: Arc::new(flight),
+        assessed,
+    };
+    all.pages.push(page::report(&subject, loaded));
+    all.pages.extend(page::svg(&subject, loaded));
+    all.pages.push(page::comparison(&[&subject], loaded));
+    Ok(all)
+}
+
+/// A flight as `convert` writes it.
+///
+/// # Errors
+///
+/// None: memory takes what is written.
+pub fn converted(flight: &Flight) -> std::io::Result<Vec<u8>> {
+    let mut csv = Vec::new();
+    flagred_report::table::write_flight(&mut csv, flight)?;
+    Ok(csv)
+}
+
+/// The findings of `check`, drawn, and the analysis where there is one.
+pub fn checked(text: &str) -> (Findings, String, Option<check::Report>) {
+    let checked = fuzzy::yaml::parse(text)
+        .map(|document| check::document(&document, text, &check::Options::default()));
+    let (findings, report) = match checked {
+        Ok(Ok(checked)) => checked,
+        // Of claims, and none are made.
+        Ok(Err(finding)) => (Findings(vec![*finding]), None),
+        Err(findings) => (findings, None),
+    };
+    let drawn = draw(&findings.0, "rules.yaml", text, false);
+    (findings, drawn, report)
+}
+
+/// A watch in process, which tells everything in every way.
+pub struct Watch<'e> {
+    session: Session<'e>,
+    estimator: &'e Estimator,
+    stream: Stream,
+    out: Out,
+    words: Words,
+    screen: Screen,
+    told: Told,
+}
+
+/// What a watch said since it was asked last.
+#[derive(Debug, Default)]
+pub struct Told {
+    /// Lines for people.
+    pub words: Vec<String>,
+    /// Lines for programs.
+    pub json: Vec<String>,
+    /// Packets.
+    pub packets: Vec<Vec<u8>>,
+}
+
+/// The vehicle that is followed.
+#[derive(Debug, Clone, Copy)]
+pub struct Followed {
+    /// Its number.
+    pub system: u8,
+    /// Whether it or its motor commands are lost.
+    pub is_lost: bool,
+    /// Its clock at its latest sample.
+    pub t_s: Option<f64>,
+}
+
+impl<'e> Watch<'e> {
+    /// A watch that speaks.
+    pub fn new(estimator: &'e Estimator) -> Watch<'e> {
+        Watch {
+            session: Session::new(estimator, Some(Sender::new(191)), false),
+            estimator,
+            stream: Stream::new(),
+            out: Out::default(),
+            words: Words::default(),
+            screen: Screen::new("fuzzing".to_owned()),
+            told: Told::default(),
+        }
+    }
+
+    /// Takes in a datagram; gives the number of packets that are the vehicle's.
+    pub fn receive(&mut self, now_s: f64, source: Option<SocketAddr>, datagram: &[u8]) -> usize {
+        let mut taken = 0;
+        self.stream.push(datagram);
+        while let Some(packet) = self.stream.packet() {
+            let is_taken = self.session.receive(now_s, source, &packet, &mut self.out);
+            taken += usize::from(is_taken);
+        }
+        self.stream.end();
+        self.tell(now_s);
+        taken
+    }
+
+    /// Lets time pass.
+    pub fn tick(&mut self, now_s: f64) {
+        self.session.tick(now_s, &mut self.out);
+        self.tell(now_s);
+    }
+
+    /// Ends the watch.
+    pub fn finish(&mut self, now_s: f64) {
+        self.session.finish(&mut self.out);
+        self.tell(now_s);
+    }
+
+    /// What was said since.
+    pub fn told(&mut self) -> Told {
+        std::mem::take(&mut self.told)
+    }
+
+    /// The screen.
+    pub fn screen(&self, size: (usize, usize)) -> String {
+        let view = self.session.view();
+        self.screen.frame(view.as_ref(), self.estimator, size)
+    }
+
+    /// The vehicle.
+    pub fn followed(&self) -> Option<Followed> {
+        self.session.view().map(|view| Followed {
+            system: view.system,
+            is_lost: view.link_lost || view.motors_lost,
+            t_s: view.latest.map(|update| update.t_s),
+        })
+    }
+
+    fn tell(&mut self, now_s: f64) {
+        for event in self.out.events.drain(..) {
+            let (session, estimator) = (&self.session, self.estimator);
+            let words = self.words.line(now_s, &event, session, estimator);
+            self.told.words.extend(words);
+            let json = jsonl::json(now_s, &event, session, estimator);
+            self.told.json.extend(json.ok().flatten());
+            self.screen.add(now_s, &event, session, estimator);
+        }
+        self.told.packets.append(&mut self.out.packets);
+    }
+}

@@ -1,0 +1,270 @@
+//! `flagred identify`: a rule set from rows of data alone.
+
+mod report;
+
+use std::{io::Write as _, ops::ControlFlow, path::PathBuf};
+
+use flagred_tuning::{
+    Data, Loss, TuneError,
+    identify::{
+        Antecedents, Consequents, Identification, Identified, Judged, MOST_TERMS, check_columns,
+        identify, judge,
+    },
+};
+use fuzzy::diagnostic::suggest;
+
+use crate::{
+    failure::{Exit, Failure},
+    output::{Files, Replace, Stdout},
+    rows,
+    table::{Cell, Format, Table},
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Tables with a column for the output and columns that may be inputs
+    #[arg(required = true, value_name = "DATA.csv")]
+    data: Vec<PathBuf>,
+
+    /// The column with the output
+    #[arg(long, value_name = "COLUMN")]
+    target: String,
+
+    /// The file for the rule set; `-` is standard output
+    #[arg(short, long, value_name = "OUT.yaml")]
+    output: PathBuf,
+
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+
+    /// Use this column, and no other than those that are named; without it, those that help are found
+    #[arg(long, value_name = "COLUMN", conflicts_with = "most_inputs")]
+    input: Vec<String>,
+
+    /// Leave this column out
+    #[arg(long, value_name = "COLUMN", conflicts_with = "input")]
+    ignore: Vec<String>,
+
+    /// The most inputs
+    #[arg(long, default_value_t = 4, value_name = "COUNT", value_parser = count(1, 20))]
+    most_inputs: u32,
+
+    /// The most terms of an input
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = count(2, MOST_TERMS as i64))]
+    most_terms: u32,
+
+    /// The most rules
+    #[arg(long, default_value_t = 25, value_name = "COUNT", value_parser = count(2, 1000))]
+    most_rules: u32,
+
+    /// Make a rule of each cluster of rows (subtractive clustering) instead of each combination of terms
+    #[arg(long, conflicts_with = "most_terms")]
+    clusters: bool,
+
+    /// Use linear consequents instead of constants
+    #[arg(long)]
+    lines: bool,
+
+    /// By what share a step must make the error on rows left out smaller
+    #[arg(long, default_value_t = 0.02, value_name = "SHARE", value_parser = rows::share)]
+    least_gain: f64,
+
+    /// The fewest rows that make a rule
+    #[arg(long, default_value_t = 1, value_name = "ROWS")]
+    min_support: usize,
+
+    /// Random seed (folds of cross-validation)
+    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    seed: u64,
+
+    /// The column with the weights of the rows
+    #[arg(long, value_name = "COLUMN")]
+    weight: Option<String>,
+
+    /// Leave out all rows with one value of this column together: `vehicle`
+    #[arg(long, value_name = "COLUMN")]
+    group_by: Option<String>,
+
+    /// Into how many parts the rows or groups are divided
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = count(2, 100))]
+    folds: u32,
+
+    /// Skip the cross-validation of the whole search
+    #[arg(long)]
+    no_validation: bool,
+
+    #[command(flatten)]
+    format: Format,
+
+    /// Print the report as a JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+fn count(least: i64, most: i64) -> clap::builder::RangedI64ValueParser<u32> {
+    clap::value_parser!(u32).range(least..=most)
+}
+
+/// What the report tells.
+struct Outcome {
+    rows: usize,
+    refused: Vec<String>,
+    /// The columns that were looked at.
+    columns: usize,
+    /// Columns without a number.
+    without_numbers: Vec<String>,
+    identified: Identified,
+    /// `None` where it was not wanted.
+    judged: Option<Judged>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if arguments.input.contains(&arguments.target) {
+        let message = format!("`{}` is both the target and an input", arguments.target);
+        return Err(Failure::usage(message).help("name the other columns with `--input`"));
+    }
+    let mut files = Files::reading(&arguments.data)?;
+    let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
+    // A table is read once: it may be standard input.
+    let mut tables = rows::tables(&arguments.data, &arguments.format).peekable();
+    let (names, without_numbers) = match tables.peek() {
+        Some(Ok(first)) => columns(arguments, first)?,
+        _ => (arguments.input.clone(), Vec::new()),
+    };
+    let failed = |error: TuneError| failure(arguments, &names, &error);
+    check_columns(names.len()).map_err(failed)?;
+    let (data, refused) = data(arguments, tables, &names)?;
+    let settings = settings(arguments);
+    let identified = identify(&names, &arguments.target, &data, &settings).map_err(failed)?;
+    let judged = match arguments.no_validation {
+        true => None,
+        false => {
+            let mut watch = |_| ControlFlow::Continue(());
+            let folds = arguments.folds;
+            judge(
+                &names,
+                &arguments.target,
+                &data,
+                &settings,
+                folds,
+                &mut watch,
+            )
+            .map_err(failed)?
+        }
+    };
+    let outcome = Outcome {
+        rows: data.len(),
+        refused,
+        columns: names.len(),
+        without_numbers,
+        identified,
+        judged,
+    };
+    output.write(&report::rule_set(arguments, &outcome)?)?;
+    let mut out = Stdout::beside(&[&output]);
+    if arguments.json {
+        let document = report::Document::new(&outcome);
+        serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        report::words(&mut out, arguments, &outcome)?;
+    }
+    out.finish()?;
+    Ok(Exit::Clean)
+}
+
+fn settings(arguments: &Arguments) -> Identification {
+    let mut settings = Identification::default();
+    settings.antecedents = match arguments.clusters {
+        true => Antecedents::Clusters,
+        false => Antecedents::Partitions,
+    };
+    settings.consequents = match arguments.lines {
+        true => Consequents::Lines,
+        false => Consequents::Constants,
+    };
+    settings.inputs = arguments.input.clone();
+    settings.most_inputs = arguments.most_inputs as usize;
+    settings.most_terms = arguments.most_terms as usize;
+    settings.most_rules = arguments.most_rules as usize;
+    settings.least_gain = arguments.least_gain;
+    settings.least_support = arguments.min_support;
+    settings.folds = arguments.folds;
+    settings.seed = arguments.seed;
+    settings
+}
+
+/// The columns of a table that may be inputs, and those that hold no number.
+fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<String>), Failure> {
+    if !arguments.input.is_empty() {
+        return Ok((arguments.input.clone(), Vec::new()));
+    }
+    for ignored in &arguments.ignore {
+        table.header.require(ignored, "or leave that option out")?;
+    }
+    let special = [
+        Some(&arguments.target),
+        arguments.weight.as_ref(),
+        arguments.group_by.as_ref(),
+    ];
+    let is_candidate = |name: &String| {
+        !special.contains(&Some(name)) && !arguments.ignore.contains(name) && !name.is_empty()
+    };
+    let has_number = |column: usize| {
+        (0..table.len()).any(|row| {
+            matches!(
+                Cell::of(table.text(row, column).as_bytes()),
+                Cell::Number(_)
+            )
+        })
+    };
+    let names = table.header.names.iter().enumerate();
+    let (numbers, others): (Vec<_>, Vec<_>) = names
+        .filter(|(_, name)| is_candidate(name))
+        .partition(|(column, _)| has_number(*column));
+    let named =
+        |all: Vec<(usize, &String)>| all.into_iter().map(|(_, name)| name.clone()).collect();
+    Ok((named(numbers), named(others)))
+}
+
+/// The rows as columns, and why others cannot be used.
+fn data(
+    arguments: &Arguments,
+    tables: impl Iterator<Item = Result<Table, Failure>>,
+    names: &[String],
+) -> Result<(Data, Vec<String>), Failure> {
+    let all: Vec<&str> = names
+        .iter()
+        .chain([&arguments.target])
+        .map(String::as_str)
+        .collect();
+    let read = rows::columns(
+        tables,
+        &arguments.format,
+        &all,
+        [&arguments.weight, &arguments.group_by].map(Option::as_deref),
+    )?;
+    let (data, refused) = rows::in_columns(read, names.len(), Loss::Squared);
+    if !refused.is_empty() && (!arguments.format.skip_bad_rows || data.is_empty()) {
+        return Err(rows::refuse(&refused, "used"));
+    }
+    Ok((data, refused))
+}
+
+fn failure(arguments: &Arguments, names: &[String], error: &TuneError) -> Failure {
+    let target = &arguments.target;
+    let failure = Failure::unusable(format!("`{target}`"), error);
+    match error {
+        TuneError::NoWeight => failure.help("give rows a weight above 0, or leave out `--weight`"),
+        TuneError::NoInputHelps => failure
+            .help("give columns that have to do with it, more rows, or a smaller `--least-gain`"),
+        TuneError::TooManyColumns { .. } => failure.help(
+            "name those that may be inputs with `--input`, or leave some out with `--ignore`",
+        ),
+        TuneError::Unknown { name } => {
+            failure.help_if(suggest(name, names.iter().map(String::as_str)))
+        }
+        _ => failure,
+    }
+}

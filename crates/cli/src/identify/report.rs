@@ -1,0 +1,200 @@
+//! What was found, in words, as JSON, and as the rule set itself.
+
+use std::io::Write;
+
+use flagred_tuning::identify::Judged;
+use fuzzy::{
+    drawing::{short, visible},
+    model::Step,
+};
+use serde::Serialize;
+
+use super::{Arguments, Outcome};
+use crate::{
+    failure::Failure,
+    left_out::{self, OfInterval, divided, figure},
+    provenance,
+};
+
+/// The columns without numbers that are shown.
+const SHOWN: usize = 12;
+
+/// The rule set with the step that made it.
+pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome) -> Result<String, Failure> {
+    let judged = outcome.judged.as_ref().map_or_else(String::new, |judged| {
+        format!(
+            "; RMS error on rows left out, in {} parts: {}; of a line {}",
+            judged.folds,
+            short(judged.identified.value),
+            short(judged.linear.value)
+        )
+    });
+    let step = Step {
+        command: "flagred identify".into(),
+        data: provenance::data(&arguments.data)?,
+        rows: Some(outcome.rows as u64),
+        seed: Some(arguments.seed),
+        note: Some(format!("from {} columns{judged}", outcome.columns)),
+        ..Step::default()
+    };
+    provenance::rule_set("", outcome.identified.model.clone(), step)
+}
+
+pub(super) fn words(
+    out: &mut dyn Write,
+    arguments: &Arguments,
+    outcome: &Outcome,
+) -> std::io::Result<()> {
+    left_out::rows(out, outcome.rows, &outcome.refused)?;
+    writeln!(out, "columns     {} looked at", outcome.columns)?;
+    for name in outcome.without_numbers.iter().take(SHOWN) {
+        writeln!(out, "            `{}` holds no number", visible(name))?;
+    }
+    let identified = &outcome.identified;
+    let things = if arguments.clusters {
+        "clusters"
+    } else {
+        "terms"
+    };
+    let steps = identified.steps.iter();
+    let changes: Vec<String> = steps
+        .map(|step| format!("{}, {} {things}", visible(&step.input), step.terms))
+        .collect();
+    let width = changes.iter().map(|change| change.chars().count()).max();
+    let width = width.unwrap_or(0);
+    for (i, (step, change)) in identified.steps.iter().zip(&changes).enumerate() {
+        let title = if i == 0 { "steps" } else { "" };
+        let left_out = short(step.left_out);
+        let said = if i == 0 {
+            " RMS error on rows left out"
+        } else {
+            ""
+        };
+        writeln!(out, "{title:<11} {change:<width$}  {left_out}{said}")?;
+    }
+    let missing = match identified.without_rows {
+        0 => String::new(),
+        1 => "; 1 combination of terms without rows has none".to_owned(),
+        count => format!("; {count} combinations of terms without rows have none"),
+    };
+    let inputs = identified.columns.len();
+    writeln!(
+        out,
+        "rules       {} over {inputs} input{}{missing}",
+        identified.model.rules.len(),
+        if inputs == 1 { "" } else { "s" }
+    )?;
+    if let Some(judged) = &outcome.judged {
+        worth(out, arguments, judged)?;
+    }
+    Ok(())
+}
+
+/// What the whole search is worth.
+fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io::Result<()> {
+    let parts = divided(arguments.group_by.as_ref());
+    writeln!(
+        out,
+        "left out    {} RMS error of the whole search ({} parts of {parts}, 95 % intervals)",
+        figure(&judged.identified),
+        judged.folds
+    )?;
+    let ratio = match judged.ratio {
+        ratio if ratio.value < 100.0 => format!("{} of it", figure(&ratio)),
+        _ => "over 100 times as large".to_owned(),
+    };
+    writeln!(
+        out,
+        "            {} of a line over all columns; the first is {ratio}",
+        figure(&judged.linear)
+    )?;
+    writeln!(out, "            {} of the mean", figure(&judged.mean))?;
+    if judged.without_value > 0 {
+        writeln!(
+            out,
+            "            {} rows without a value: no rule fires there; the mean stands for them",
+            judged.without_value
+        )?;
+    }
+    Ok(())
+}
+
+/// The document of `--json`.
+#[derive(Serialize)]
+pub(super) struct Document<'a> {
+    schema: &'static str,
+    rows: Rows<'a>,
+    columns: Columns<'a>,
+    steps: Vec<OfStep<'a>>,
+    rules: usize,
+    combinations_without_rows: usize,
+    /// `None` where validation was not wanted.
+    validation: Option<Validation>,
+}
+
+#[derive(Serialize)]
+struct Rows<'a> {
+    used: usize,
+    refused: usize,
+    reasons: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Columns<'a> {
+    looked_at: usize,
+    without_numbers: &'a [String],
+    used: Vec<&'a str>,
+}
+
+#[derive(Serialize)]
+struct OfStep<'a> {
+    input: &'a str,
+    terms: usize,
+    left_out: f64,
+}
+
+#[derive(Serialize)]
+struct Validation {
+    parts: usize,
+    rows_without_value: usize,
+    identified: OfInterval,
+    linear: OfInterval,
+    mean: OfInterval,
+    ratio: OfInterval,
+}
+
+impl<'a> Document<'a> {
+    pub(super) fn new(outcome: &'a Outcome) -> Document<'a> {
+        let identified = &outcome.identified;
+        let steps = identified.steps.iter().map(|step| OfStep {
+            input: &step.input,
+            terms: step.terms,
+            left_out: step.left_out,
+        });
+        let inputs = identified.model.inputs.iter();
+        Document {
+            schema: "flagred.identify/1",
+            rows: Rows {
+                used: outcome.rows,
+                refused: outcome.refused.len(),
+                reasons: &outcome.refused,
+            },
+            columns: Columns {
+                looked_at: outcome.columns,
+                without_numbers: &outcome.without_numbers,
+                used: inputs.map(|input| input.name.as_str()).collect(),
+            },
+            steps: steps.collect(),
+            rules: identified.model.rules.len(),
+            combinations_without_rows: identified.without_rows,
+            validation: outcome.judged.as_ref().map(|judged| Validation {
+                parts: judged.folds,
+                rows_without_value: judged.without_value,
+                identified: (&judged.identified).into(),
+                linear: (&judged.linear).into(),
+                mean: (&judged.mean).into(),
+                ratio: (&judged.ratio).into(),
+            }),
+        }
+    }
+}

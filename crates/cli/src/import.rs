@@ -1,0 +1,55 @@
+//! `flagred import`: a rule set of another program, in YAML.
+
+use std::path::PathBuf;
+
+use flagred_interchange::{Format, Losses};
+
+use crate::{
+    diagnostics::{read_text, refuse, show},
+    failure::{Exit, Failure},
+    output::{Files, Replace},
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Rule set in FIS, FLL, FCL or FML, told by its content; `-` is standard input
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// The file to write; `-` is standard output
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+    /// The function block to read of an FCL that has several
+    #[arg(long, value_name = "NAME")]
+    block: Option<String>,
+    /// Leave out what a rule set cannot say: its values may be others
+    #[arg(long)]
+    lossy: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let output = Files::reading([&arguments.file])?.output(&arguments.output, Replace::Yes)?;
+    let text = read_text(&arguments.file)?;
+    let file = arguments.file.display().to_string();
+    let Some(format) = Format::of(&text) else {
+        let failure = Failure::unreadable(format!("`{file}` is not a FIS, FLL, FCL or FML file"));
+        return Err(failure.help("a rule set in YAML needs no import"));
+    };
+    let losses = match arguments.lossy {
+        true => Losses::Accept,
+        false => Losses::Refuse,
+    };
+    let read = match &arguments.block {
+        None => flagred_interchange::read(&text, format, losses),
+        Some(name) if format == Format::Fcl => flagred_interchange::read_block(&text, name, losses),
+        Some(_) => {
+            let message = format!("`--block` is for FCL, and `{file}` is {}", format.name());
+            return Err(Failure::usage(message));
+        }
+    };
+    let document = read.map_err(|findings| refuse(&findings, &file, &text))?;
+    show(&document.warnings, &file, &text);
+    let validated = document.validate(&text);
+    validated.map_err(|findings| refuse(&findings, &file, &text))?;
+    output.write(&fuzzy::yaml::to_string(&document.model))?;
+    Ok(Exit::Clean)
+}

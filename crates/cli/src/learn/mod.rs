@@ -1,0 +1,212 @@
+//! `flagred learn`: rules from rows of data.
+
+pub(crate) mod report;
+
+use std::io::Write as _;
+
+use clap::ValueEnum;
+use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
+use flagred_evaluation::learning::{
+    Errors, ExamineError, GapComparison, cross_validate, leave_one_rule_out,
+};
+use fuzzy::{
+    Engine, Model,
+    check::{self, Counterexample},
+    learn::{Direction, Learned, Learner, Resolution, Settings},
+    map::{DecisionMap, Grid},
+    model::{Aggregation, Conjunction, Implication},
+};
+
+use crate::{
+    failure::{Exit, Failure},
+    output::Stdout,
+    rows, rule_set,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    rows: rows::FromRows,
+
+    /// How to choose the consequent of rows with the same terms
+    #[arg(long, value_enum, default_value = "strongest", value_name = "HOW")]
+    resolve: Resolve,
+
+    /// The fewest rows that make a rule
+    #[arg(long, default_value_t = 1, value_name = "ROWS")]
+    min_support: u64,
+
+    /// The lowest confidence of a rule
+    #[arg(long, default_value_t = 0.0, value_name = "DEGREE")]
+    min_degree: f64,
+
+    /// Add rules for combinations of terms without rows, each from the nearest combination with rows
+    #[arg(long)]
+    complete: bool,
+
+    /// Keep the rules of MODEL, which the learned ones replace otherwise
+    #[arg(long)]
+    keep_rules: bool,
+
+    /// Compare the methods of interpolation on rows whose rule is left out
+    #[arg(long)]
+    compare_gaps: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Resolve {
+    /// The row with the highest degree wins, as in the paper
+    Strongest,
+    /// The consequent with the highest sum of degrees wins
+    Heaviest,
+    /// The mean of the rows decides
+    Mean,
+}
+
+/// What the report tells.
+struct Outcome {
+    learned: Learned,
+    kept: usize,
+    refused: Vec<String>,
+    refused_count: usize,
+    coverage: Option<(f64, f64)>,
+    errors: Option<Errors>,
+    gaps: Option<GapComparison>,
+    /// Where the output does not go the way that was asked for.
+    counterexamples: Vec<Counterexample>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let (_, output) = arguments.rows.files()?;
+    let name = arguments.rows.rewrite.model.display().to_string();
+    let (document, text) = rule_set::read(&arguments.rows.rewrite.model)?;
+    let mut model = document.model;
+    if !arguments.keep_rules {
+        model.rules.clear();
+    }
+    let settings = settings(arguments);
+    let mut learner = Learner::new(&model, settings.clone())
+        .map_err(|error| Failure::usage(format!("`{name}`: {error}")).help(error.help()))?;
+    let data = rows::read(&arguments.rows, &model)?;
+    let mut rows = Vec::with_capacity(data.rows.len());
+    let mut refused = data.refused;
+    for (row, place) in data.rows {
+        match learner.add(&row.values, row.weight) {
+            Ok(()) => rows.push(row),
+            Err(refusal) => refused.push(format!("{place}: {refusal}")),
+        }
+    }
+    if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || rows.is_empty()) {
+        return Err(rows::refuse(&refused, "learned from"));
+    }
+    let learned = learner.finish();
+    let gap = GapSettings::default();
+    let examined = |error: ExamineError| Failure::unreadable(error.to_string());
+    let coverage = coverage(&learned.model, &gap)?;
+    let counterexamples = counterexamples(arguments, &learned.model)?;
+    let outcome = Outcome {
+        kept: model.rules.len(),
+        refused_count: refused.len(),
+        refused,
+        coverage,
+        errors: match arguments.rows.no_validation {
+            true => None,
+            false => Some(cross_validate(&model, &settings, &gap, &rows).map_err(examined)?),
+        },
+        gaps: match arguments.compare_gaps {
+            true => {
+                let compared = leave_one_rule_out(&learned.model, &rows, &GapMethod::ALL, None);
+                Some(compared.map_err(examined)?)
+            }
+            false => None,
+        },
+        learned,
+        counterexamples,
+    };
+    output.write(&report::rule_set(arguments, &outcome, &text)?)?;
+    let mut out = Stdout::beside(&[&output]);
+    if arguments.rows.rewrite.json {
+        let document = report::Document::new(arguments, &outcome);
+        serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        report::words(&mut out, arguments, &outcome)?;
+    }
+    out.finish()?;
+    Ok(match outcome.counterexamples.as_slice() {
+        [] => Exit::Clean,
+        _ => Exit::Findings,
+    })
+}
+
+fn settings(arguments: &Arguments) -> Settings {
+    let directed = |claim: check::Monotone| match claim.direction {
+        check::Direction::Increasing => (claim.input, Direction::Rising),
+        check::Direction::Decreasing => (claim.input, Direction::Falling),
+    };
+    let monotone = arguments.rows.claims().into_iter().map(directed).collect();
+    let mut settings = Settings::default();
+    settings.resolution = match arguments.resolve {
+        Resolve::Strongest => Resolution::Strongest,
+        Resolve::Heaviest => Resolution::Heaviest,
+        Resolve::Mean => Resolution::Mean,
+    };
+    settings.min_support = arguments.min_support;
+    settings.min_degree = arguments.min_degree;
+    settings.complete = arguments.complete;
+    settings.monotone = monotone;
+    settings
+}
+
+/// Where the learned rules contradict `--rising` and `--falling`, as `flagred check --monotone` finds it.
+fn counterexamples(arguments: &Arguments, model: &Model) -> Result<Vec<Counterexample>, Failure> {
+    let engine = Engine::new(model).map_err(unusable)?;
+    check::counterexamples(&engine, &arguments.rows.claims()).map_err(unusable)
+}
+
+/// What would make the output monotone, where that is known: inference by product and sum does not bend monotone rules where
+/// every combination of terms has one.
+fn monotone_help(arguments: &Arguments, outcome: &Outcome) -> Option<&'static str> {
+    let mut model = outcome.learned.model.clone();
+    model.operators.and = Conjunction::Product;
+    model.operators.implication = Implication::Product;
+    model.operators.aggregation = Aggregation::Sum;
+    let holds = counterexamples(arguments, &model).is_ok_and(|found| found.is_empty());
+    match (holds, outcome.learned.missing) {
+        (true, _) => Some(
+            "the same rules hold it with `operators: {and: product, implication: product, aggregation: sum}`",
+        ),
+        (false, 0) => None,
+        (false, _) => Some(
+            "combinations of terms without a rule may be the cause: `--complete` adds rules for them",
+        ),
+    }
+}
+
+/// The most cells of the map that `coverage` looks at: 13 inputs.
+const MOST_CELLS: usize = 2_000_000;
+
+fn unusable(error: impl std::fmt::Display) -> Failure {
+    Failure::unusable("the learned rules cannot be used", &error)
+}
+
+/// The shares of the map that rules cover, and that have a value after filling; `None` of a map with too many cells.
+fn coverage(model: &Model, gap: &GapSettings) -> Result<Option<(f64, f64)>, Failure> {
+    let engine = Engine::new(model).map_err(unusable)?;
+    let points = crate::map::points_along(model.inputs.len());
+    let inputs = u32::try_from(model.inputs.len()).unwrap_or(u32::MAX);
+    if points
+        .checked_pow(inputs)
+        .is_none_or(|cells| cells > MOST_CELLS)
+    {
+        return Ok(None);
+    }
+    let grid = Grid::new(&engine, points).map_err(unusable)?;
+    let map = DecisionMap::new(&engine, grid, 0).map_err(unusable)?;
+    let filling = Filling::new(&engine, model, 0, gap).map_err(unusable)?;
+    let filled = FilledMap::new(map, filling);
+    let cells = filled.map().grid().cells();
+    let known = (0..cells).filter(|cell| filled.value(*cell).is_some());
+    let known = known.count() as f64 / cells.max(1) as f64;
+    Ok(Some((1.0 - filled.filled_share(), known)))
+}

@@ -1,0 +1,276 @@
+//! What was learned, in words, as JSON, and as the rule set itself.
+
+use std::io::Write;
+
+use flagred::gap::GapMethod;
+use flagred_evaluation::learning::{Errors, MethodErrors};
+use fuzzy::{check::Counterexample, drawing::visible, model::Step};
+use serde::Serialize;
+
+use super::{Arguments, Outcome};
+use crate::{failure::Failure, provenance, rows::word};
+
+/// The antecedents without a rule that are named.
+const SHOWN: usize = 12;
+
+/// The rule set with the step that made it. Degrees are kept to six digits: authors read them.
+pub(super) fn rule_set(
+    arguments: &Arguments,
+    outcome: &Outcome,
+    model_text: &str,
+) -> Result<String, Failure> {
+    let learned = &outcome.learned;
+    let round = |degree: f64| (degree * 1e6).round() / 1e6;
+    let mut model = learned.model.clone();
+    for rule in &mut model.rules {
+        rule.confidence = rule.confidence.map(round);
+        for beaten in &mut rule.against {
+            beaten.degree = round(beaten.degree);
+        }
+    }
+    let step = Step {
+        command: "flagred learn".into(),
+        data: provenance::data(&arguments.rows.data)?,
+        rows: Some(learned.samples),
+        note: Some(format!(
+            "{} resolution; {} rules learned, {} of them without samples",
+            word(&arguments.resolve),
+            learned.model.rules.len() - outcome.kept,
+            learned.completed,
+        )),
+        ..Step::default()
+    };
+    provenance::rule_set(model_text, model, step)
+}
+
+pub(super) fn words(
+    out: &mut dyn Write,
+    arguments: &Arguments,
+    outcome: &Outcome,
+) -> std::io::Result<()> {
+    let learned = &outcome.learned;
+    let rules = learned.model.rules.len() - outcome.kept;
+    writeln!(
+        out,
+        "rows       {} used, {} refused",
+        learned.samples, outcome.refused_count
+    )?;
+    for refused in outcome.refused.iter().take(SHOWN) {
+        writeln!(out, "           {}", visible(refused))?;
+    }
+    writeln!(
+        out,
+        "rules      {rules} learned ({}), {} of them completed from their neighbours; {} kept",
+        word(&arguments.resolve),
+        learned.completed,
+        outcome.kept
+    )?;
+    writeln!(
+        out,
+        "conflicts  {} combinations of terms whose rows disagree; {} left out for few or unsure rows",
+        learned.conflicts, learned.left_out
+    )?;
+    writeln!(
+        out,
+        "missing    {} combinations of terms without a rule",
+        learned.missing
+    )?;
+    for antecedent in learned.missing_antecedents.iter().take(SHOWN) {
+        writeln!(out, "           {}", visible(&antecedent.to_string()))?;
+    }
+    if !arguments.rows.claims().is_empty() {
+        let found = &outcome.counterexamples;
+        let holds = if found.is_empty() { "yes" } else { "no" };
+        writeln!(
+            out,
+            "monotone   {holds}; {} rules have another consequent for it",
+            learned.moved
+        )?;
+        for found in found {
+            writeln!(out, "           {}", visible(&found.to_string()))?;
+        }
+        let help = (!found.is_empty()).then(|| super::monotone_help(arguments, outcome));
+        if let Some(help) = help.flatten() {
+            writeln!(out, "           help: {help}")?;
+        }
+    }
+    match outcome.coverage {
+        Some((by_rules, after_filling)) => writeln!(
+            out,
+            "coverage   {:.1} % of the map by rules, {:.1} % after filling ({})",
+            100.0 * by_rules,
+            100.0 * after_filling,
+            GapMethod::default().name()
+        )?,
+        None => writeln!(out, "coverage   not computed for so many inputs")?,
+    }
+    let parts = match &arguments.rows.group_by {
+        Some(column) => format!("groups of `{}` left out in turn", visible(column)),
+        None => "tenths of the rows left out in turn".to_owned(),
+    };
+    match &outcome.errors {
+        None => {}
+        Some(errors) if errors.rows == 0 => {
+            writeln!(out, "error      unknown: too few rows to leave any out")?;
+        }
+        Some(errors) => writeln!(
+            out,
+            "error      {:.2} RMS, {:.2} mean, {:+.2} bias over {} rows ({parts})",
+            errors.rmse, errors.mean_absolute, errors.bias, errors.rows
+        )?,
+    }
+    if let Some(gaps) = &outcome.gaps {
+        writeln!(
+            out,
+            "gaps       {} rules left out one by one; error of the filled cells on the rows there",
+            gaps.rules
+        )?;
+        writeln!(
+            out,
+            "           {:<18} {:>8} {:>8} {:>8} {:>16}",
+            "method", "RMS", "mean", "bias", "mean over rules"
+        )?;
+        let with = ("(with the rule)", &gaps.with_the_rule);
+        let methods = gaps.methods.iter().map(|(m, e)| (m.name(), e));
+        for (name, errors) in [with].into_iter().chain(methods) {
+            let Errors {
+                rows,
+                rmse,
+                mean_absolute,
+                bias,
+                ..
+            } = errors.by_row;
+            if rows == 0 {
+                writeln!(
+                    out,
+                    "           {name:<18} {:>8} {:>8} {:>8} {:>16}",
+                    "NA", "NA", "NA", "NA"
+                )?;
+                continue;
+            }
+            writeln!(
+                out,
+                "           {name:<18} {rmse:>8.2} {mean_absolute:>8.2} {bias:>+8.2} {:>16.2}",
+                errors.by_rule_mean_absolute
+            )?;
+        }
+    }
+    Ok(())
+}
+
+/// The document of `--json`.
+#[derive(Serialize)]
+pub(super) struct Document<'a> {
+    schema: &'static str,
+    rows: Rows<'a>,
+    resolution: String,
+    rules: Rules,
+    conflicts: u64,
+    left_out: u64,
+    missing: Missing,
+    /// `None` where no direction was asked for.
+    monotone: Option<Monotone<'a>>,
+    /// `None` of a map with too many cells.
+    coverage: Option<Coverage>,
+    /// `None` where rows were too few, or validation was not wanted.
+    cross_validation: Option<&'a Errors>,
+    gap_methods: Option<GapMethods<'a>>,
+}
+
+#[derive(Serialize)]
+struct Rows<'a> {
+    used: u64,
+    refused: usize,
+    reasons: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Rules {
+    learned: usize,
+    kept: usize,
+    completed: u64,
+}
+
+#[derive(Serialize)]
+struct Missing {
+    count: u64,
+    antecedents: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Monotone<'a> {
+    holds: bool,
+    moved: u64,
+    counterexamples: &'a [Counterexample],
+}
+
+#[derive(Serialize)]
+struct Coverage {
+    by_rules: f64,
+    after_filling: f64,
+    gap_method: &'static str,
+}
+
+#[derive(Serialize)]
+struct GapMethods<'a> {
+    rules_left_out: u32,
+    with_the_rule: &'a Errors,
+    methods: Vec<OfMethod<'a>>,
+}
+
+#[derive(Serialize)]
+struct OfMethod<'a> {
+    method: &'static str,
+    #[serde(flatten)]
+    errors: &'a MethodErrors,
+}
+
+impl<'a> Document<'a> {
+    pub(super) fn new(arguments: &Arguments, outcome: &'a Outcome) -> Document<'a> {
+        let learned = &outcome.learned;
+        let missing = learned.missing_antecedents.iter();
+        Document {
+            schema: "flagred.learn/1",
+            rows: Rows {
+                used: learned.samples,
+                refused: outcome.refused_count,
+                reasons: &outcome.refused,
+            },
+            resolution: word(&arguments.resolve),
+            rules: Rules {
+                learned: learned.model.rules.len() - outcome.kept,
+                kept: outcome.kept,
+                completed: learned.completed,
+            },
+            conflicts: learned.conflicts,
+            left_out: learned.left_out,
+            missing: Missing {
+                count: learned.missing,
+                antecedents: missing.map(ToString::to_string).collect(),
+            },
+            monotone: (!arguments.rows.claims().is_empty()).then(|| Monotone {
+                holds: outcome.counterexamples.is_empty(),
+                moved: learned.moved,
+                counterexamples: &outcome.counterexamples,
+            }),
+            coverage: outcome.coverage.map(|(by_rules, after_filling)| Coverage {
+                by_rules,
+                after_filling,
+                gap_method: GapMethod::default().name(),
+            }),
+            cross_validation: outcome.errors.as_ref().filter(|e| e.rows > 0),
+            gap_methods: outcome.gaps.as_ref().map(|gaps| GapMethods {
+                rules_left_out: gaps.rules,
+                with_the_rule: &gaps.with_the_rule.by_row,
+                methods: gaps
+                    .methods
+                    .iter()
+                    .map(|(method, errors)| OfMethod {
+                        method: method.name(),
+                        errors,
+                    })
+                    .collect(),
+            }),
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! The part of a map that a picture shows: two inputs are the axes, the others are held.
+
+use flagred_authoring::slice::{self, Mapped, POINTS};
+use fuzzy::drawing::{Axis, Scale, Slice, short};
+
+use super::{Arguments, AxisChoice, Evaluated};
+use crate::failure::Failure;
+
+/// The slice that the arguments ask for, and notes about what they leave open.
+pub(super) fn cut(
+    arguments: &Arguments,
+    evaluated: &Evaluated,
+) -> Result<(Slice, Vec<String>), Failure> {
+    let model = &evaluated.model;
+    let unknown = |name: &str| {
+        let inputs = model.inputs.iter().map(|input| input.name.as_str());
+        Failure::usage(format!("the rule set has no input `{name}`"))
+            .help_if(fuzzy::diagnostic::suggest(name, inputs))
+    };
+    let index = |name: &str| {
+        let found = model.inputs.iter().position(|input| input.name == name);
+        found.ok_or_else(|| unknown(name))
+    };
+    let mut fixed: Vec<Option<f64>> = vec![None; model.inputs.len()];
+    for (name, value) in &arguments.fix {
+        let input = index(name)?;
+        let within = model.inputs.get(input).map(|i| (i.low, i.high));
+        if let Some((low, high)) = within.filter(|(low, high)| value < low || value > high) {
+            return Err(Failure::usage(format!(
+                "`{name}` cannot be fixed at {value}: its range is {low} to {high}"
+            ))
+            .help("choose a value within the range"));
+        }
+        if let Some(slot) = fixed.get_mut(input) {
+            *slot = Some(*value);
+        }
+    }
+    let asked = |axis: &Option<AxisChoice>| axis.as_ref().map(|a| index(&a.name)).transpose();
+    let (asked_x, asked_y) = (asked(&arguments.x)?, asked(&arguments.y)?);
+    for (axis, input) in [("x", asked_x), ("y", asked_y)] {
+        if let Some(input) = input
+            && fixed.get(input).copied().flatten().is_some()
+        {
+            return Err(
+                Failure::usage(format!("`--{axis}` names an input that `--fix` holds"))
+                    .help("leave one of the two out"),
+            );
+        }
+    }
+    if asked_x.is_some() && asked_x == asked_y {
+        return Err(Failure::usage("`--x` and `--y` name the same input"));
+    }
+    let mut free = (0..model.inputs.len())
+        .filter(|input| fixed.get(*input).copied().flatten().is_none())
+        .filter(|input| Some(*input) != asked_x && Some(*input) != asked_y);
+    let x = asked_x
+        .or_else(|| free.next())
+        .ok_or_else(|| Failure::usage("every input is fixed, none is left for an axis"))?;
+    let y = asked_y.or_else(|| free.next());
+
+    let points = arguments.points.map_or(POINTS, usize::from);
+    let variable = |input: usize| model.inputs.get(input);
+    let axis = |input: usize, choice: &Option<AxisChoice>| {
+        let part = choice.as_ref().and_then(|choice| choice.part);
+        let part = |v| part.map_or_else(|| slice::shown(v), |(low, high)| Scale::new(low, high));
+        variable(input).map(|v| Axis::new(v, part(v), points))
+    };
+    let x_axis =
+        axis(x, &arguments.x).ok_or_else(|| Failure::usage("the rule set has no inputs"))?;
+    let y_axis = y.and_then(|y| axis(y, &arguments.y));
+    let mapped = Mapped {
+        model,
+        engine: &evaluated.engine,
+        output: evaluated.output,
+        filling: evaluated
+            .filling
+            .as_ref()
+            .map(|(filling, method)| (filling, *method)),
+    };
+    let point = slice::held(&mapped, &fixed, (x, y));
+    let held = model.inputs.iter().zip(&point).enumerate();
+    let held: Vec<(String, f64)> = held
+        .filter(|(input, _)| *input != x && Some(*input) != y)
+        .map(|(_, (input, value))| (input.name.clone(), *value))
+        .collect();
+    let axes = [("x", Some(x), Some(&x_axis)), ("y", y, y_axis.as_ref())];
+    let shown = axes
+        .into_iter()
+        .filter_map(|(flag, input, axis)| Some((flag, variable(input?)?, axis?)));
+    let chosen = arguments.x.iter().chain(&arguments.y);
+    let chosen: Vec<&str> = chosen
+        .filter(|choice| choice.part.is_some())
+        .map(|choice| choice.name.as_str())
+        .collect();
+    let parts = shown
+        .filter(|(_, input, axis)| axis.scale() != Scale::new(input.low, input.high))
+        .filter(|(_, input, _)| !chosen.contains(&input.name.as_str()))
+        .map(|(flag, input, axis)| {
+            let Scale { low, high } = axis.scale();
+            let (name, low, high) = (&input.name, short(low), short(high));
+            let whole = format!("{}..{}", short(input.low), short(input.high));
+            format!(
+                "`{name}` is shown from {low} to {high}, where its terms change; \
+                 the whole range: `--{flag} {name}:{whole}`"
+            )
+        });
+    let named = |name: &str| arguments.fix.iter().any(|(fixed, _)| fixed == name);
+    let unnamed = held.iter().filter(|(name, _)| !named(name));
+    let held_at = unnamed.map(|(name, value)| {
+        format!(
+            "`{name}` is held at {}; another value: `--fix {name}=VALUE`",
+            short(*value)
+        )
+    });
+    let notes: Vec<String> = held_at.chain(parts).collect();
+
+    let y_axis = y.zip(y_axis);
+    let slice = slice::cut(&mapped, (x, x_axis), y_axis, point)
+        .map_err(|error| Failure::unreadable(error.to_string()))?;
+    Ok((slice, notes))
+}

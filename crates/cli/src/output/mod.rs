@@ -1,0 +1,66 @@
+//! All that a command writes: files, standard output, notes on standard error.
+//!
+//! A command names what it reads and writes before it begins ([`Files`]), makes the contents, and writes them: files first,
+//! since standard output may block or close ([`write_all`]).
+
+mod file;
+mod stdout;
+
+use std::{
+    io::Write as _,
+    path::{Path, PathBuf},
+};
+
+pub(crate) use flagred_report::table::{cell, number_or_cell};
+
+pub(crate) use self::{
+    file::{Files, Output, Replace, can_replace, new_file, write_all},
+    stdout::Stdout,
+};
+
+/// A file for an SVG picture: another extension would lie about what is in it.
+pub(crate) fn svg_path(text: &str) -> Result<PathBuf, String> {
+    path_of(text, "the picture is SVG", &["svg"])
+}
+
+/// A file for a report. A log that stands here by mistake is not replaced.
+pub(crate) fn html_path(text: &str) -> Result<PathBuf, String> {
+    path_of(text, "the report is HTML", &["html", "htm"])
+}
+
+/// A file for a page. A log that stands here by mistake is not replaced.
+pub(crate) fn page_path(text: &str) -> Result<PathBuf, String> {
+    path_of(text, "the page is HTML", &["html", "htm"])
+}
+
+/// A file for a flight CSV. A log that stands here by mistake is not replaced.
+pub(crate) fn csv_path(text: &str) -> Result<PathBuf, String> {
+    path_of(text, "the table is CSV", &["csv", "txt"])
+}
+
+/// A file for a table with whatever between its cells. A log that stands here by mistake is not replaced.
+pub(crate) fn table_path(text: &str) -> Result<PathBuf, String> {
+    path_of(text, "the table is CSV", &["csv", "tsv", "txt"])
+}
+
+fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let fits = |other: &std::ffi::OsStr| extensions.iter().any(|e| other.eq_ignore_ascii_case(e));
+    match (path.extension(), extensions.first()) {
+        (Some(other), Some(first)) if !fits(other) => Err(format!(
+            "{what}; write `{}`",
+            path.with_extension(first).display()
+        )),
+        _ => Ok(path),
+    }
+}
+
+/// A note on standard error, in one line.
+pub(crate) fn say(note: &str) {
+    // Nothing is left to tell a user whose standard error is closed.
+    let _ = writeln!(anstream::stderr(), "{}", fuzzy::drawing::visible(note));
+}
+
+fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
+}

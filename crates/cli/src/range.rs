@@ -1,0 +1,38 @@
+//! `--range`: the range of the motor outputs where a log or a vehicle does not report it.
+
+use flagred_flightlog::{Options, PulseRange};
+
+use crate::failure::Failure;
+
+#[derive(clap::Args)]
+pub(crate) struct RangeArgument {
+    /// Range of the motor outputs in us, where a log or the vehicle does not report it: `--range 1100 1900`
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = pulse_width)]
+    range: Option<Vec<u16>>,
+}
+
+fn pulse_width(text: &str) -> Result<u16, String> {
+    let width = text.parse().ok();
+    width
+        .filter(|width| (500..=2500).contains(width))
+        .ok_or_else(|| "write microseconds from 500 to 2500, without decimals".into())
+}
+
+impl RangeArgument {
+    /// The given range, if any.
+    pub(crate) fn given(&self) -> Result<Option<PulseRange>, Failure> {
+        let Some(&[low_us, high_us]) = self.range.as_deref() else {
+            return Ok(None);
+        };
+        let range = PulseRange::new(low_us, high_us)
+            .map_err(|error| Failure::usage(format!("--range: {error}")).help(error.help()))?;
+        Ok(Some(range))
+    }
+
+    /// Options that read a log whole, with the given range.
+    pub(crate) fn options(&self) -> Result<Options, Failure> {
+        let mut options = Options::default();
+        options.range = self.given()?;
+        Ok(options)
+    }
+}

@@ -1,0 +1,234 @@
+//! What `identify`, `learn`, `tune` and `simplify` share: their arguments, and rows from tables, each with its place for messages.
+
+use std::{collections::BTreeMap, path::PathBuf};
+
+use clap::ValueEnum;
+use flagred_evaluation::learning::Row;
+use fuzzy::{
+    Model,
+    check::{Direction, Monotone},
+};
+
+use crate::{
+    failure::Failure,
+    output::{Files, Output, Replace},
+    table::{Format, Table},
+};
+
+/// The arguments of a command that makes a rule set of another one.
+#[derive(clap::Args)]
+pub(crate) struct Rewrite {
+    /// The rule set to begin with: a file or a built-in one's name
+    #[arg(value_name = "MODEL")]
+    pub(crate) model: PathBuf,
+
+    /// The file for the new rule set; `-` is standard output
+    #[arg(short, long, value_name = "OUT.yaml")]
+    pub(crate) output: PathBuf,
+
+    /// Replace the file if it exists
+    #[arg(long)]
+    pub(crate) force: bool,
+
+    #[command(flatten)]
+    pub(crate) format: Format,
+
+    /// Print the report as a JSON document
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The arguments of a command that makes a rule set of another one and of rows.
+#[derive(clap::Args)]
+pub(crate) struct FromRows {
+    #[command(flatten)]
+    pub(crate) rewrite: Rewrite,
+
+    /// Tables with a column for each input and the output, as `flagred dataset` writes them
+    #[arg(required = true, value_name = "DATA.csv")]
+    pub(crate) data: Vec<PathBuf>,
+
+    /// The output must not fall when this input rises
+    #[arg(long, value_name = "INPUT")]
+    rising: Vec<String>,
+
+    /// The output must not rise when this input rises
+    #[arg(long, value_name = "INPUT")]
+    falling: Vec<String>,
+
+    /// The column with the weights of the rows
+    #[arg(long, value_name = "COLUMN")]
+    weight: Option<String>,
+
+    /// In cross-validation, leave out all rows with one value of this column together: `vehicle`
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) group_by: Option<String>,
+
+    /// Skip cross-validation
+    #[arg(long, conflicts_with = "group_by")]
+    pub(crate) no_validation: bool,
+}
+
+impl FromRows {
+    /// What is read and what is written.
+    pub(crate) fn files(&self) -> Result<(Files, Output), Failure> {
+        let Rewrite {
+            model,
+            output,
+            force,
+            ..
+        } = &self.rewrite;
+        let mut files = Files::reading(self.data.iter().chain([model]))?;
+        let output = files.output(output, Replace::forced(*force))?;
+        Ok((files, output))
+    }
+
+    /// What `--rising` and `--falling` claim.
+    pub(crate) fn claims(&self) -> Vec<Monotone> {
+        let claim = |input: &String, direction| Monotone {
+            input: input.clone(),
+            direction,
+            output: None,
+        };
+        let rising = self.rising.iter();
+        let rising = rising.map(|input| claim(input, Direction::Increasing));
+        let falling = self.falling.iter();
+        rising
+            .chain(falling.map(|input| claim(input, Direction::Decreasing)))
+            .collect()
+    }
+}
+
+/// The word of the command line for a value.
+pub(crate) fn word(value: &impl ValueEnum) -> String {
+    let word = value.to_possible_value();
+    word.map_or_else(String::new, |word| word.get_name().to_owned())
+}
+
+/// Rows, and those that cannot be used, with the reason.
+pub(crate) struct Data {
+    pub(crate) rows: Vec<(Row, String)>,
+    pub(crate) refused: Vec<String>,
+}
+
+/// Reads the values of the inputs and of the outputs of a model from all tables.
+pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure> {
+    let inputs = model.inputs.iter();
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    let names: Vec<&str> = inputs.chain(outputs).map(|v| v.name.as_str()).collect();
+    let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
+    let format = &arguments.rewrite.format;
+    columns(tables(&arguments.data, format), format, &names, optional)
+}
+
+/// The tables, each read when it is asked for.
+pub(crate) fn tables<'a>(
+    paths: &'a [PathBuf],
+    format: &'a Format,
+) -> impl Iterator<Item = Result<Table, Failure>> + 'a {
+    paths.iter().map(|path| Table::read(path, format.delimiter))
+}
+
+/// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows.
+pub(crate) fn columns(
+    tables: impl Iterator<Item = Result<Table, Failure>>,
+    format: &Format,
+    names: &[&str],
+    [weight, group]: [Option<&str>; 2],
+) -> Result<Data, Failure> {
+    let mut data = Data {
+        rows: Vec::new(),
+        refused: Vec::new(),
+    };
+    let mut groups: BTreeMap<String, u32> = BTreeMap::new();
+    for table in tables {
+        let table = table?;
+        let columns = format.columns(names, &table.header)?;
+        let optional = |name: Option<&str>| {
+            name.map(|name| table.header.require(name, "or leave that option out"))
+                .transpose()
+        };
+        let weight = optional(weight)?;
+        let group = optional(group)?;
+        for row in 0..table.len() {
+            let mut bad = Vec::new();
+            let mut number = |column: usize| {
+                table.number(row, column).unwrap_or_else(|cell| {
+                    bad.push(format!(
+                        "`{}`, line {}, column `{}`: {}",
+                        table.header.file, cell.line, cell.column, cell.problem
+                    ));
+                    f64::NAN
+                })
+            };
+            let values: Vec<f64> = columns.iter().map(|column| number(*column)).collect();
+            let weight = weight.map_or(1.0, &mut number);
+            if !bad.is_empty() {
+                data.refused.append(&mut bad);
+                continue;
+            }
+            let group = group.map(|column| {
+                let next = u32::try_from(groups.len()).unwrap_or(u32::MAX);
+                let name = table.text(row, column).to_owned();
+                *groups.entry(name).or_insert(next)
+            });
+            let place = format!("`{}`, line {}", table.header.file, table.line(row));
+            let row = Row {
+                values,
+                weight,
+                group,
+            };
+            data.rows.push((row, place));
+        }
+    }
+    Ok(data)
+}
+
+/// Rows as columns, and those that cannot be used, with the reason.
+pub(crate) fn in_columns(
+    read: Data,
+    inputs: usize,
+    loss: flagred_tuning::Loss,
+) -> (flagred_tuning::Data, Vec<String>) {
+    let Data { rows, mut refused } = read;
+    let mut data = flagred_tuning::Data {
+        inputs: vec![Vec::with_capacity(rows.len()); inputs],
+        ..flagred_tuning::Data::default()
+    };
+    for (row, place) in rows {
+        if let Some(problem) = flagred_tuning::Data::problem(&row.values, row.weight, loss) {
+            refused.push(format!("{place}: {problem}"));
+            continue;
+        }
+        for (column, value) in data.inputs.iter_mut().zip(&row.values) {
+            column.push(*value);
+        }
+        data.truths.extend(row.values.last());
+        data.weights.push(row.weight);
+        data.groups.extend(row.group);
+    }
+    (data, refused)
+}
+
+/// A share on the command line.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    let share: Option<f64> = text.parse().ok();
+    share
+        .filter(|share| (0.0..1.0).contains(share))
+        .ok_or_else(|| "write a share, at least 0 and less than 1".into())
+}
+
+/// Rows that cannot be used, as a failure.
+pub(crate) fn refuse(refused: &[String], purpose: &str) -> Failure {
+    const SHOWN: usize = 20;
+    let mut shown: Vec<String> = refused.iter().take(SHOWN).cloned().collect();
+    let more = refused.len().saturating_sub(SHOWN);
+    shown.extend((more > 0).then(|| format!("and {more} more")));
+    let count = refused.len();
+    Failure::unreadable(format!(
+        "{count} row{} cannot be {purpose}, and nothing was written",
+        if count == 1 { "" } else { "s" }
+    ))
+    .details(shown)
+    .help("correct or remove these rows, or leave them out with --skip-bad-rows")
+}

@@ -1,0 +1,361 @@
+//! `flagred simplify`: the same said with fewer rules.
+
+use std::{io::Write, path::PathBuf};
+
+use flagred_tuning::{Difference, Simplified, SimplifyError, SimplifySettings, simplify};
+use fuzzy::{
+    Model,
+    drawing::{short, visible},
+    model::Step,
+};
+use serde::Serialize;
+
+use crate::{
+    failure::{Exit, Failure},
+    output::{Files, Replace, Stdout},
+    provenance, rows, rule_set,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    rewrite: rows::Rewrite,
+
+    /// Tables with a column for each input: rows at which the outputs are compared, too
+    #[arg(value_name = "DATA.csv")]
+    data: Vec<PathBuf>,
+
+    /// By how much an output may differ, in its unit; without it, by 1e-12 of its range
+    #[arg(long, value_name = "VALUE", value_parser = tolerance)]
+    tolerance: Option<f64>,
+
+    /// Compare the outputs at the rows of DATA alone; elsewhere they may be anything
+    #[arg(long, requires = "data")]
+    rows_only: bool,
+
+    /// The seed of the points at random
+    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    seed: u64,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let tolerance: Option<f64> = text.parse().ok();
+    tolerance
+        .filter(|tolerance| *tolerance >= 0.0 && tolerance.is_finite())
+        .ok_or_else(|| "write a number from 0, in the unit of the output".into())
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let rewrite = &arguments.rewrite;
+    let mut files = Files::reading(arguments.data.iter().chain([&rewrite.model]))?;
+    let output = files.output(&rewrite.output, Replace::forced(rewrite.force))?;
+    let name = rewrite.model.display().to_string();
+    let (document, text) = rule_set::read(&rewrite.model)?;
+    rule_set::compile(&document, &name, &text)?;
+    let model = document.model;
+    let (rows, refused) = rows(arguments, &model)?;
+    let mut settings = SimplifySettings::default();
+    settings.tolerance = arguments.tolerance;
+    settings.rows_only = arguments.rows_only;
+    settings.seed = arguments.seed;
+    let simplified = simplify(&model, &rows, &settings).map_err(|error| {
+        let help = match error {
+            SimplifyError::NoRows => {
+                "the tables have a header and no rows; leave out `--rows-only`"
+            }
+            SimplifyError::TooManyRules { .. } => {
+                "learn it with fewer rules, such as with a higher `--min-support`, or split it by outputs"
+            }
+            _ => "`flagred check` shows what is wrong with the rule set",
+        };
+        Failure::unusable(format!("`{name}`"), &error).help(help)
+    })?;
+    let outcome = Outcome {
+        arguments,
+        model: &model,
+        rows: rows.first().map_or(0, Vec::len),
+        refused,
+        simplified,
+    };
+    output.write(&outcome.rule_set(&text)?)?;
+    let mut out = Stdout::beside(&[&output]);
+    if rewrite.json {
+        serde_json::to_writer_pretty(&mut out, &outcome.document())
+            .map_err(std::io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        outcome.words(&mut out)?;
+    }
+    out.finish()?;
+    Ok(Exit::Clean)
+}
+
+/// A column for each input, and why other rows cannot be used.
+fn rows(arguments: &Arguments, model: &Model) -> Result<(Vec<Vec<f64>>, Vec<String>), Failure> {
+    if arguments.data.is_empty() {
+        return Ok((Vec::new(), Vec::new()));
+    }
+    let names: Vec<&str> = model.inputs.iter().map(|input| &*input.name).collect();
+    let format = &arguments.rewrite.format;
+    let rows::Data { rows, refused } = rows::columns(
+        rows::tables(&arguments.data, format),
+        format,
+        &names,
+        [None; 2],
+    )?;
+    if !refused.is_empty() && !format.skip_bad_rows {
+        return Err(rows::refuse(&refused, "compared"));
+    }
+    let column = |input: usize| {
+        let rows = rows.iter();
+        rows.filter_map(|(row, _)| row.values.get(input).copied())
+            .collect()
+    };
+    Ok(((0..names.len()).map(column).collect(), refused))
+}
+
+struct Outcome<'a> {
+    arguments: &'a Arguments,
+    model: &'a Model,
+    rows: usize,
+    refused: Vec<String>,
+    simplified: Simplified,
+}
+
+impl Outcome<'_> {
+    /// What is allowed, in words.
+    fn allowed(&self) -> String {
+        match self.arguments.tolerance {
+            Some(tolerance) => format!("{tolerance}"),
+            None => format!("{:e} of the range", flagred_tuning::EQUAL),
+        }
+    }
+
+    fn points(&self) -> String {
+        let points = self.simplified.points;
+        match (self.arguments.rows_only, self.rows) {
+            (true, _) => format!("{points} rows"),
+            (false, 0) => format!("{points} points"),
+            (false, rows) => format!("{points} points, {rows} of them rows"),
+        }
+    }
+
+    /// The rule set with the step that made it.
+    fn rule_set(&self, model_text: &str) -> Result<String, Failure> {
+        let after = self.simplified.model.clone();
+        let step = Step {
+            command: "flagred simplify".into(),
+            data: provenance::data(&self.arguments.data)?,
+            rows: (self.rows > 0).then_some(self.rows as u64),
+            seed: Some(self.arguments.seed),
+            rules: Some([self.model.rules.len() as u64, after.rules.len() as u64]),
+            note: Some(format!(
+                "no output differs by more than {} at {}",
+                self.allowed(),
+                self.points()
+            )),
+            ..Step::default()
+        };
+        provenance::rule_set(model_text, after, step)
+    }
+
+    fn words(&self, out: &mut dyn Write) -> std::io::Result<()> {
+        let after = &self.simplified.model;
+        writeln!(
+            out,
+            "rules       {} before, {} after",
+            self.model.rules.len(),
+            after.rules.len()
+        )?;
+        if !self.simplified.dropped.is_empty() {
+            writeln!(out, "dropped     {}", listed(&self.simplified.dropped))?;
+        }
+        for name in &self.simplified.inputs {
+            writeln!(
+                out,
+                "dropped     input `{}`: no rule needs it",
+                visible(name)
+            )?;
+        }
+        let ors = [self.model, after].map(disjunction);
+        if ors[0] != ors[1] {
+            writeln!(
+                out,
+                "or          {} before, {} after; no rule had an OR",
+                ors[0], ors[1]
+            )?;
+        }
+        let (points, allowed) = (self.points(), self.allowed());
+        match &self.simplified.difference {
+            None => writeln!(out, "difference  none at {points}; allowed is {allowed}")?,
+            Some(difference) => {
+                let at = self.named(difference);
+                let at = at.map(|one| format!("{} = {}", one.input, short(one.value)));
+                writeln!(
+                    out,
+                    "difference  at most {} of `{}` at {points}; allowed is {allowed}",
+                    tiny(size(difference)),
+                    visible(&difference.output)
+                )?;
+                writeln!(
+                    out,
+                    "            {} before, {} after, at {}",
+                    short(difference.before),
+                    short(difference.after),
+                    visible(&at.collect::<Vec<_>>().join(", "))
+                )?;
+            }
+        }
+        if !self.refused.is_empty() {
+            writeln!(out, "refused     {} rows", self.refused.len())?;
+        }
+        for (i, (rule, of)) in after.rules.iter().zip(&self.simplified.rules).enumerate() {
+            if of
+                .iter()
+                .any(|before| self.model.rules.get(*before).map(|b| &b.rule) != Some(&rule.rule))
+            {
+                writeln!(
+                    out,
+                    "{:<11} of {}: {}",
+                    format!("rule {}", i + 1),
+                    listed(of),
+                    visible(&rule.rule.to_string())
+                )?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The inputs at which a difference was seen.
+    fn named<'a>(&'a self, difference: &'a Difference) -> impl Iterator<Item = OfInput<'a>> {
+        let inputs = self.model.inputs.iter().zip(&difference.inputs);
+        inputs.map(|(input, value)| OfInput {
+            input: &input.name,
+            value: *value,
+        })
+    }
+
+    fn document(&self) -> Document<'_> {
+        let simplified = &self.simplified;
+        let rules = simplified.model.rules.iter().zip(&simplified.rules);
+        let ors = [self.model, &simplified.model].map(disjunction);
+        Document {
+            schema: "flagred.simplify/1",
+            rules: Rules {
+                before: self.model.rules.len(),
+                after: simplified.model.rules.len(),
+                dropped: simplified.dropped.iter().map(|rule| rule + 1).collect(),
+                list: rules
+                    .map(|(rule, of)| OfRule {
+                        rule: rule.rule.to_string(),
+                        of: of.iter().map(|rule| rule + 1).collect(),
+                    })
+                    .collect(),
+            },
+            dropped_inputs: &simplified.inputs,
+            or: Change {
+                before: ors[0],
+                after: ors[1],
+            },
+            points: Points {
+                all: simplified.points,
+                rows: self.rows,
+                refused: self.refused.len(),
+                reasons: &self.refused,
+            },
+            tolerance: self.arguments.tolerance,
+            difference: simplified
+                .difference
+                .as_ref()
+                .map(|difference| OfDifference {
+                    output: &difference.output,
+                    size: size(difference),
+                    before: difference.before,
+                    after: difference.after,
+                    inputs: self.named(difference).collect(),
+                }),
+        }
+    }
+}
+
+fn size(difference: &Difference) -> f64 {
+    (difference.after - difference.before).abs()
+}
+
+/// A number that may be far below 1.
+fn tiny(value: f64) -> String {
+    if value < 1e-3 {
+        format!("{value:.1e}")
+    } else {
+        short(value)
+    }
+}
+
+/// `rules 2, 3`
+fn listed(rules: &[usize]) -> String {
+    let numbers: Vec<String> = rules.iter().map(|rule| (rule + 1).to_string()).collect();
+    let plural = if numbers.len() == 1 { "" } else { "s" };
+    format!("rule{plural} {}", numbers.join(", "))
+}
+
+/// The word of the format for what OR is.
+fn disjunction(model: &Model) -> &'static str {
+    fuzzy::format::word_of_or(model.operators.or)
+}
+
+/// The document of `--json`.
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: &'static str,
+    rules: Rules,
+    dropped_inputs: &'a [String],
+    or: Change,
+    points: Points<'a>,
+    /// `None`: equal.
+    tolerance: Option<f64>,
+    /// `None` where there is none at all.
+    difference: Option<OfDifference<'a>>,
+}
+
+#[derive(Serialize)]
+struct Rules {
+    before: usize,
+    after: usize,
+    dropped: Vec<usize>,
+    list: Vec<OfRule>,
+}
+
+#[derive(Serialize)]
+struct OfRule {
+    rule: String,
+    of: Vec<usize>,
+}
+
+#[derive(Serialize)]
+struct Change {
+    before: &'static str,
+    after: &'static str,
+}
+
+#[derive(Serialize)]
+struct Points<'a> {
+    all: usize,
+    rows: usize,
+    refused: usize,
+    reasons: &'a [String],
+}
+
+#[derive(Serialize)]
+struct OfDifference<'a> {
+    output: &'a str,
+    size: f64,
+    before: f64,
+    after: f64,
+    inputs: Vec<OfInput<'a>>,
+}
+
+#[derive(Serialize)]
+struct OfInput<'a> {
+    input: &'a str,
+    value: f64,
+}

@@ -1,0 +1,96 @@
+//! The page: the one in the program or another, and the policy that it asks for.
+
+use std::{fs, io::Read, path::Path};
+
+use flate2::read::GzDecoder;
+
+use crate::failure::Failure;
+
+/// What `build.rs` found, gzipped.
+const PACKED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/studio.html.gz"));
+
+/// What stands around the policy in the page.
+const POLICY: (&str, &str) = (
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"",
+    "\">",
+);
+
+pub(super) struct Page {
+    pub(super) html: String,
+    /// What the page may load, as it says itself: its scripts are named there by their hashes.
+    pub(super) policy: String,
+}
+
+/// The page in a file, or the one in the program.
+pub(super) fn find(file: Option<&Path>) -> Result<Page, Failure> {
+    match file {
+        Some(path) => {
+            let shown = path.display();
+            let html = fs::read_to_string(path).map_err(|error| {
+                Failure::unreadable(format!("`{shown}` cannot be read: {error}"))
+                    .help("check the path")
+            })?;
+            page(html).ok_or_else(|| {
+                Failure::unreadable(format!("`{shown}` is not the page of the studio"))
+                    .help("`web/build` writes it to crates/cli/page/studio.html")
+            })
+        }
+        None => built_in(PACKED),
+    }
+}
+
+fn built_in(packed: &[u8]) -> Result<Page, Failure> {
+    let mut html = String::new();
+    let unpacked = GzDecoder::new(packed).read_to_string(&mut html);
+    unpacked.ok().and_then(|_| page(html)).ok_or_else(|| {
+        Failure::usage("this `flagred` was built without the page of the studio").help(
+            "released programs have it; `web/build` makes it, and what is built next holds it",
+        )
+    })
+}
+
+/// A page with its policy. What has none is another file.
+fn page(html: String) -> Option<Page> {
+    let (before, after) = POLICY;
+    let policy = html.split_once(before)?.1.split_once(after)?.0;
+    let is_header = policy.chars().all(|c| matches!(c, ' '..='~'));
+    let policy = is_header.then(|| policy.to_owned())?;
+    Some(Page { html, policy })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use flate2::{Compression, write::GzEncoder};
+
+    use super::*;
+
+    fn packed(html: &str) -> Vec<u8> {
+        let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+        packed.write_all(html.as_bytes()).unwrap();
+        packed.finish().unwrap()
+    }
+
+    #[test]
+    fn the_policy_is_that_of_the_page() {
+        let html = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'sha256-x='\">";
+        let page = built_in(&packed(html)).unwrap();
+        assert_eq!(page.policy, "default-src 'none'; script-src 'sha256-x='");
+        assert_eq!(page.html, html);
+    }
+
+    #[test]
+    fn a_program_without_the_page_says_where_it_comes_from() {
+        let failure = built_in(&packed("")).map(|page| page.html).unwrap_err();
+        let told = failure.to_string();
+        assert!(told.contains("without the page") && told.contains("`web/build`"));
+    }
+
+    #[test]
+    fn a_policy_is_one_line_of_a_header() {
+        let split = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src *;\r\nSet-Cookie: a=b\">";
+        assert!(page(split.to_owned()).is_none());
+        assert!(page("<html></html>".to_owned()).is_none());
+    }
+}

@@ -1,0 +1,387 @@
+//! `flagred tune`: the numbers of a rule set from rows of data.
+
+mod report;
+
+use std::{
+    io::{IsTerminal, Write as _},
+    ops::ControlFlow,
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use clap::ValueEnum;
+use flagred_authoring::provenance::fingerprint;
+use flagred_tuning::{
+    CurvePoint, Data, Loss, Moved, Progress, Settings, TuneError, Tuned, Validation,
+    cross_validate, learning_curve, tune,
+};
+use fuzzy::{
+    Model,
+    drawing::{moved_svg, visible},
+};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::{
+    failure::{Exit, Failure},
+    output::{self, Output, Stdout},
+    rows, rule_set,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    rows: rows::FromRows,
+
+    /// Loss to minimise
+    #[arg(long, value_enum, default_value = "squared", value_name = "LOSS")]
+    loss: LossName,
+
+    /// Move only this variable, or only this term: `heat`, `heat.warm`
+    #[arg(long, value_name = "NAME")]
+    only: Vec<String>,
+
+    /// Leave this variable, or this term, as it is
+    #[arg(long, value_name = "NAME")]
+    fix: Vec<String>,
+
+    /// Move the weights of the rules, too
+    #[arg(long)]
+    weights: bool,
+
+    /// The least distance between neighbouring peaks, as a share of the range
+    #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = rows::share)]
+    least_distance: f64,
+
+    /// Let constants leave the range of the output, by its width at most
+    #[arg(long)]
+    beyond_range: bool,
+
+    /// Significant digits of the numbers that moved, or `all`
+    #[arg(long, default_value = "3", value_name = "DIGITS", value_parser = digits)]
+    round: Digits,
+
+    /// How often the search starts: at the rule set, then at random places around it
+    #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    starts: u32,
+
+    /// The most steps of a start
+    #[arg(long, default_value_t = 100, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    iterations: u32,
+
+    /// Random seed (starting points, folds of cross-validation)
+    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    seed: u64,
+
+    /// Keep the best rule set so far in this file, and begin with it where it exists
+    #[arg(long, value_name = "FILE.yaml")]
+    checkpoint: Option<PathBuf>,
+
+    /// Into how many parts cross-validation divides the rows or groups
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=100))]
+    folds: u32,
+
+    /// Tell the error on rows left out after tuning on an eighth, a quarter and half of the others, too
+    #[arg(long, conflicts_with = "no_validation")]
+    learning_curve: bool,
+
+    /// Draw the variables that moved, before and after, as an SVG picture
+    #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
+    svg: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum LossName {
+    /// The mean square of the error
+    Squared,
+    /// The mean of -ln p, where the output's column is 0 or 1 and p the place of the value in the range
+    Log,
+    /// The share of pairs of a 1 and a 0 in the wrong order: 1 less the area under the ROC curve
+    Ranking,
+}
+
+/// Significant digits; `None` for all.
+#[derive(Debug, Clone, Copy)]
+struct Digits(Option<u32>);
+
+fn digits(text: &str) -> Result<Digits, String> {
+    let digits = text.parse().ok().filter(|digits| (1..=17).contains(digits));
+    match (text, digits) {
+        ("all", _) => Ok(Digits(None)),
+        (_, Some(digits)) => Ok(Digits(Some(digits))),
+        (_, None) => Err("write a number of digits from 1 to 17, or `all`".into()),
+    }
+}
+
+impl Arguments {
+    fn loss(&self) -> Loss {
+        match self.loss {
+            LossName::Squared => Loss::Squared,
+            LossName::Log => Loss::Log,
+            LossName::Ranking => Loss::Ranking,
+        }
+    }
+}
+
+/// What the report tells.
+struct Outcome {
+    rows: usize,
+    refused: Vec<String>,
+    tuned: Tuned,
+    /// `None` where it was not wanted, or ended.
+    validation: Option<Validation>,
+    /// `None` where it was not wanted, or ended.
+    curve: Option<Vec<CurvePoint>>,
+    /// Whether the search began with a checkpoint.
+    is_resumed: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let (mut files, output) = arguments.rows.files()?;
+    let svg = files.optional(arguments.svg.as_ref())?;
+    let checkpoint = files.optional(arguments.checkpoint.as_ref())?;
+    let name = arguments.rows.rewrite.model.display().to_string();
+    let (document, text) = rule_set::read(&arguments.rows.rewrite.model)?;
+    rule_set::compile(&document, &name, &text)?;
+    let original = document.model;
+    let resumed = resumed(arguments, &original)?;
+    let begun = resumed.as_ref().unwrap_or(&original);
+    let (data, refused) = data(arguments, begun)?;
+    let settings = settings(arguments);
+    let failed = |error: TuneError| failure(&name, &error);
+
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
+        .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
+    let mut watch = Watch::new(arguments, stop, checkpoint.as_ref());
+    let tuned = tune(begun, &data, &settings, &mut |progress| {
+        watch.step(progress, None)
+    });
+    let tuned = tuned.map_err(failed)?;
+    // Whatever cannot be written is an error in the end. Until then the search goes on.
+    let kept = watch.keep(&tuned.model);
+    let validation = match arguments.rows.no_validation || tuned.is_stopped {
+        true => None,
+        false => {
+            let mut told = |fold: u32, progress: &Progress<'_>| watch.step(progress, Some(fold));
+            cross_validate(&original, &data, &settings, arguments.folds, &mut told)
+                .map_err(failed)?
+        }
+    };
+    let curve = match &validation {
+        Some(worth) if arguments.learning_curve => {
+            let mut told = |_: u32, _: &Progress<'_>| watch.more("learning curve");
+            let folds = arguments.folds;
+            learning_curve(&original, &data, &settings, folds, worth, &mut told).map_err(failed)?
+        }
+        _ => None,
+    };
+    watch.bar.finish_and_clear();
+    let outcome = Outcome {
+        rows: data.len(),
+        refused,
+        tuned,
+        validation,
+        curve,
+        is_resumed: resumed.is_some(),
+    };
+    let mut texts = vec![(&output, report::rule_set(arguments, &outcome, &text)?)];
+    if let Some(svg) = &svg {
+        texts.push((svg, moved_svg(&original, &outcome.tuned.model)));
+    }
+    let written: Vec<&Output> = texts.iter().map(|(output, _)| *output).collect();
+    let all_written = output::write_all(texts);
+    let mut out = Stdout::beside(&written);
+    if arguments.rows.rewrite.json {
+        let document = report::Document::new(arguments, &outcome);
+        serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        report::words(&mut out, arguments, &outcome)?;
+    }
+    out.finish()?;
+    match (kept, all_written) {
+        (Err(checkpoint), Err(output)) => {
+            checkpoint.report();
+            Err(output)
+        }
+        (kept, all_written) => kept.and(all_written).map(|()| Exit::Clean),
+    }
+}
+
+fn settings(arguments: &Arguments) -> Settings {
+    let mut settings = Settings::default();
+    settings.loss = arguments.loss();
+    settings.only = arguments.only.clone();
+    settings.fix = arguments.fix.clone();
+    settings.weights = arguments.weights;
+    settings.least_distance = arguments.least_distance;
+    settings.monotone = arguments.rows.claims();
+    settings.beyond_range = arguments.beyond_range;
+    settings.digits = arguments.round.0;
+    settings.starts = arguments.starts;
+    settings.seed = arguments.seed;
+    settings.iterations = arguments.iterations;
+    settings
+}
+
+/// The rows as columns, and why others cannot be used.
+fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
+    let read = rows::read(&arguments.rows, model)?;
+    let (data, refused) = rows::in_columns(read, model.inputs.len(), arguments.loss());
+    if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
+        return Err(rows::refuse(&refused, "used"));
+    }
+    Ok((data, refused))
+}
+
+/// The rule set to tune with the numbers of a checkpoint that exists and differs in nothing else.
+fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failure> {
+    let Some(path) = arguments.checkpoint.as_ref().filter(|path| path.exists()) else {
+        return Ok(None);
+    };
+    let (document, _) = rule_set::read(path)?;
+    let resumed = flagred_tuning::with_numbers_of(model, &document.model);
+    let resumed = resumed.filter(|resumed| fingerprint(resumed) == fingerprint(&document.model));
+    if resumed.is_none() {
+        let message = format!("`{}` is a checkpoint of another rule set", path.display());
+        return Err(Failure::usage(message).help("name a new file, or remove this one"));
+    }
+    let fixed = resumed.as_ref().and_then(|resumed| {
+        flagred_tuning::moved_although_fixed(model, resumed, &settings(arguments))
+    });
+    if let Some(Moved {
+        of,
+        name,
+        before,
+        after,
+    }) = fixed
+    {
+        let message = format!(
+            "the checkpoint `{}` changes `{name}` of `{}` from {before} to {after}, which must not change",
+            path.display(),
+            visible(&of)
+        );
+        return Err(Failure::usage(message).help(
+            "run with the `--only`, `--fix` and `--weights` that the checkpoint was written with, or name a new file",
+        ));
+    }
+    Ok(resumed)
+}
+
+fn failure(name: &str, error: &TuneError) -> Failure {
+    let help = match error {
+        TuneError::Outputs { .. } => {
+            "tune a rule set with this output alone; outputs that chain are tuned one by one"
+        }
+        TuneError::Unknown { .. } => "name a variable, or a term as `variable.term`",
+        TuneError::NothingMoves => {
+            "`--only` and `--fix` leave nothing; `--weights` moves the weights"
+        }
+        TuneError::NoRows => "the tables have a header and no rows",
+        TuneError::NoWeight => "give rows a weight above 0, or leave out `--weight`",
+        TuneError::NotFinite | TuneError::TooFar { .. } => {
+            "check the units of the output's column and of its range"
+        }
+        TuneError::OneClass => "ranking needs rows of 1 and rows of 0",
+        TuneError::NotMonotone { .. } => {
+            "`flagred check --monotone` shows where; begin with a rule set that holds it: `flagred learn --rising`"
+        }
+        _ => "`flagred check` shows what is wrong with the rule set",
+    };
+    match error {
+        TuneError::Unknown { .. } | TuneError::NothingMoves | TuneError::Claim { .. } => {
+            Failure::usage(format!("`{name}`: {error}")).help(help)
+        }
+        _ => Failure::unusable(format!("`{name}`"), error).help(help),
+    }
+}
+
+/// Follows a search: shows how far it is, keeps a checkpoint, ends it when the user asks.
+struct Watch<'a> {
+    stop: Arc<AtomicBool>,
+    bar: ProgressBar,
+    starts: u32,
+    iterations: u32,
+    checkpoint: Option<&'a Output>,
+    kept: Instant,
+    /// Whether the user knows that the checkpoint could not be written.
+    is_refused: bool,
+}
+
+impl<'a> Watch<'a> {
+    fn new(
+        arguments: &Arguments,
+        stop: Arc<AtomicBool>,
+        checkpoint: Option<&'a Output>,
+    ) -> Watch<'a> {
+        let parts = if arguments.rows.no_validation {
+            1
+        } else {
+            arguments.folds + 1
+        };
+        let steps = arguments.starts * arguments.iterations;
+        let style = ProgressStyle::with_template("{msg} {wide_bar} at most {eta} left");
+        let bar = match (std::io::stderr().is_terminal(), style) {
+            (true, Ok(style)) => ProgressBar::new(u64::from(steps * parts)).with_style(style),
+            _ => ProgressBar::hidden(),
+        };
+        Watch {
+            stop,
+            bar,
+            starts: arguments.starts,
+            iterations: arguments.iterations,
+            checkpoint,
+            kept: Instant::now(),
+            is_refused: false,
+        }
+    }
+
+    /// A step of the search, or of a part of cross-validation.
+    fn step(&mut self, progress: &Progress<'_>, fold: Option<u32>) -> ControlFlow<()> {
+        const BETWEEN: Duration = Duration::from_secs(5);
+        let part = fold.map_or(0, |fold| fold + 1);
+        let before = part * self.starts + progress.start - 1;
+        self.bar
+            .set_position(u64::from(before * self.iterations + progress.iteration));
+        self.bar.set_message(match fold {
+            None => format!("loss {:.6}", progress.loss),
+            Some(fold) => format!("validation, part {}", fold + 1),
+        });
+        if fold.is_none() && self.kept.elapsed() > BETWEEN {
+            // It may be possible to write it later; in the end it is an error.
+            if let Err(failure) = self.keep(progress.model)
+                && !std::mem::replace(&mut self.is_refused, true)
+            {
+                let note = format!("{}; the search goes on", failure.message());
+                self.bar.suspend(|| output::say(&note));
+            }
+        }
+        self.flow()
+    }
+
+    /// A step of what comes after all that the bar counts.
+    fn more(&self, what: &'static str) -> ControlFlow<()> {
+        self.bar.set_message(what);
+        self.flow()
+    }
+
+    fn flow(&self) -> ControlFlow<()> {
+        match self.stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+
+    fn keep(&mut self, model: &Model) -> Result<(), Failure> {
+        self.kept = Instant::now();
+        match self.checkpoint {
+            Some(checkpoint) => checkpoint.write(&fuzzy::yaml::to_string(model)),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! What moved, in words, as JSON, and as the rule set itself.
+
+use std::io::Write;
+
+use flagred_tuning::{Bin, Moved};
+use fuzzy::{
+    drawing::{short, visible},
+    model::{LossChange, Step},
+};
+use serde::Serialize;
+
+use super::{Arguments, LossName, Outcome};
+use crate::{
+    failure::Failure,
+    left_out::{self, OfInterval, divided, figure},
+    provenance,
+    rows::word,
+};
+
+fn loss(arguments: &Arguments) -> &'static str {
+    match arguments.loss {
+        LossName::Squared => "RMS error",
+        LossName::Log => "log loss",
+        LossName::Ranking => "wrong pairs",
+    }
+}
+
+/// The rule set with the step that made it.
+pub(super) fn rule_set(
+    arguments: &Arguments,
+    outcome: &Outcome,
+    model_text: &str,
+) -> Result<String, Failure> {
+    let tuned = &outcome.tuned;
+    let left_out = outcome.validation.as_ref().map(|validation| {
+        format!(
+            "on rows left out, in {} parts: {} before, {} after",
+            validation.folds,
+            short(validation.before.value),
+            short(validation.after.value)
+        )
+    });
+    let step = Step {
+        command: "flagred tune".into(),
+        data: provenance::data(&arguments.rows.data)?,
+        rows: Some(outcome.rows as u64),
+        seed: Some(arguments.seed),
+        loss: Some(LossChange {
+            name: loss(arguments).into(),
+            before: rounded(tuned.before),
+            after: rounded(tuned.after),
+        }),
+        moved: tuned.moved.iter().map(moved).collect(),
+        note: left_out,
+        ..Step::default()
+    };
+    provenance::rule_set(model_text, tuned.model.clone(), step)
+}
+
+/// Six digits: authors read them.
+fn rounded(loss: f64) -> f64 {
+    format!("{loss:.5e}").parse().unwrap_or(loss)
+}
+
+/// `heat.warm peak from 20 to 22.5`
+fn moved(moved: &Moved) -> String {
+    let [before, after] = [moved.before, moved.after].map(short);
+    format!("{} {} from {before} to {after}", moved.of, moved.name)
+}
+
+pub(super) fn words(
+    out: &mut dyn Write,
+    arguments: &Arguments,
+    outcome: &Outcome,
+) -> std::io::Result<()> {
+    let tuned = &outcome.tuned;
+    left_out::rows(out, outcome.rows, &outcome.refused)?;
+    if tuned.without_value > 0 {
+        writeln!(
+            out,
+            "            {} without a value: no rule fires there; they count as the middle of the range",
+            tuned.without_value
+        )?;
+    }
+    if outcome.is_resumed {
+        writeln!(out, "begun       with the checkpoint")?;
+    }
+    let ended = if tuned.is_stopped {
+        "; ended early"
+    } else {
+        ""
+    };
+    let name = loss(arguments);
+    writeln!(
+        out,
+        "{name:<11} {} before, {} after{ended}",
+        short(tuned.before),
+        short(tuned.after)
+    )?;
+    if let Some(validation) = &outcome.validation {
+        let parts = divided(arguments.rows.group_by.as_ref());
+        writeln!(
+            out,
+            "left out    {} before, {} after; gain {} ({} parts of {parts}, 95 % intervals)",
+            figure(&validation.before),
+            figure(&validation.after),
+            figure(&validation.gain),
+            validation.folds
+        )?;
+        for (i, bin) in validation.reliability.iter().enumerate() {
+            let (title, said) = match i {
+                0 => ("reliability", " left out"),
+                _ => ("", ""),
+            };
+            let Bin {
+                rows,
+                predicted,
+                observed,
+            } = bin;
+            writeln!(
+                out,
+                "{title:<11} {predicted:.3} predicted, {observed:.3} observed, {rows} rows{said}"
+            )?;
+        }
+    }
+    for (i, point) in outcome.curve.iter().flatten().enumerate() {
+        let title = if i == 0 { "curve" } else { "" };
+        let left_out = short(point.left_out);
+        let said = if i == 0 {
+            " on rows left out, tuned on this share of the others"
+        } else {
+            ""
+        };
+        writeln!(
+            out,
+            "{title:<11} {:>5.1} %  {left_out}{said}",
+            100.0 * point.share
+        )?;
+    }
+    let width = tuned
+        .moved
+        .iter()
+        .map(|moved| moved.of.chars().count())
+        .max()
+        .unwrap_or(0);
+    for (i, moved) in tuned.moved.iter().enumerate() {
+        let title = if i == 0 { "moved" } else { "" };
+        let Moved {
+            of,
+            name,
+            before,
+            after,
+        } = moved;
+        writeln!(
+            out,
+            "{title:<11} {:<width$} {} {} -> {}",
+            visible(of),
+            visible(name),
+            short(*before),
+            short(*after)
+        )?;
+    }
+    if tuned.moved.is_empty() {
+        let within = match tuned.at_bounds.is_empty() {
+            true => "",
+            false => " within the range",
+        };
+        writeln!(
+            out,
+            "moved       nothing: no step{within} makes the loss smaller"
+        )?;
+    }
+    if !tuned.at_bounds.is_empty() {
+        let names = tuned.at_bounds.iter().map(|name| visible(name));
+        let names: Vec<String> = names.map(|name| name.into_owned()).collect();
+        let remedy = match arguments.beyond_range {
+            true => "check the units of the column, or widen `range`",
+            false => "check the units of the column, widen `range`, or use `--beyond-range`",
+        };
+        writeln!(
+            out,
+            "at bounds   {}: the rows ask for values beyond the range; {remedy}",
+            names.join(", ")
+        )?;
+    }
+    Ok(())
+}
+
+/// The document of `--json`.
+#[derive(Serialize)]
+pub(super) struct Document<'a> {
+    schema: &'static str,
+    rows: Rows<'a>,
+    loss: String,
+    before: f64,
+    after: f64,
+    ended_early: bool,
+    from_checkpoint: bool,
+    /// `None` where validation was not wanted.
+    validation: Option<OfValidation>,
+    /// `None` where it was not wanted.
+    learning_curve: Option<Vec<OfPoint>>,
+    moved: Vec<OfNumber<'a>>,
+    /// Constants at the end of the range whose loss would be smaller beyond it.
+    at_bounds: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Rows<'a> {
+    used: usize,
+    without_value: usize,
+    refused: usize,
+    reasons: &'a [String],
+}
+
+#[derive(Serialize)]
+struct OfValidation {
+    parts: usize,
+    before: OfInterval,
+    after: OfInterval,
+    gain: OfInterval,
+    reliability: Vec<OfBin>,
+}
+
+#[derive(Serialize)]
+struct OfBin {
+    rows: usize,
+    predicted: f64,
+    observed: f64,
+}
+
+#[derive(Serialize)]
+struct OfPoint {
+    share: f64,
+    left_out: f64,
+}
+
+#[derive(Serialize)]
+struct OfNumber<'a> {
+    of: &'a str,
+    name: &'a str,
+    before: f64,
+    after: f64,
+}
+
+impl<'a> Document<'a> {
+    pub(super) fn new(arguments: &Arguments, outcome: &'a Outcome) -> Document<'a> {
+        let bin = |bin: &Bin| OfBin {
+            rows: bin.rows,
+            predicted: bin.predicted,
+            observed: bin.observed,
+        };
+        let tuned = &outcome.tuned;
+        let moved = tuned.moved.iter().map(|moved| OfNumber {
+            of: &moved.of,
+            name: &moved.name,
+            before: moved.before,
+            after: moved.after,
+        });
+        Document {
+            schema: "flagred.tune/1",
+            rows: Rows {
+                used: outcome.rows,
+                without_value: tuned.without_value,
+                refused: outcome.refused.len(),
+                reasons: &outcome.refused,
+            },
+            loss: word(&arguments.loss),
+            before: tuned.before,
+            after: tuned.after,
+            ended_early: tuned.is_stopped,
+            from_checkpoint: outcome.is_resumed,
+            validation: outcome.validation.as_ref().map(|validation| OfValidation {
+                parts: validation.folds,
+                before: (&validation.before).into(),
+                after: (&validation.after).into(),
+                gain: (&validation.gain).into(),
+                reliability: validation.reliability.iter().map(bin).collect(),
+            }),
+            learning_curve: outcome.curve.as_ref().map(|curve| {
+                let points = curve.iter().map(|point| OfPoint {
+                    share: point.share,
+                    left_out: point.left_out,
+                });
+                points.collect()
+            }),
+            moved: moved.collect(),
+            at_bounds: &tuned.at_bounds,
+        }
+    }
+}

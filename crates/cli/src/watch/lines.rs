@@ -1,0 +1,263 @@
+//! What happens in words, line by line, for people and pipes.
+
+use flagred::{
+    estimator::Estimator,
+    flight::{Reason, Verdict},
+    monitor::Update,
+};
+use flagred_flightlog::{Vehicle, mavlink::Setup};
+
+use fuzzy::drawing::visible;
+
+use super::session::{Doubt, End, Event, Flown, Left, Lost, Session, Silent, Source, View};
+use flagred_report::{finding::Teller, words::effective_range};
+
+/// Seconds of the vehicle's clock between two lines of risk in words.
+const STEP_S: f64 = 1.0;
+
+/// One line an event, and one a second in the air.
+#[derive(Default)]
+pub(crate) struct Words {
+    next_s: Option<f64>,
+}
+
+impl Words {
+    pub(crate) fn line(
+        &mut self,
+        at_s: f64,
+        event: &Event,
+        session: &Session<'_>,
+        estimator: &Estimator,
+    ) -> Option<String> {
+        let Event::Risk { update } = event else {
+            return Some(words(at_s, &describe(event, session, estimator)));
+        };
+        let Some(view) = session.view().filter(|view| view.is_in_air) else {
+            self.next_s = None;
+            return None;
+        };
+        let t_s = update.t_s;
+        let waits = |next_s: f64| (next_s - 2.0 * STEP_S..next_s).contains(&t_s);
+        if self.next_s.is_some_and(waits) {
+            return None;
+        }
+        self.next_s = Some(t_s + STEP_S);
+        Some(words(at_s, &risk(update, &view, estimator)))
+    }
+}
+
+/// A line of words with the receiver's time.
+pub(crate) fn words(at_s: f64, text: &str) -> String {
+    format!("{at_s:8.1} s  {}\n", visible(text))
+}
+
+/// An event in words; a risk is described with how things stand, by [`Words`].
+pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimator) -> String {
+    match event {
+        Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),
+        Event::Locked { system, source } => format!(
+            "motor commands of vehicle {system} come{}: it is believed, and nobody else in its name",
+            from(*source)
+        ),
+        Event::GivenUp { system } => {
+            format!("vehicle {system} is given up: it is silent, or sends no motor commands")
+        }
+        Event::SenderChanged { system, to, .. } => format!(
+            "vehicle {system} is heard{} now; it is followed there",
+            from(*to)
+        ),
+        Event::Doubt {
+            what,
+            system,
+            component,
+            source,
+        } => match what {
+            Doubt::SecondSender => format!(
+                "something else{} speaks as vehicle {system}: it is not believed",
+                from(*source)
+            ),
+            Doubt::OtherComponent => format!(
+                "component {component} of vehicle {system} sends parameters: they are not taken for those of the autopilot"
+            ),
+            Doubt::ClockJump => format!(
+                "a time stamp of vehicle {system} jumps while its clock goes on: it is left out"
+            ),
+        },
+        Event::AnotherWatch {
+            component, speaks, ..
+        } => another_watch(*component, *speaks),
+        Event::AnotherVehicle { system } => {
+            format!("another vehicle is on the link, {system}: it is not followed")
+        }
+        Event::NotAMultirotor { system, vehicle } => {
+            format!(
+                "vehicle {system} is a {}, not a multirotor: it is not followed",
+                vehicle.kind
+            )
+        }
+        Event::Ready { setup, .. } => ready(setup),
+        Event::Slowed {
+            rate_hz,
+            wanted_hz,
+            system,
+            component,
+        } => {
+            let who = match (system, component) {
+                (Some(system), Some(component)) => {
+                    format!("station {system}, component {component}, asked the vehicle for less")
+                }
+                _ => "another station asked for less, or the link is too slow".to_owned(),
+            };
+            format!(
+                "motor commands come at {rate_hz:.1} Hz, {wanted_hz:.0} Hz are needed: {who}; they are requested again"
+            )
+        }
+        Event::Note { text } => text.clone(),
+        Event::Lost { what: Silent::Link } => {
+            "LINK LOST: nothing comes from the vehicle, the risk is unknown".to_owned()
+        }
+        Event::Lost {
+            what: Silent::Motors,
+        } => "no motor commands come (SERVO_OUTPUT_RAW), the risk is unknown".to_owned(),
+        Event::Back { what, after_s } => format!(
+            "{} again, after {after_s:.1} s of silence",
+            match what {
+                Silent::Link => "the vehicle is heard",
+                Silent::Motors => "motor commands come",
+            }
+        ),
+        Event::Rebooted => "the vehicle started anew: what was before is forgotten".to_owned(),
+        Event::TookOff { .. } => "took off".to_owned(),
+        Event::Risk { update } => update.risk.map_or_else(
+            |_| String::new(),
+            |estimate| format!("risk {:.0} %", estimate.risk_pct),
+        ),
+        Event::Level { text, advice, .. } => match advice {
+            Some(advice) => format!("{text}: {advice}"),
+            None => text.clone(),
+        },
+        Event::Ended { finding } => {
+            let view = session.view();
+            let teller = teller(view.as_ref(), estimator);
+            let advice = teller.words(finding).advice;
+            format!("{} of {} {advice}", finding.level, teller.finding(finding))
+        }
+        Event::Over { end, flown } => over(*end, flown),
+    }
+}
+
+/// Where something came from, if that is known.
+fn from(source: Source) -> String {
+    source.map_or(String::new(), |address| format!(" from {address}"))
+}
+
+fn another_watch(component: Option<u8>, speaks: bool) -> String {
+    let (what, so) = match (component, speaks) {
+        (None, _) => return "no other watch is heard any more".to_owned(),
+        (Some(1), false) => ("the autopilot itself sends the risk".to_owned(), "nothing"),
+        (Some(number), false) => (format!("component {number} watches it too"), "nothing"),
+        (Some(number), true) => (format!("component {number} watches it too"), "all"),
+    };
+    let help = match speaks {
+        false => "; `--send-anyway` sends both",
+        true => "",
+    };
+    format!("{what}: this watch says {so}{help}")
+}
+
+fn over(end: End, flown: &Flown) -> String {
+    let mut text = match end {
+        End::Landed => format!("{}: the flight is over", flown.verdict),
+        End::Lost(lost) => format!("{}: LOST IN THE AIR, {}", flown.verdict, cause_of(lost)),
+        End::Left(Left::WatchEnded) => format!("{}: the watch ends in the air", flown.verdict),
+        End::Left(Left::SetUpAnew) => format!(
+            "{}: the flight so far; motors or limits became known late, the rest is assessed as a flight of its own",
+            flown.verdict
+        ),
+    };
+    match (&flown.verdict, flown.level_seen) {
+        (Verdict::NotAvailable(Reason::LostInAir), Some(level)) => {
+            text += &format!("; {level} until then");
+        }
+        (Verdict::NotAvailable(reason), _) => text += &format!("; no verdict: {reason}"),
+        (Verdict::Known(_), _) => {}
+    }
+    text
+}
+
+fn cause_of(lost: Lost) -> &'static str {
+    match lost {
+        Lost::Link => "nothing is heard of the vehicle",
+        Lost::MotorCommands => "motor commands do not come any more",
+        Lost::Reboot => "the vehicle rebooted",
+    }
+}
+
+pub(super) fn teller<'a>(view: Option<&View<'a>>, estimator: &'a Estimator) -> Teller<'a> {
+    let setup = view.and_then(|view| view.setup);
+    Teller {
+        estimator,
+        motors: setup.map_or(&[], |setup| &setup.motors),
+    }
+}
+
+/// A vehicle in a few words.
+pub(crate) fn name(vehicle: &Vehicle) -> String {
+    let frame = vehicle.frame.clone();
+    let kind = frame.unwrap_or_else(|| vehicle.kind.to_string());
+    match &vehicle.firmware {
+        Some(firmware) => format!("{kind}, {firmware}"),
+        None => kind,
+    }
+}
+
+fn ready(setup: &Setup) -> String {
+    let outputs: Vec<&str> = setup.motors.iter().map(|m| m.output.as_str()).collect();
+    let mut text = format!(
+        "{} motors ({}), {} to {} {} ({}), {} ({})",
+        setup.motors.len(),
+        outputs.join(", "),
+        setup.range.low,
+        setup.range.high,
+        setup.range.unit,
+        setup.range.source,
+        effective_range(&setup.effective),
+        setup.effective.source,
+    );
+    if !setup.assumed.is_empty() {
+        text += &format!(
+            "; the vehicle did not tell everything, assumed: {}",
+            setup.assumed.join("; ")
+        );
+    }
+    text
+}
+
+/// The risk of a moment and what it comes from, in words.
+fn risk(update: &Update, view: &View<'_>, estimator: &Estimator) -> String {
+    let number = |value: Option<f64>| value.map_or("unknown".to_owned(), |v| format!("{v:.2}"));
+    let tail = format!(
+        "margin {}, spread {}",
+        number(view.margin),
+        number(view.spread)
+    );
+    match (update.risk, update.elevated_risk_pct) {
+        (Ok(estimate), Some(elevated_pct)) => format!(
+            "{:<4} risk {:.0} %, elevated {elevated_pct:.0} %, {tail}",
+            update
+                .level
+                .map_or(String::new(), |level| level.to_string()),
+            estimate.risk_pct,
+        ),
+        (Err(unknown), _) => format!("risk unknown: {}", unknown.explain(estimator.profile())),
+        (Ok(_), None) => "risk unknown".to_owned(),
+    }
+}
+
+/// Why a verdict is NA.
+pub(crate) fn reason(verdict: &Verdict) -> Option<String> {
+    match verdict {
+        Verdict::Known(_) => None,
+        Verdict::NotAvailable(reason) => Some(reason.to_string()),
+    }
+}

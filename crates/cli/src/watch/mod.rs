@@ -1,0 +1,439 @@
+//! `flagred watch`: the risk of a flight while it is flown.
+
+mod all;
+mod endpoint;
+mod fleet;
+pub(crate) mod jsonl;
+pub(crate) mod lines;
+mod port;
+mod printer;
+pub(crate) mod screen;
+pub(crate) mod session;
+mod tlog;
+mod voice;
+
+use std::{
+    fs::File,
+    io::{self, IsTerminal, Read},
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use flagred::{estimator::Estimator, flight::Verdict};
+use flagred_flightlog::mavlink::{Key, Sender, Skipped, Stream};
+
+use crate::{
+    assess::{FailOn, exit_of},
+    failure::{Exit, Failure},
+    profile,
+    range::RangeArgument,
+};
+use endpoint::Endpoint;
+use jsonl::EventLine;
+use port::{Port, Received};
+use printer::Printer;
+use screen::Screen;
+use session::{Doubts, Event, Out, Session};
+
+/// The version of the lines' layout; it grows when a name changes its meaning or goes.
+const SCHEMA: &str = "flagred.watch/1";
+/// The default component id: the first of those for onboard computers.
+const COMPONENT: u8 = 191;
+/// The most that is read of a key file: digits and some white space.
+const KEY_FILE: u64 = 256;
+/// The largest datagram there is.
+const DATAGRAM: usize = 65_536;
+/// How often the screen is drawn, and how many frames may wait for the terminal.
+const FRAME: Duration = Duration::from_millis(100);
+const FRAMES: usize = 2;
+/// How many lines may wait for whoever reads them: half an hour of the vehicle's samples.
+const LINES: usize = 50_000;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Address of the vehicle: udpin:0.0.0.0:14550, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:0.0.0.0:PORT or /dev/ttyACM0:57600
+    #[arg(value_name = "ENDPOINT", required = true)]
+    endpoints: Vec<Endpoint>,
+
+    /// Follow every vehicle that is heard on these endpoints, a line each, and only listen
+    #[arg(long, conflicts_with_all = ["record", "send_anyway", "component", "range"])]
+    all: bool,
+
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-battery`, `flagred-paper`, or a file
+    #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
+    profile: String,
+
+    #[command(flatten)]
+    range: RangeArgument,
+
+    /// Print one JSON object per line instead of text
+    #[arg(long)]
+    jsonl: bool,
+
+    /// Believe only packets signed with the key in this file (32 bytes, or 64 hexadecimal digits), and sign those sent
+    #[arg(long, value_name = "FILE")]
+    key: Option<PathBuf>,
+
+    /// Only listen: send neither requests nor warnings
+    #[arg(long)]
+    no_send: bool,
+
+    /// Send warnings even if another `flagred watch` sends them
+    #[arg(long, conflicts_with = "no_send")]
+    send_anyway: bool,
+
+    /// End at once if the endpoint does not open, instead of trying it every second
+    #[arg(long)]
+    no_wait: bool,
+
+    /// The MAVLink component id to send as
+    #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = clap::value_parser!(u8).range(2..))]
+    component: u8,
+
+    /// Record received packets to this telemetry log, a new file
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+}
+
+/// Watches until it is interrupted.
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let estimator = profile::load(&arguments.profile)?.estimator;
+    if let Some(signal) = estimator.profile().signals().first() {
+        return Err(Failure::usage(format!(
+            "profile `{}` needs the signal `{signal}`, which is not known live",
+            arguments.profile
+        ))
+        .help("watch takes profiles whose inputs come from the motors alone"));
+    }
+    let (endpoint, others) = match arguments.endpoints.split_first() {
+        Some(split) => split,
+        None => return Err(Failure::usage("no endpoint is given")),
+    };
+    if let (Some(other), false) = (others.first(), arguments.all) {
+        return Err(Failure::usage(format!("`{other}` is a second endpoint"))
+            .help("`--all` follows the vehicles of several endpoints"));
+    }
+    let range = arguments.range.given()?;
+    let silent = match (arguments.no_send, arguments.all) {
+        (_, true) => Some("--all"),
+        (true, _) => Some("--no-send"),
+        _ => None,
+    };
+    let sends_first = |endpoint: &Endpoint| matches!(endpoint, Endpoint::UdpOut(_));
+    if let Some(option) = silent
+        && arguments.endpoints.iter().any(sends_first)
+    {
+        return Err(Failure::usage(format!(
+            "`udpout:` sends first and waits for answers, which `{option}` rules out",
+        ))
+        .help("have the packets sent here, and listen with `udpin:`"));
+    }
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
+        .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
+    let key = arguments.key.as_deref().map(read_key).transpose()?;
+    if arguments.all {
+        let how = (arguments.jsonl, !arguments.no_wait);
+        return all::run(&arguments.endpoints, how, key.as_ref(), &estimator, &stop);
+    }
+    let mut port = Port::open(endpoint, !arguments.no_wait)?;
+    let mut recording = match &arguments.record {
+        Some(path) => Some(tlog::Recording::create(path)?),
+        None => None,
+    };
+    let sender = (!arguments.no_send).then(|| {
+        let sender = Sender::new(arguments.component);
+        match &key {
+            Some(key) => sender.signed(key.clone()),
+            None => sender,
+        }
+    });
+    let mut session = Session::new(&estimator, sender, arguments.send_anyway).with_range(range);
+    let title = match port.listens_at() {
+        Some(address) if matches!(endpoint, Endpoint::UdpIn(_) | Endpoint::TcpIn(_)) => {
+            format!("listening at {address}")
+        }
+        _ => endpoint.to_string(),
+    };
+    let mut display = Display::new(arguments.jsonl, &title, &estimator)?;
+    let mut stream = key.map_or_else(Stream::new, Stream::with_key);
+    let mut buffer = vec![0; DATAGRAM];
+    let mut out = Out::default();
+    let start = Instant::now();
+    // Who is sent warnings or reads the recording still needs the watch when nobody reads what it prints.
+    let is_needed = !arguments.no_send || arguments.record.is_some();
+    while !stop.load(Ordering::Relaxed) && (is_needed || !display.printer.is_closed()) {
+        let received = port.receive(&mut buffer);
+        let is_datagram = matches!(received, Received::Datagram(_));
+        let now_s = start.elapsed().as_secs_f64();
+        match received {
+            Received::Bytes(count) | Received::Datagram(count) => {
+                stream.push(buffer.get(..count).unwrap_or_default());
+            }
+            Received::Nothing => {}
+            Received::Waiting(why) => {
+                let text = format!(
+                    "`{endpoint}` cannot be opened yet: {why}; trying again every second (`--no-wait` ends instead)"
+                );
+                out.events.push(Event::Note { text });
+            }
+            Received::Opened => {
+                stream.end();
+                let text = "the link is open".to_owned();
+                out.events.push(Event::Note { text });
+            }
+            Received::Closed(why) => {
+                session.closed();
+                let text = format!("the link is closed: {why}; waiting for it to come back");
+                out.events.push(Event::Note { text });
+            }
+        }
+        while let Some(packet) = stream.packet() {
+            let is_vehicles = session.receive(now_s, port.source(), &packet, &mut out);
+            if is_vehicles {
+                port.answer();
+            }
+            // A telemetry log has no addresses: whoever reads it would believe others.
+            if is_vehicles || !session.is_doubtful(&packet) {
+                let recorded = recording.as_mut().map_or(Ok(()), |r| r.add(packet.bytes));
+                let failed = recorded.err().map(|text| Event::Note { text });
+                out.events.extend(failed);
+            }
+            // At once: what is sent must not wait for what is shown.
+            out.packets.drain(..).for_each(|packet| port.send(&packet));
+            display.show(now_s, &mut out.events, &session, &estimator)?;
+        }
+        if is_datagram {
+            stream.end();
+        }
+        session.tick(now_s, &mut out);
+        out.packets.drain(..).for_each(|packet| port.send(&packet));
+        display.skipped(stream.skipped(), &mut out.events);
+        let recorded = recording.as_mut().map_or(Ok(()), tlog::Recording::flush);
+        let failed = recorded.err().map(|text| Event::Note { text });
+        out.events.extend(failed);
+        display.show(now_s, &mut out.events, &session, &estimator)?;
+        display.refresh(&session, &estimator);
+    }
+    let worst = session.finish(&mut out);
+    let now_s = start.elapsed().as_secs_f64();
+    display.show(now_s, &mut out.events, &session, &estimator)?;
+    let totals = Totals {
+        skipped: stream.skipped(),
+        doubts: session.doubts(),
+        unsent: port.unsent(),
+    };
+    display.end(now_s, &worst, &totals)?;
+    Ok(exit_of(&worst, FailOn::Warn))
+}
+
+/// The key of MAVLink signatures in a file.
+fn read_key(path: &Path) -> Result<Key, Failure> {
+    let name = path.display();
+    // A key is short: no more is read of a file that is none.
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(KEY_FILE).read_to_end(&mut bytes))
+        .map_err(|error| Failure::unreadable(format!("`{name}` cannot be read: {error}")))?;
+    Key::from_bytes(&bytes).ok_or_else(|| {
+        Failure::unreadable(format!("`{name}` is not a key"))
+            .help("a key is 32 bytes, or 64 hexadecimal digits")
+    })
+}
+
+/// What the link cost.
+struct Totals {
+    skipped: Skipped,
+    doubts: Doubts,
+    unsent: u64,
+}
+
+impl Totals {
+    fn words(&self) -> String {
+        let mut text = format!(
+            "{} bytes skipped, {} bad checksums, {} unknown messages, {} signed packets ignored, {} packets not sent",
+            self.skipped.bytes,
+            self.skipped.checksums,
+            self.skipped.unknown,
+            self.skipped.signed,
+            self.unsent
+        );
+        if self.skipped.unsigned + self.skipped.bad_signatures > 0 {
+            text += &format!(
+                ", {} unsigned packets and {} with a wrong signature refused",
+                self.skipped.unsigned, self.skipped.bad_signatures
+            );
+        }
+        let doubts = self.doubts;
+        if doubts != Doubts::default() {
+            text += &format!(
+                "; not believed: {} packets of a second sender, {} parameters of other components, {} jumps of the clock",
+                doubts.second_sender, doubts.other_component, doubts.clock_jumps
+            );
+        }
+        text
+    }
+}
+
+/// Where it is told.
+struct Display {
+    face: Face,
+    printer: Printer,
+    told: Skipped,
+    drawn: Option<Instant>,
+}
+
+enum Face {
+    Json,
+    Words(lines::Words),
+    Screen(Screen),
+}
+
+impl Display {
+    fn new(jsonl: bool, title: &str, estimator: &Estimator) -> Result<Display, Failure> {
+        let profile = &estimator.profile().name;
+        let is_screen = !jsonl && io::stdout().is_terminal();
+        let mut printer = Printer::new(if is_screen { FRAMES } else { LINES });
+        let face = if jsonl {
+            let started = EventLine::Started {
+                schema: SCHEMA,
+                endpoint: title,
+                profile,
+            };
+            printer.print(jsonl::json_line(0.0, started)?);
+            Face::Json
+        } else if is_screen {
+            let title = format!("{title}, profile {profile}");
+            printer.print(screen::ENTER.to_owned());
+            Face::Screen(Screen::new(title))
+        } else {
+            printer.print(lines::words(0.0, &format!("{title}, profile {profile}")));
+            Face::Words(lines::Words::default())
+        };
+        Ok(Display {
+            face,
+            printer,
+            told: Skipped::default(),
+            drawn: None,
+        })
+    }
+
+    /// Tells the events, and takes them away.
+    fn show(
+        &mut self,
+        at_s: f64,
+        events: &mut Vec<Event>,
+        session: &Session<'_>,
+        estimator: &Estimator,
+    ) -> Result<(), Failure> {
+        for event in events.drain(..) {
+            let line = match &mut self.face {
+                Face::Json => jsonl::json(at_s, &event, session, estimator)?,
+                Face::Words(words) => words.line(at_s, &event, session, estimator),
+                Face::Screen(screen) => {
+                    screen.add(at_s, &event, session, estimator);
+                    None
+                }
+            };
+            if let Some(line) = line {
+                self.printer.print(line);
+            }
+        }
+        Ok(())
+    }
+
+    /// Says once of each kind that something is passed over; how much of it is told at the end.
+    fn skipped(&mut self, now: Skipped, events: &mut Vec<Event>) {
+        let told = std::mem::replace(&mut self.told, now);
+        let kinds = [
+            (
+                told.signed,
+                now.signed,
+                "signed packets are left out: without the key (`--key`) nobody can tell whether they are genuine",
+            ),
+            (
+                told.unsigned,
+                now.unsigned,
+                "packets that are not signed are refused",
+            ),
+            (
+                told.bad_signatures,
+                now.bad_signatures,
+                "packets whose signature is not that of the key, or that came before, are refused",
+            ),
+            (
+                told.unknown,
+                now.unknown,
+                "some messages are not known here: they are recorded, but not evaluated",
+            ),
+            (
+                told.bytes,
+                now.bytes,
+                "some bytes are not MAVLink packets: they are skipped",
+            ),
+        ];
+        for (before, after, text) in kinds {
+            if before == 0 && after > 0 {
+                let text = text.to_owned();
+                events.push(Event::Note { text });
+            }
+        }
+    }
+
+    fn refresh(&mut self, session: &Session<'_>, estimator: &Estimator) {
+        if let Face::Screen(screen) = &self.face
+            && self.drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME)
+        {
+            self.drawn = Some(Instant::now());
+            let frame = screen.frame(session.view().as_ref(), estimator, screen::size());
+            self.printer.print(frame);
+        }
+    }
+
+    fn end(mut self, at_s: f64, worst: &Verdict, totals: &Totals) -> Result<(), Failure> {
+        let last = if let Face::Json = self.face {
+            let ended = EventLine::Ended {
+                worst: worst.to_string(),
+                reason: lines::reason(worst),
+                skipped_bytes: totals.skipped.bytes,
+                bad_checksums: totals.skipped.checksums,
+                unknown_messages: totals.skipped.unknown,
+                signed: totals.skipped.signed,
+                unsigned: totals.skipped.unsigned,
+                bad_signatures: totals.skipped.bad_signatures,
+                not_believed: totals.doubts,
+                unsent: totals.unsent,
+                dropped_lines: self.printer.dropped(),
+            };
+            jsonl::json_line(at_s, ended)?
+        } else {
+            let why = lines::reason(worst).map_or(String::new(), |reason| format!(": {reason}"));
+            lines::words(at_s, &format!("{worst} at worst{why}; {}", totals.words()))
+        };
+        self.leave();
+        self.printer.print(last);
+        Ok(())
+    }
+
+    /// The screen goes before the last words, which are to stay.
+    fn leave(&mut self) {
+        if let Face::Screen(_) = self.face {
+            // Frames that wait go first.
+            std::thread::sleep(FRAME);
+            self.printer.print(screen::LEAVE.to_owned());
+            self.face = Face::Words(lines::Words::default());
+        }
+    }
+}
+
+/// The terminal is as it was before, however the watch ends.
+impl Drop for Display {
+    fn drop(&mut self) {
+        self.leave();
+    }
+}

@@ -1,0 +1,521 @@
+//! Packets in, events and packets out: everything `flagred watch` does but sockets, files and the screen.
+//!
+//! Two clocks are kept apart. Risk is taken over the vehicle's clock, which its motor commands carry; what concerns
+//! the link (silence, asking again, how often to send) goes by the receiver's, which is passed in.
+
+use flagred::{
+    estimator::Estimator,
+    flight::{Finding, Reason, Verdict},
+    monitor::{Unknown, Update},
+    verdict::Level,
+};
+use flagred_flightlog::{
+    PulseRange,
+    mavlink::{MOTOR_RATE_HZ, News, Packet, Sender, Telemetry, Version, vehicle_of},
+};
+
+mod event;
+mod history;
+mod speech;
+mod tracked;
+mod trust;
+
+use super::voice;
+pub(crate) use event::{End, Event, Flown, Left, Lost, Silent};
+use flagred_report::finding::numbered;
+use speech::Speech;
+pub(crate) use tracked::View;
+use tracked::{Tracked, Watch, tell};
+use trust::{Candidates, Proof, doubt_of};
+pub(crate) use trust::{Doubt, Doubts, Source, may_be_multirotor};
+
+/// Seconds between two heartbeats.
+const HEARTBEAT_S: f64 = 1.0;
+/// Seconds between two risks. At this rate one arrives every second over a link that loses a tenth of its packets.
+const RISK_S: f64 = 0.25;
+/// A vehicle that sends no motor commands for so long although they are requested gives way to another one.
+const PROOF_S: f64 = 5.0;
+/// A vehicle that is silent for so long gives way to one of another system.
+const GONE_S: f64 = 30.0;
+/// Systems told apart: there are no more.
+const SYSTEMS: usize = 256;
+
+/// What comes out.
+#[derive(Default)]
+pub(crate) struct Out {
+    pub(crate) events: Vec<Event>,
+    /// Packets to send, in their order.
+    pub(crate) packets: Vec<Vec<u8>>,
+}
+
+/// Follows the first vehicle on a link that proves to be one.
+pub(crate) struct Session<'e> {
+    estimator: &'e Estimator,
+    speech: Speech,
+    tracked: Option<Tracked>,
+    candidates: Candidates,
+    doubts: Doubts,
+    others: Vec<u8>,
+    heartbeat_s: Option<f64>,
+    /// The worst verdict of the flights so far.
+    worst: Verdict,
+    /// The verdict of a part of a flight of which no risk is known.
+    unknown_part: Option<Verdict>,
+    /// Samples of a flight that are kept at most.
+    history: usize,
+    /// The range of motor outputs where the vehicle does not report it.
+    range: Option<PulseRange>,
+}
+
+impl<'e> Session<'e> {
+    /// Speaks by `sender`, or listens only; where another watch speaks, only if it `insists`.
+    pub(crate) fn new(
+        estimator: &'e Estimator,
+        sender: Option<Sender>,
+        insists: bool,
+    ) -> Session<'e> {
+        Session {
+            estimator,
+            speech: Speech::new(sender, insists),
+            tracked: None,
+            candidates: Candidates::default(),
+            doubts: Doubts::default(),
+            others: Vec::new(),
+            heartbeat_s: None,
+            worst: Verdict::NotAvailable(Reason::NoFlight),
+            unknown_part: None,
+            history: history::MOST,
+            range: None,
+        }
+    }
+
+    /// The same, with the given range of motor outputs where a vehicle does not report its own.
+    pub(crate) fn with_range(self, range: Option<PulseRange>) -> Session<'e> {
+        Session { range, ..self }
+    }
+
+    /// The same, keeping at most so many samples of a flight.
+    pub(crate) fn keeping(self, history: usize) -> Session<'e> {
+        Session { history, ..self }
+    }
+
+    /// Takes in a packet that came from `source` at `now_s` of the receiver's clock; says whether it is the vehicle's.
+    pub(crate) fn receive(
+        &mut self,
+        now_s: f64,
+        source: Source,
+        packet: &Packet<'_>,
+        out: &mut Out,
+    ) -> bool {
+        // Nothing is known of an unknown message but whom it is from: it is counted and recorded.
+        if packet.sound.is_none() {
+            let is_followed = self.is_followed(source, packet);
+            if let Some(tracked) = self.tracked.as_mut().filter(|_| is_followed) {
+                tracked.count(packet);
+            }
+            return is_followed;
+        }
+        if !self.is_followed(source, packet) {
+            self.doubt(now_s, source, packet, out);
+            if !self.consider(now_s, source, packet, out) {
+                return false;
+            }
+        }
+        let Some(tracked) = &mut self.tracked else {
+            return false;
+        };
+        self.speech
+            .hear(now_s, packet, echoes(&tracked.telemetry), out);
+        tracked.count(packet);
+        tracked.hear(now_s, out);
+        let jumps = tracked.telemetry.clock_jumps();
+        let news = tracked.telemetry.receive(packet, now_s);
+        let jumps = tracked.telemetry.clock_jumps() - jumps;
+        if self.doubts.add(Doubt::ClockJump, jumps) {
+            out.events.push(told(Doubt::ClockJump, source, packet));
+        }
+        match news {
+            News::Rebooted => {
+                let verdict = tracked.start_anew(now_s, out);
+                add(&mut self.worst, verdict);
+            }
+            News::Commands { t_s } => {
+                if !std::mem::replace(&mut tracked.is_proved, true) {
+                    let system = packet.system;
+                    out.events.push(Event::Locked { system, source });
+                    self.candidates.clear();
+                }
+                self.assess(now_s, t_s, out);
+            }
+            _ => {}
+        }
+        true
+    }
+
+    /// The connection that packets came on is closed: the vehicle may come back on another one.
+    pub(crate) fn closed(&mut self) {
+        if let Some(tracked) = &mut self.tracked {
+            tracked.is_gone = true;
+        }
+    }
+
+    /// Whether a packet that is not the vehicle's would be taken for it where addresses are not known.
+    pub(crate) fn is_doubtful(&self, packet: &Packet<'_>) -> bool {
+        let tracked = self.tracked.as_ref();
+        match doubt_of(packet) {
+            Some(Doubt::OtherComponent) => true,
+            Some(_) => tracked.is_some_and(|it| it.telemetry.system() == packet.system),
+            None => false,
+        }
+    }
+
+    /// How much was not believed.
+    pub(crate) fn doubts(&self) -> Doubts {
+        self.doubts
+    }
+
+    fn is_followed(&self, source: Source, packet: &Packet<'_>) -> bool {
+        let is_it = |tracked: &Tracked| {
+            (tracked.telemetry.system(), tracked.source) == (packet.system, source)
+        };
+        packet.component == 1 && self.tracked.as_ref().is_some_and(is_it)
+    }
+
+    /// What comes in the name of the vehicle, but not from its autopilot where that is heard.
+    fn doubt(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut Out) {
+        let Some(tracked) = &self.tracked else {
+            return;
+        };
+        if tracked.telemetry.system() != packet.system {
+            return;
+        }
+        if packet.component != 1 {
+            self.speech.hear(now_s, packet, false, out);
+        }
+        let doubt = doubt_of(packet);
+        let is_other_end = doubt == Some(Doubt::SecondSender) && tracked.is_silent();
+        if let Some(doubt) = doubt.filter(|_| !is_other_end)
+            && self.doubts.add(doubt, 1)
+        {
+            out.events.push(told(doubt, source, packet));
+        }
+    }
+
+    /// What is due without any packet; to be called often.
+    pub(crate) fn tick(&mut self, now_s: f64, out: &mut Out) {
+        self.ask(now_s, out);
+        self.beat(now_s, out);
+        let Some(tracked) = &mut self.tracked else {
+            return;
+        };
+        let before = tracked.level();
+        let verdict = tracked.set_up(now_s, self.speech.asks(), self.estimator, out);
+        let to = tracked.address();
+        if let Some(watch) = tracked.watch.as_mut().filter(|watch| watch.is_flying)
+            && let Some(update) = watch.latest
+            && update
+                .level
+                .is_some_and(|level| level != before.unwrap_or(Level::Good))
+        {
+            let finding = watch.assessor.open_finding();
+            tell_level(
+                now_s,
+                to,
+                &mut self.speech,
+                (watch, &update, before),
+                finding,
+                out,
+            );
+        }
+        if let Some(Verdict::NotAvailable(_)) = &verdict {
+            self.unknown_part = verdict.clone();
+        }
+        self.speech.tick(now_s, tracked.telemetry.system(), out);
+        tracked.listen(now_s, out);
+        add(&mut self.worst, verdict);
+    }
+
+    /// Ends the watch and the flight that is still on. Gives the worst verdict of the flights.
+    pub(crate) fn finish(&mut self, out: &mut Out) -> Verdict {
+        let verdict = self
+            .tracked
+            .as_mut()
+            .and_then(|tracked| tracked.finish(out));
+        add(&mut self.worst, verdict);
+        let is_mute =
+            (self.tracked.as_ref()).is_some_and(|tracked| !tracked.telemetry.has_commands());
+        if self.worst == Verdict::NotAvailable(Reason::NoFlight) {
+            if is_mute {
+                return Verdict::NotAvailable(Reason::NoMotorOutputs);
+            }
+            let refused = self.tracked.as_mut().and_then(|t| t.refused.take());
+            if let Some(reason) = refused {
+                return Verdict::NotAvailable(reason);
+            }
+        }
+        match (&self.worst, self.unknown_part.take()) {
+            // A flight is not GOOD where a part of it is not known.
+            (Verdict::Known(Level::Good | Level::Info), Some(part)) => part,
+            _ => self.worst.clone(),
+        }
+    }
+
+    /// Whether the sender of a packet becomes the one to follow.
+    fn consider(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut Out) -> bool {
+        let is_open =
+            (self.tracked.as_ref()).is_none_or(|tracked| !tracked.is_proved || tracked.is_silent());
+        if is_open {
+            self.candidates.hear(source, packet);
+        }
+        let Some(vehicle) = vehicle_of(packet) else {
+            return false;
+        };
+        let system = packet.system;
+        let followed = self.tracked.as_ref().map(|t| t.telemetry.system());
+        if followed.is_some_and(|followed| followed != system) && self.is_new(system) {
+            out.events.push(Event::AnotherVehicle { system });
+        }
+        if !may_be_multirotor(&vehicle) {
+            if self.is_new(system) {
+                out.events.push(Event::NotAMultirotor { system, vehicle });
+            }
+            return false;
+        }
+        if !is_open {
+            return false;
+        }
+        let proof = self.candidates.beat(now_s, source, system, &vehicle);
+        if proof == Proof::None {
+            return false;
+        }
+        if let Some(tracked) = &mut self.tracked {
+            let is_same = followed == Some(system) && *tracked.telemetry.vehicle() == vehicle;
+            if tracked.is_proved && is_same {
+                out.events.push(Event::SenderChanged {
+                    system,
+                    from: std::mem::replace(&mut tracked.source, source),
+                    to: source,
+                });
+                self.candidates.clear();
+                return true;
+            }
+            let asked_in_vain = self.speech.asks() && now_s - tracked.found_s >= PROOF_S;
+            let gives_way = match tracked.is_proved {
+                true => now_s - tracked.heard_s >= GONE_S,
+                false => tracked.is_silent() || proof == Proof::Commands || asked_in_vain,
+            };
+            if !gives_way {
+                return false;
+            }
+            let verdict = tracked.end_flight(End::Lost(Lost::Link), out);
+            add(&mut self.worst, verdict);
+            let system = tracked.telemetry.system();
+            out.events.push(Event::GivenUp { system });
+        }
+        let telemetry = Telemetry::new(packet, vehicle.clone()).with_range(self.range);
+        self.tracked = Some(Tracked::new(telemetry, source, now_s, self.history));
+        self.candidates.clear();
+        self.speech.forget();
+        self.heartbeat_s = None;
+        out.events.push(Event::Found { system, vehicle });
+        true
+    }
+
+    fn is_new(&mut self, system: u8) -> bool {
+        let is_new = !self.others.contains(&system) && self.others.len() < SYSTEMS;
+        if is_new {
+            self.others.push(system);
+        }
+        is_new
+    }
+
+    fn ask(&mut self, now_s: f64, out: &mut Out) {
+        if let Some(tracked) = &mut self.tracked
+            && self.speech.asks()
+            && !tracked.is_silent()
+        {
+            let mut messages = Vec::new();
+            let lost_share = tracked.lost_share();
+            tracked
+                .requests
+                .due(now_s, &tracked.telemetry, lost_share, &mut messages);
+            let to = tracked.address();
+            for message in &messages {
+                self.speech.ask(to, message, out);
+            }
+            if let Some(rate_hz) = tracked.slowed_hz(now_s) {
+                let by = tracked.telemetry.rate_asker();
+                out.events.push(Event::Slowed {
+                    rate_hz,
+                    wanted_hz: MOTOR_RATE_HZ,
+                    system: by.map(|(system, _)| system),
+                    component: by.map(|(_, component)| component),
+                });
+                if tracked.telemetry.is_in_air() {
+                    let text = voice::status(Level::Warn, &voice::slowed(rate_hz, by));
+                    self.speech.warn(now_s, to, &text, out);
+                }
+            }
+        }
+    }
+
+    fn beat(&mut self, now_s: f64, out: &mut Out) {
+        let due = self
+            .heartbeat_s
+            .is_none_or(|sent_s| now_s - sent_s >= HEARTBEAT_S);
+        if due {
+            self.heartbeat_s = Some(now_s);
+            let to = self
+                .tracked
+                .as_ref()
+                .map_or((Version::V2, voice::NOBODY), Tracked::address);
+            self.speech.say(now_s, to, &voice::heartbeat(now_s), out);
+        }
+    }
+
+    fn assess(&mut self, now_s: f64, t_s: f64, out: &mut Out) {
+        let Some(tracked) = &mut self.tracked else {
+            return;
+        };
+        let to = tracked.address();
+        let in_air = tracked.telemetry.is_in_air();
+        let reported = tracked.telemetry.reported_in_air(now_s);
+        let pulses = tracked.telemetry.pulses();
+        if in_air {
+            tracked.history.push(t_s, reported, pulses);
+        } else {
+            tracked.history.clear();
+        }
+        let Some(watch) = &mut tracked.watch else {
+            return;
+        };
+        if watch.commands_lost {
+            watch.commands_lost = false;
+            out.events.push(Event::Back {
+                what: Silent::Motors,
+                after_s: now_s - watch.commands_s,
+            });
+        }
+        watch.commands_s = now_s;
+        let update = watch.push(t_s, reported, &pulses);
+        if update.risk == Err(Unknown::OutOfOrder) {
+            return;
+        }
+        watch.latest = Some(update);
+        tell(watch.assessor.ended(), out);
+        if in_air && !watch.is_flying {
+            watch.is_flying = true;
+            out.events.push(Event::TookOff { t_s });
+        } else if !in_air {
+            let verdict = watch.end_flight(End::Landed, out);
+            add(&mut self.worst, verdict);
+        }
+        out.events.push(Event::Risk { update });
+        let before = std::mem::replace(&mut watch.level, update.level);
+        // Where the level stands already, but not for a notice that was raised, that is told, too.
+        let raised = watch.raised_notice();
+        let is_new = match (before, update.level) {
+            (None, Some(level)) => level > Level::Good,
+            // A landing is an event of its own.
+            (Some(before), None) => before > Level::Good && update.risk != Err(Unknown::OnGround),
+            (before, level) => before != level,
+        };
+        if in_air && (is_new || raised.is_some() && update.level.is_some()) {
+            let finding = if is_new {
+                watch.assessor.open_finding()
+            } else {
+                raised
+            };
+            tell_level(
+                now_s,
+                to,
+                &mut self.speech,
+                (watch, &update, before),
+                finding,
+                out,
+            );
+        }
+        let due = watch
+            .risk_sent_s
+            .is_none_or(|sent_s| now_s - sent_s >= RISK_S);
+        if due
+            && self.speech.speaks()
+            && let Ok(estimate) = update.risk
+            && let Some(elevated_pct) = update.elevated_risk_pct
+        {
+            watch.risk_sent_s = Some(now_s);
+            for (name, value) in [
+                (voice::RISK, estimate.risk_pct),
+                (voice::ELEVATED, elevated_pct),
+            ] {
+                self.speech
+                    .say(now_s, to, &voice::value(t_s, name, value), out);
+            }
+        }
+    }
+
+    /// How things stand, for a screen.
+    pub(crate) fn view(&self) -> Option<View<'_>> {
+        self.tracked.as_ref().map(Tracked::view)
+    }
+}
+
+/// Tells the level after the one before it, and sends its text.
+fn tell_level(
+    now_s: f64,
+    to: (Version, u8),
+    speech: &mut Speech,
+    (watch, update, before): (&Watch, &Update, Option<Level>),
+    finding: Option<Finding>,
+    out: &mut Out,
+) {
+    let finding = finding.map(|finding| numbered(&finding, &watch.setup.motors));
+    let words = finding
+        .as_ref()
+        .map(|finding| finding.words(watch.assessor.monitor().estimator()));
+    let (severity, text) = match update.level {
+        Some(level) => (
+            level,
+            voice::say(level, update, finding.as_ref().zip(words.as_ref())),
+        ),
+        None => (Level::Warn, voice::unknown(before.unwrap_or(Level::Warn))),
+    };
+    speech.warn(now_s, to, &voice::status(severity, &text), out);
+    let (code, advice) = words.map(|words| (words.code, words.advice)).unzip();
+    out.events.push(Event::Level {
+        t_s: update.t_s,
+        level: update.level,
+        before,
+        text,
+        code,
+        advice,
+        motor: finding.as_ref().and_then(|finding| finding.motor),
+        cause: finding.and_then(|finding| finding.cause),
+    });
+}
+
+/// Whether an autopilot sends the values of others again as its own.
+fn echoes(telemetry: &Telemetry) -> bool {
+    let firmware = telemetry.vehicle().firmware.as_deref();
+    firmware.is_some_and(|firmware| firmware.starts_with("PX4"))
+}
+
+/// A doubt as an event.
+fn told(what: Doubt, source: Source, packet: &Packet<'_>) -> Event {
+    Event::Doubt {
+        what,
+        system: packet.system,
+        component: packet.component,
+        source,
+    }
+}
+
+/// Keeps the graver verdict.
+fn add(worst: &mut Verdict, verdict: Option<Verdict>) {
+    if let Some(verdict) = verdict {
+        *worst = verdict.worst(worst.clone());
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

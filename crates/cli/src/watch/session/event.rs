@@ -1,0 +1,171 @@
+//! What a watch tells.
+
+use flagred::{
+    flight::{Cause, Finding, Verdict},
+    monitor::Update,
+    verdict::{Level, MotorFinding},
+};
+use flagred_flightlog::{Parameter, Vehicle, mavlink::Setup};
+use serde::{Serialize, Serializer, ser::SerializeStruct};
+
+use super::{Doubt, Source};
+
+/// Something to tell. Serialised it is a line of `--jsonl`, with the names of docs/json.md.
+#[derive(Debug, Clone, Serialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "the large ones are the risks of samples, which are most of them"
+)]
+pub(crate) enum Event {
+    /// A vehicle was found.
+    Found {
+        system: u8,
+        #[serde(flatten, serialize_with = "about")]
+        vehicle: Vehicle,
+    },
+    /// The vehicle sends motor commands: it is believed, and nobody else in its name.
+    Locked {
+        system: u8,
+        #[serde(rename = "address")]
+        source: Source,
+    },
+    /// The vehicle that is followed is given up for another one.
+    GivenUp { system: u8 },
+    /// It is heard from another address after it had fallen silent.
+    SenderChanged {
+        system: u8,
+        from: Source,
+        to: Source,
+    },
+    /// Something in its name is not believed; told once of each kind.
+    Doubt {
+        what: Doubt,
+        system: u8,
+        component: u8,
+        #[serde(rename = "address")]
+        source: Source,
+    },
+    /// Another watch of the vehicle is heard, or none any more; and whether this one speaks.
+    AnotherWatch {
+        system: u8,
+        component: Option<u8>,
+        speaks: bool,
+    },
+    /// Another vehicle is on the link; it is not followed.
+    AnotherVehicle { system: u8 },
+    /// The vehicle that was found is no multirotor; there is nothing to say about it.
+    NotAMultirotor {
+        system: u8,
+        #[serde(flatten, serialize_with = "about")]
+        vehicle: Vehicle,
+    },
+    /// Motors and limits are known, or assumed; again where they became known better.
+    Ready {
+        #[serde(flatten)]
+        setup: Setup,
+        /// The parameters that they rest on, and gains, as far as they are known.
+        parameters: Vec<Parameter>,
+    },
+    /// Motor commands come too rarely since somebody else asked for less, or the link became too slow; with the station
+    /// that asked, where the vehicle told it.
+    Slowed {
+        rate_hz: f64,
+        wanted_hz: f64,
+        system: Option<u8>,
+        component: Option<u8>,
+    },
+    /// Something in words.
+    Note { text: String },
+    /// Nothing comes any more.
+    Lost { what: Silent },
+    /// It comes again.
+    Back { what: Silent, after_s: f64 },
+    /// The vehicle started anew.
+    Rebooted,
+    /// A flight began.
+    TookOff { t_s: f64 },
+    /// The level changed in flight, with the words, the motor and the cause of the finding that it rests on. It is unknown where the
+    /// risk became unknown while an alarm stood.
+    Level {
+        t_s: f64,
+        level: Option<Level>,
+        /// The level before.
+        before: Option<Level>,
+        /// The text to the ground station.
+        text: String,
+        code: Option<String>,
+        advice: Option<String>,
+        motor: Option<MotorFinding>,
+        cause: Option<Cause>,
+    },
+    /// A sample was assessed. Its line also has how things stand.
+    #[serde(skip)]
+    Risk { update: Update },
+    /// A finding ended. Its line has it in words, too.
+    #[serde(skip)]
+    Ended { finding: Finding },
+    /// A flight is over, or what was seen of it. Its line is called after its end.
+    #[serde(skip)]
+    Over { end: End, flown: Flown },
+}
+
+/// What is told of a vehicle.
+fn about<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut fields = serializer.serialize_struct("Vehicle", 3)?;
+    fields.serialize_field("kind", &vehicle.kind.to_string())?;
+    fields.serialize_field("frame", &vehicle.frame)?;
+    fields.serialize_field("firmware", &vehicle.firmware)?;
+    fields.end()
+}
+
+/// How a flight, or what was seen of it, ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    /// The vehicle landed.
+    Landed,
+    /// It was in the air when it was last known.
+    Lost(Lost),
+    /// It is still in the air, and is heard.
+    Left(Left),
+}
+
+/// What was lost in the air.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Lost {
+    Link,
+    MotorCommands,
+    /// The vehicle rebooted.
+    Reboot,
+}
+
+/// Why a flight is not followed to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Left {
+    /// The watch ended.
+    WatchEnded,
+    /// Motors or limits became known too late to assess the flight so far anew: the rest is a flight of its own.
+    SetUpAnew,
+}
+
+/// What was seen of a flight.
+#[derive(Debug, Clone)]
+pub(crate) struct Flown {
+    /// The latest time of the vehicle's clock.
+    pub(crate) t_s: Option<f64>,
+    pub(crate) verdict: Verdict,
+    /// The level of what was seen; `None` where too little was.
+    pub(crate) level_seen: Option<Level>,
+    pub(crate) risk_max: Option<f64>,
+}
+
+/// What fell silent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Silent {
+    Link,
+    #[serde(rename = "motor_commands")]
+    Motors,
+}

@@ -1,0 +1,333 @@
+//! Whom the watch believes, and what it does where another one watches too.
+
+use flagred_flightlog::mavlink::dialect::NAMED_VALUE_FLOAT_DATA;
+
+use super::*;
+
+fn address(port: u16) -> Source {
+    Some(([192, 0, 2, 1], port).into())
+}
+
+/// Somebody at an address who speaks as a component of a system.
+struct Peer {
+    source: Source,
+    system: u8,
+    sender: Sender,
+}
+
+impl Peer {
+    fn new(port: u16, system: u8, component: u8) -> Peer {
+        Peer {
+            source: address(port),
+            system,
+            sender: Sender::new(component),
+        }
+    }
+
+    fn say(&mut self, bench: &mut Bench<'_>, message: &MavMessage) {
+        let bytes = self.sender.packet(Version::V2, self.system, message);
+        bench.hear_bytes(self.source, &bytes);
+    }
+}
+
+impl Bench<'_> {
+    fn followed(&self) -> Option<u8> {
+        self.session.view().map(|view| view.system)
+    }
+
+    fn doubts_told(&self) -> Vec<Doubt> {
+        let doubts = self.events.iter().filter_map(|event| match event {
+            Event::Doubt { what, .. } => Some(*what),
+            _ => None,
+        });
+        doubts.collect()
+    }
+}
+
+#[test]
+fn one_heartbeat_is_no_vehicle_and_a_stray_one_does_not_lock_the_vehicle_out() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    let mut stray = Peer::new(1, 9, 1);
+    stray.say(&mut bench, &quadrotor(true));
+    assert_eq!(bench.followed(), None);
+    bench.wait_beating(1, false);
+    assert_eq!(bench.followed(), Some(1));
+
+    // One that goes on sending heartbeats, and no motor commands, gives way to the one that has them.
+    let mut bench = Bench::new(&estimator, Some(191));
+    let mut vehicle = Peer::new(2, 1, 1);
+    for i in 0..20_u32 {
+        stray.say(&mut bench, &quadrotor(true));
+        bench.wait(0.5);
+        if i == 3 {
+            assert_eq!(bench.followed(), Some(9));
+        }
+        if i >= 4 {
+            vehicle.say(&mut bench, &quadrotor(false));
+            vehicle.say(&mut bench, &servo(f64::from(i) * 0.5, [1500; 4]));
+        }
+    }
+    assert_eq!(bench.followed(), Some(1));
+    let locked = bench.count(
+        |event| matches!(event, Event::Locked { system: 1, source } if *source == address(2)),
+    );
+    assert_eq!(locked, 1);
+    assert_eq!(
+        bench.count(|event| matches!(event, Event::GivenUp { system: 9 })),
+        1
+    );
+}
+
+#[test]
+fn heartbeats_alone_give_way_to_other_heartbeats_where_requests_are_in_vain() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    let (mut stray, mut vehicle) = (Peer::new(1, 9, 1), Peer::new(2, 1, 1));
+    for i in 0..9 {
+        stray.say(&mut bench, &quadrotor(true));
+        if i > 3 {
+            vehicle.say(&mut bench, &quadrotor(false));
+        }
+        bench.wait(1.0);
+    }
+    assert_eq!(bench.followed(), Some(1));
+}
+
+#[test]
+fn a_second_sender_is_told_once_and_not_believed_until_the_first_is_silent() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    bench.hover(10.0, 10.0, 1500);
+    let mut liar = Peer::new(7, 1, 1);
+    let on_ground = MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
+        landed_state: MavLandedState::MAV_LANDED_STATE_ON_GROUND,
+        ..EXTENDED_SYS_STATE_DATA::default()
+    });
+    for i in 0..100 {
+        liar.say(&mut bench, &quadrotor(false));
+        liar.say(&mut bench, &on_ground);
+        liar.say(&mut bench, &servo(20.0 + f64::from(i) * 0.04, [1999; 4]));
+    }
+    bench.hover(20.0, 10.0, 1500);
+    assert_eq!(bench.doubts_told(), [Doubt::SecondSender]);
+    assert_eq!(bench.session.doubts().second_sender, 300);
+    assert_eq!(bench.count(|event| matches!(event, Event::Over { .. })), 0);
+    assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
+
+    // The first is silent: the flight goes on with the second, and that is told.
+    bench.wait(2.5);
+    for i in 0..50 {
+        liar.say(&mut bench, &quadrotor(true));
+        liar.say(&mut bench, &servo(33.0 + f64::from(i) * 0.04, [1500; 4]));
+        bench.wait(0.04);
+    }
+    let changed = bench.count(
+        |event| matches!(event, Event::SenderChanged { from: None, to, .. } if *to == address(7)),
+    );
+    assert_eq!(changed, 1);
+    assert!(!bench.session.view().unwrap().link_lost);
+    // The one before is the second sender now.
+    bench.beat(true);
+    assert_eq!(bench.session.doubts().second_sender, 301);
+    let mut out = Out::default();
+    bench.session.finish(&mut out);
+    let is_left = |event: &Event| {
+        matches!(
+            event,
+            Event::Over {
+                end: End::Left(Left::WatchEnded),
+                ..
+            }
+        )
+    };
+    assert!(out.events.iter().any(is_left));
+}
+
+#[test]
+fn another_system_is_followed_only_long_after_the_vehicle_fell_silent() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    bench.hover(10.0, 10.0, 1500);
+    let mut other = Peer::new(2, 7, 1);
+    for _ in 0..28 {
+        other.say(&mut bench, &quadrotor(false));
+        bench.wait(1.0);
+    }
+    assert_eq!(bench.followed(), Some(1));
+    for _ in 0..5 {
+        other.say(&mut bench, &quadrotor(false));
+        bench.wait(1.0);
+    }
+    assert_eq!(bench.followed(), Some(7));
+    let is_lost = |event: &Event| {
+        matches!(
+            event,
+            Event::Over {
+                end: End::Lost(Lost::Link),
+                ..
+            }
+        )
+    };
+    assert_eq!(bench.count(is_lost), 1);
+    assert_eq!(
+        bench.count(|event| matches!(event, Event::AnotherVehicle { .. })),
+        1
+    );
+}
+
+#[test]
+fn parameters_of_other_components_are_not_those_of_the_autopilot() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    let mut gimbal = Peer::new(1, 1, 154);
+    for _ in 0..3 {
+        gimbal.say(
+            &mut bench,
+            &MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+                param_value: 1900.0,
+                param_count: 900,
+                param_index: u16::MAX,
+                param_id: "MOT_PWM_MAX".into(),
+                param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+            }),
+        );
+    }
+    bench.all_parameters();
+    bench.wait(0.1);
+    assert_eq!(bench.setups()[0].range.high, 2000.0);
+    assert_eq!(bench.doubts_told(), [Doubt::OtherComponent]);
+    assert_eq!(bench.session.doubts().other_component, 3);
+}
+
+/// Somebody at the vehicle's own address sends two packets for each of the vehicle's: a clock that goes back is no reboot
+/// while the clock before goes on.
+#[test]
+fn a_clock_that_jumps_while_it_goes_on_is_no_reboot() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    bench.hover(100.0, 10.0, 1500);
+    for i in 0..100 {
+        let t_s = 110.0 + f64::from(i) * 0.04;
+        bench.hear(&servo(t_s, [1500; 4]));
+        for late_s in [0.0, 0.02] {
+            bench.hear(&servo(t_s - 100.0 + late_s, [1999; 4]));
+        }
+        bench.wait(0.04);
+    }
+    assert_eq!(bench.count(|event| matches!(event, Event::Rebooted)), 0);
+    assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
+    assert_eq!(bench.doubts_told(), [Doubt::ClockJump]);
+    assert_eq!(bench.session.doubts().clock_jumps, 200);
+    let latest = bench.session.view().unwrap().latest.unwrap();
+    assert!(latest.risk.is_ok() && latest.t_s > 113.0, "{latest:?}");
+
+    // A vehicle that reboots is silent before.
+    bench.wait_beating(3, true);
+    for i in 0..5 {
+        bench.hear(&servo(1.0 + f64::from(i) * 0.04, [1000; 4]));
+        bench.wait(0.04);
+    }
+    assert_eq!(bench.count(|event| matches!(event, Event::Rebooted)), 1);
+}
+
+fn watch_beat(age_s: f64) -> MavMessage {
+    voice::heartbeat(age_s)
+}
+
+fn risk() -> MavMessage {
+    MavMessage::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA {
+        time_boot_ms: 1,
+        value: 20.0,
+        name: voice::RISK.into(),
+    })
+}
+
+fn warned(bench: &Bench<'_>) -> usize {
+    bench.count_sent(|message| matches!(message, MavMessage::STATUSTEXT(_)))
+}
+
+fn said_by(bench: &Bench<'_>) -> usize {
+    bench.count_sent(|message| {
+        matches!(
+            message,
+            MavMessage::NAMED_VALUE_FLOAT(_) | MavMessage::HEARTBEAT(_)
+        )
+    })
+}
+
+#[test]
+fn of_two_watches_the_older_speaks_and_the_younger_again_when_that_is_gone() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.wait(10.0);
+    bench.beat(false);
+    bench.all_parameters();
+    let mut elder = Peer::new(4, 1, 191);
+    elder.say(&mut bench, &watch_beat(60.0));
+    let before = said_by(&bench);
+    for i in 0..10_u32 {
+        elder.say(&mut bench, &watch_beat(61.0 + f64::from(i)));
+        elder.say(&mut bench, &risk());
+        bench.hover(10.0 + f64::from(i), 1.0, 1950);
+    }
+    assert!(bench.count(|event| matches!(event, Event::Level { .. })) > 0);
+    assert_eq!(said_by(&bench), before, "it sends no values");
+    assert!(warned(&bench) > 0, "the older one did not warn");
+    let told = |component: Option<u8>, speaks: bool| move |event: &Event| matches!(event, Event::AnotherWatch { component: c, speaks: s, .. } if (*c, *s) == (component, speaks));
+    assert_eq!(bench.count(told(Some(191), false)), 1);
+    bench.hover(20.0, 10.0, 1950);
+    assert_eq!(bench.count(told(None, true)), 1);
+    assert!(said_by(&bench) > before + 10);
+
+    // A younger one does not silence it.
+    elder.say(&mut bench, &watch_beat(1.0));
+    let before = said_by(&bench);
+    bench.hover(30.0, 4.0, 1950);
+    assert!(said_by(&bench) > before + 3);
+}
+
+#[test]
+fn a_risk_from_the_autopilot_itself_is_not_told_twice_unless_asked_for() {
+    let estimator = estimator();
+    for insists in [false, true] {
+        let mut bench = Bench::new(&estimator, None);
+        bench.session = Session::new(&estimator, Some(Sender::new(191)), insists);
+        bench.beat(false);
+        bench.all_parameters();
+        for i in 0..10_u32 {
+            bench.hear(&risk());
+            bench.hover(10.0 + f64::from(i), 1.0, 1950);
+        }
+        assert_eq!(said_by(&bench) > 0, insists);
+        assert!(warned(&bench) > 0, "a warning is sent in any case");
+        assert_eq!(bench.count(|event| matches!(event, Event::AnotherWatch { component: Some(1), speaks, .. } if *speaks == insists)), 1);
+    }
+}
+
+/// A link that sends everything back is no other watch.
+#[test]
+fn its_own_echo_is_no_other_watch() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    let mut out = Out::default();
+    bench.session.tick(1.1, &mut out);
+    bench.session.tick(2.2, &mut out);
+    assert!(!out.packets.is_empty());
+    for packet in out.packets {
+        bench.hear_bytes(None, &packet);
+    }
+    assert_eq!(
+        bench.count(|event| matches!(event, Event::AnotherWatch { .. })),
+        0
+    );
+}

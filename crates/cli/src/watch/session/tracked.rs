@@ -1,0 +1,415 @@
+//! The vehicle that is followed: whether it is heard, what its motors are, and its flight.
+
+use flagred::{
+    estimator::Estimator,
+    flight::{Assessor, Finding, Reason, Verdict},
+    monitor::{Craft, Sample, Update},
+    verdict::{Level, Measure},
+};
+use flagred_flightlog::{
+    Gap, Vehicle,
+    mavlink::{Packet, Pulses, Requests, Setup, Telemetry, Version, parameters_known},
+};
+
+use super::{End, Event, Flown, Left, Lost, Out, Silent, Source, history::History};
+
+/// A link, or the motor commands on it, that are silent for this long are lost.
+const SILENT_S: f64 = 2.0;
+/// Listening without asking, this long until what is not known is assumed.
+const LISTEN_S: f64 = 10.0;
+/// A vehicle in the air is not waited for longer than this: estimates begin with what is assumed.
+const HURRY_S: f64 = 1.0;
+/// A station that slows the motor commands down is told at most this often.
+const TELL_SLOWED_S: f64 = 60.0;
+
+/// A vehicle that is followed.
+pub(super) struct Tracked {
+    pub(super) telemetry: Telemetry,
+    /// Where its packets come from.
+    pub(super) source: Source,
+    /// Motor commands came, with a clock that goes on.
+    pub(super) is_proved: bool,
+    /// The connection that it was heard on is closed.
+    pub(super) is_gone: bool,
+    pub(super) requests: Requests,
+    pub(super) found_s: f64,
+    pub(super) heard_s: f64,
+    pub(super) link_lost: bool,
+    pub(super) set_up_tried: bool,
+    /// Why its motors cannot be assessed.
+    pub(super) refused: Option<Reason>,
+    /// The flight so far: a parameter that comes late may change motors or limits.
+    pub(super) history: History,
+    slowed_told_s: Option<f64>,
+    pub(super) watch: Option<Watch>,
+    pub(super) received: u64,
+    pub(super) missed: u64,
+    pub(super) sequence: Option<u8>,
+}
+
+/// A vehicle whose motors are known.
+pub(super) struct Watch {
+    pub(super) setup: Setup,
+    pub(super) assessor: Assessor,
+    pub(super) motors: Vec<f64>,
+    pub(super) commands_s: f64,
+    pub(super) commands_lost: bool,
+    pub(super) risk_sent_s: Option<f64>,
+    pub(super) is_flying: bool,
+    /// The notice that was open after the sample before.
+    pub(super) noticed: Option<Measure>,
+    /// The level of the sample before; `None` where it was unknown.
+    pub(super) level: Option<Level>,
+    pub(super) latest: Option<Update>,
+}
+
+/// How things stand; what is lost is not shown as if it were known.
+pub(crate) struct View<'a> {
+    pub(crate) system: u8,
+    pub(crate) vehicle: &'a Vehicle,
+    pub(crate) is_armed: bool,
+    pub(crate) is_in_air: bool,
+    pub(crate) link_lost: bool,
+    pub(crate) motors_lost: bool,
+    /// The share of the vehicle's packets that did not arrive.
+    pub(crate) lost_share: f64,
+    pub(crate) setup: Option<&'a Setup>,
+    /// Effective commands; NaN is unknown.
+    pub(crate) motors: &'a [f64],
+    pub(crate) margin: Option<f64>,
+    pub(crate) spread: Option<f64>,
+    pub(crate) latest: Option<Update>,
+}
+
+impl Tracked {
+    /// Starts to follow the vehicle that a heartbeat told of.
+    pub(super) fn new(telemetry: Telemetry, source: Source, now_s: f64, history: usize) -> Tracked {
+        Tracked {
+            telemetry,
+            source,
+            is_proved: false,
+            is_gone: false,
+            requests: Requests::new(),
+            found_s: now_s,
+            heard_s: now_s,
+            link_lost: false,
+            set_up_tried: false,
+            refused: None,
+            history: History::new(history),
+            slowed_told_s: None,
+            watch: None,
+            received: 0,
+            missed: 0,
+            sequence: None,
+        }
+    }
+
+    /// How things stand.
+    pub(super) fn view(&self) -> View<'_> {
+        let watch = self.watch.as_ref();
+        let fresh = watch.filter(|watch| !self.link_lost && !watch.commands_lost);
+        View {
+            system: self.telemetry.system(),
+            vehicle: self.telemetry.vehicle(),
+            is_armed: self.telemetry.is_armed(),
+            is_in_air: self.telemetry.is_in_air(),
+            link_lost: self.link_lost,
+            motors_lost: watch.is_some_and(|watch| watch.commands_lost),
+            lost_share: self.lost_share(),
+            setup: watch.map(|watch| &watch.setup),
+            motors: fresh.map_or(&[], |watch| &watch.motors),
+            margin: fresh.and_then(|watch| watch.assessor.monitor().margin()),
+            spread: fresh.and_then(|watch| watch.assessor.monitor().spread()),
+            latest: fresh.and_then(|watch| watch.latest),
+        }
+    }
+
+    /// How it is spoken to.
+    pub(super) fn address(&self) -> (Version, u8) {
+        (self.telemetry.version(), self.telemetry.system())
+    }
+
+    /// Counts what the sequence numbers of the autopilot tell to be missing; a late packet was counted as such.
+    pub(super) fn count(&mut self, packet: &Packet<'_>) {
+        if packet.component != 1 {
+            return;
+        }
+        self.received += 1;
+        let step = self
+            .sequence
+            .map_or(1, |last| packet.sequence.wrapping_sub(last));
+        match step {
+            0 => {}
+            1..=127 => {
+                self.missed += u64::from(step) - 1;
+                self.sequence = Some(packet.sequence);
+            }
+            _ => self.missed = self.missed.saturating_sub(1),
+        }
+    }
+
+    /// The share of its packets that did not arrive.
+    pub(super) fn lost_share(&self) -> f64 {
+        self.missed as f64 / (self.missed + self.received).max(1) as f64
+    }
+
+    /// The rate of the motor commands where it is time to tell that somebody slows them down.
+    pub(super) fn slowed_hz(&mut self, now_s: f64) -> Option<f64> {
+        let rate_hz = self.requests.take_slowed_hz()?;
+        let is_due = (self.slowed_told_s).is_none_or(|told_s| now_s - told_s >= TELL_SLOWED_S);
+        is_due.then(|| {
+            self.slowed_told_s = Some(now_s);
+            rate_hz
+        })
+    }
+
+    /// The level of the flight.
+    pub(super) fn level(&self) -> Option<Level> {
+        self.watch.as_ref()?.latest?.level
+    }
+
+    /// Whether nothing comes from it any more.
+    pub(super) fn is_silent(&self) -> bool {
+        self.link_lost || self.is_gone
+    }
+
+    pub(super) fn hear(&mut self, now_s: f64, out: &mut Out) {
+        self.is_gone = false;
+        if self.link_lost {
+            self.link_lost = false;
+            self.sequence = None;
+            self.requests.resume();
+            if let Some(watch) = &mut self.watch {
+                // Their silence was the link's.
+                watch.commands_s = now_s;
+            }
+            out.events.push(Event::Back {
+                what: Silent::Link,
+                after_s: now_s - self.heard_s,
+            });
+        }
+        self.heard_s = now_s;
+    }
+
+    /// Makes a monitor as soon as the motors are known, and a new one where they become known better: that one gets the flight
+    /// so far. Gives the verdict of that part where it is too long.
+    pub(super) fn set_up(
+        &mut self,
+        now_s: f64,
+        asks: bool,
+        estimator: &Estimator,
+        out: &mut Out,
+    ) -> Option<Verdict> {
+        let waited_s = now_s - self.found_s;
+        let done = if asks {
+            self.requests.parameters_done()
+        } else {
+            parameters_known(&self.telemetry) || waited_s >= LISTEN_S
+        };
+        let hurries =
+            !done && self.watch.is_none() && !self.history.is_empty() && waited_s >= HURRY_S;
+        // What was set anew on the ground does not concern the flight that its next commands end.
+        if self.watch.as_ref().is_some_and(|watch| watch.is_flying) && !self.telemetry.is_in_air() {
+            return None;
+        }
+        // Parameters that came late are not waited for, but looked at.
+        let is_due = done && (self.telemetry.take_parameters_changed() || !self.set_up_tried);
+        if !is_due && !hurries {
+            return None;
+        }
+        let setup = self.telemetry.setup();
+        let found = setup.motors.len();
+        if hurries && setup.motors_expected() != Some(found) {
+            return None;
+        }
+        if done {
+            self.set_up_tried = true;
+        }
+        if let Some(watch) = &mut self.watch
+            && watch.setup.is_equivalent(&setup)
+        {
+            if watch.setup != setup {
+                watch.setup = setup;
+                ready(&watch.setup, &self.telemetry, out);
+            }
+            return None;
+        }
+        if let Some(expected) = setup.motors_expected().filter(|&expected| expected > found) {
+            let text = format!(
+                "the risk cannot be assessed: outputs are known for {found} of the {expected} motors only"
+            );
+            out.events.push(Event::Note { text });
+            self.refused = Some(Reason::Log(Gap::MotorsMissing { found, expected }));
+            return None;
+        }
+        let geometry = setup.geometry.as_ref();
+        let craft =
+            Craft::new(found).with_geometry(geometry.map_or(&[], |geometry| &geometry.factors));
+        let assessor = match Assessor::new(estimator, craft, None) {
+            Ok(assessor) => assessor,
+            Err(error) => {
+                let text = format!("the risk cannot be assessed: {error}");
+                out.events.push(Event::Note { text });
+                self.refused = Some(error.into());
+                return None;
+            }
+        };
+        self.refused = None;
+        ready(&setup, &self.telemetry, out);
+        let mut watch = Watch::new(setup, assessor, now_s);
+        let Some(flown) = self.history.whole() else {
+            let verdict = self.end_flight(End::Left(Left::SetUpAnew), out);
+            self.watch = Some(watch);
+            return verdict;
+        };
+        let before = self.watch.take();
+        watch.replay(flown, out);
+        match before {
+            Some(before) => watch.risk_sent_s = before.risk_sent_s,
+            None => {
+                let first = flown.first().map(|(t_s, ..)| Event::TookOff { t_s: *t_s });
+                out.events.extend(first);
+            }
+        }
+        self.watch = Some(watch);
+        None
+    }
+
+    /// Notices silence.
+    pub(super) fn listen(&mut self, now_s: f64, out: &mut Out) {
+        if !self.link_lost && now_s - self.heard_s >= SILENT_S {
+            self.link_lost = true;
+            out.events.push(Event::Lost { what: Silent::Link });
+        }
+        if let Some(watch) = &mut self.watch
+            && !self.link_lost
+            && !watch.commands_lost
+            && now_s - watch.commands_s >= SILENT_S
+        {
+            watch.commands_lost = true;
+            let what = Silent::Motors;
+            out.events.push(Event::Lost { what });
+        }
+    }
+
+    /// Resets what is known of the vehicle after it rebooted; gives the verdict of the flight that was lost with it.
+    pub(super) fn start_anew(&mut self, now_s: f64, out: &mut Out) -> Option<Verdict> {
+        let verdict = self.end_flight(End::Lost(Lost::Reboot), out);
+        out.events.push(Event::Rebooted);
+        self.watch = None;
+        self.history.clear();
+        self.set_up_tried = false;
+        self.refused = None;
+        self.requests = Requests::new();
+        self.found_s = now_s;
+        verdict
+    }
+
+    /// Ends the flight that is on with the watch.
+    pub(super) fn finish(&mut self, out: &mut Out) -> Option<Verdict> {
+        let commands_lost = self.watch.as_ref().is_some_and(|watch| watch.commands_lost);
+        let end = match self.telemetry.is_in_air() {
+            _ if self.link_lost => End::Lost(Lost::Link),
+            false => End::Landed,
+            true if commands_lost => End::Lost(Lost::MotorCommands),
+            true => End::Left(Left::WatchEnded),
+        };
+        self.end_flight(end, out)
+    }
+
+    pub(super) fn end_flight(&mut self, end: End, out: &mut Out) -> Option<Verdict> {
+        let watch = self.watch.as_mut()?;
+        watch.end_flight(end, out)
+    }
+}
+
+/// Reports motors and limits, and a given range that these make useless.
+fn ready(setup: &Setup, telemetry: &Telemetry, out: &mut Out) {
+    out.events.push(Event::Ready {
+        setup: setup.clone(),
+        parameters: telemetry.parameters(),
+    });
+    if telemetry.ignores_range(setup) {
+        let text = "`--range` is ignored: the vehicle reports a range of its own".to_owned();
+        out.events.push(Event::Note { text });
+    }
+}
+
+impl Watch {
+    fn new(setup: Setup, assessor: Assessor, now_s: f64) -> Watch {
+        Watch {
+            motors: vec![f64::NAN; setup.motors.len()],
+            setup,
+            assessor,
+            commands_s: now_s,
+            commands_lost: false,
+            risk_sent_s: None,
+            is_flying: false,
+            noticed: None,
+            level: None,
+            latest: None,
+        }
+    }
+
+    /// Takes in a sample.
+    pub(super) fn push(&mut self, t_s: f64, in_air: Option<bool>, pulses: &Pulses) -> Update {
+        self.setup.effective_commands(pulses, &mut self.motors);
+        self.assessor.push(&Sample {
+            t_s,
+            motors: &self.motors,
+            in_air,
+            signals: &[],
+        })
+    }
+
+    /// Takes in a flight up to now; its findings are told anew, its levels are not.
+    fn replay(&mut self, flown: &[(f64, Option<bool>, Pulses)], out: &mut Out) {
+        for (t_s, in_air, pulses) in flown {
+            let update = self.push(*t_s, *in_air, pulses);
+            self.level = update.level;
+            self.latest = Some(update);
+            tell(self.assessor.ended(), out);
+        }
+        self.is_flying = !flown.is_empty();
+        self.raised_notice();
+    }
+
+    /// The notice that the latest sample raised.
+    pub(super) fn raised_notice(&mut self) -> Option<Finding> {
+        let open = self.assessor.open_notice();
+        let before = std::mem::replace(&mut self.noticed, open.as_ref().map(|open| open.measure));
+        open.filter(|open| before != Some(open.measure))
+    }
+
+    /// Ends the flight that is on, if any; gives its verdict.
+    pub(super) fn end_flight(&mut self, end: End, out: &mut Out) -> Option<Verdict> {
+        if !std::mem::take(&mut self.is_flying) {
+            return None;
+        }
+        tell(self.assessor.end_findings(), out);
+        let t_s = self.latest.map(|update| update.t_s);
+        let seen = self.assessor.finish();
+        let level_seen = match seen.verdict {
+            Verdict::Known(level) => Some(level),
+            Verdict::NotAvailable(_) => None,
+        };
+        let verdict = match end {
+            End::Lost(_) => seen.verdict.lost_in_air(),
+            End::Landed | End::Left(_) => seen.verdict,
+        };
+        let flown = Flown {
+            t_s,
+            verdict: verdict.clone(),
+            level_seen,
+            risk_max: seen.summary.risk_max.map(|peak| peak.value_pct),
+        };
+        out.events.push(Event::Over { end, flown });
+        Some(verdict)
+    }
+}
+
+pub(super) fn tell(ended: &[Finding], out: &mut Out) {
+    let findings = ended.iter().cloned();
+    out.events
+        .extend(findings.map(|finding| Event::Ended { finding }));
+}

@@ -1,0 +1,117 @@
+//! Rule sets whose outputs read other outputs, through the commands.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod common;
+
+use common::{flagred, folder};
+
+/// `fan` reads `comfort`, which has a value below 30 °C alone.
+const FAN: &str = "
+fuzzy: 1
+name: fan
+inputs: {heat: {range: [0, 40], unit: °C, terms: {low: {left_shoulder: [10, 30]}}}}
+outputs:
+  fan: {range: [0, 9], partition: [slow, fast], when_no_rule_fires: {value: 0}}
+  comfort: {range: [0, 1], partition: [poor, good]}
+rules:
+  - IF comfort IS good THEN fan IS slow
+  - IF NOT comfort IS good THEN fan IS fast
+  - IF heat IS low THEN comfort IS good
+";
+
+#[test]
+fn explain_shows_the_chain_and_why_it_ends() {
+    let folder = folder(&[("fan.yaml", FAN)]);
+    let explain = |heat: &str| flagred(folder.path(), &["explain", "fan.yaml", heat]).1;
+    let known = explain("heat=12");
+    assert!(
+        known.contains("\nfan = ") && known.contains("  reads comfort = "),
+        "{known}"
+    );
+    let unknown = explain("heat=35");
+    assert!(
+        unknown.contains(
+            "\nfan is undefined, because comfort is\n  reads comfort, which is undefined\n"
+        ),
+        "{unknown}"
+    );
+    assert!(
+        unknown.contains("\ncomfort is undefined: no rule fired\n"),
+        "{unknown}"
+    );
+
+    let (_, json, _) = flagred(folder.path(), &["explain", "fan.yaml", "heat=12", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["outputs"][0]["reads"][0], "comfort");
+    assert_eq!(
+        json["outputs"][1]["reads"].as_array().map(Vec::len),
+        Some(0)
+    );
+
+    let (_, svg, _) = flagred(
+        folder.path(),
+        &["explain", "fan.yaml", "heat=12", "--svg", "-"],
+    );
+    assert!(svg.contains("; reads comfort = "), "{svg}");
+}
+
+#[test]
+fn a_map_has_the_values_of_eval() {
+    let folder = folder(&[("fan.yaml", FAN), ("points.csv", "heat\n0\n10\n20\n")]);
+    let mut map = vec!["map", "fan.yaml", "--csv", "--points", "5"];
+    map.extend(["--output", "fan", "--fill", "none"]);
+    let (code, map, errors) = flagred(folder.path(), &map);
+    assert_eq!(code, Some(0), "{errors}");
+    let (_, eval, _) = flagred(folder.path(), &["eval", "fan.yaml", "points.csv"]);
+    let second = |row: &str| row.split(',').nth(1).unwrap().parse::<f64>().ok();
+    let rows: Vec<_> = map.lines().zip(eval.lines()).skip(1).collect();
+    assert_eq!(rows.len(), 3, "{map}");
+    for (map, eval) in rows {
+        let (map, eval) = (second(map).unwrap(), second(eval).unwrap());
+        assert!((map - eval).abs() < 1e-6, "{map}, {eval}");
+    }
+    // Above 30 °C the fan has no value, whatever its default is.
+    assert_eq!(map.lines().last().and_then(second), None, "{map}");
+}
+
+#[test]
+fn learn_and_export_refuse_a_chain() {
+    let paper = include_str!("../../../rules/flagred-paper.yaml").replace(
+        "outputs:\n",
+        "outputs:\n  strain: {range: [0, 1], partition: [low, high]}\n",
+    ) + "  - IF margin IS low THEN strain IS high\n  - IF strain IS high THEN risk IS high\n";
+    let profile = include_str!("../../../rules/profiles/flagred-paper.yaml")
+        .replace("rules: flagred-paper ", "rules: chain.yaml ");
+    let data = "heat,comfort,fan\n10,0.5,3\n";
+    let files = [
+        ("fan.yaml", FAN),
+        ("data.csv", data),
+        ("chain.yaml", &*paper),
+        ("profile.yaml", &*profile),
+    ];
+    let folder = folder(&files);
+    let (code, _, errors) = flagred(
+        folder.path(),
+        &["learn", "fan.yaml", "data.csv", "-o", "new.yaml"],
+    );
+    assert_eq!(code, Some(2), "{errors}");
+    assert!(
+        errors.contains("the rule set has 2 outputs; learning needs exactly one"),
+        "{errors}"
+    );
+    assert!(
+        errors.contains("outputs that chain are learned one by one"),
+        "{errors}"
+    );
+    for language in ["--rust", "--c"] {
+        let (code, text, errors) = flagred(folder.path(), &["export", language, "profile.yaml"]);
+        assert_eq!(code, Some(0), "{errors}");
+        assert!(text.contains("stages"), "{text}");
+    }
+    let (code, text, errors) = flagred(folder.path(), &["export", "--lua", "profile.yaml"]);
+    assert_eq!((code, text.as_str()), (Some(3), ""), "{errors}");
+    assert!(
+        errors.contains("cannot evaluate outputs that read other outputs"),
+        "{errors}"
+    );
+}

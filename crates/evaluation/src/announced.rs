@@ -1,0 +1,171 @@
+//! Which episodes warnings announce, how long before, and which warnings are false.
+
+use crate::span::Span;
+
+/// A warning is not false when an episode starts within so many seconds after its end.
+const FOLLOWS_S: f64 = 10.0;
+
+/// A warning is not false when it begins within so many seconds after an episode.
+const ECHO_S: f64 = 1.0;
+
+/// Time stamps are in microseconds.
+const ROUNDING_S: f64 = 1e-6;
+
+/// An episode and its warning.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// The episode.
+    pub episode: Span,
+    /// Since when a warning was on at its start, or else when the first one during it began; `None` if none did.
+    pub warned_s: Option<f64>,
+}
+
+impl Answer {
+    /// Whether a warning that began before the episode was on at its start.
+    pub fn is_announced(&self) -> bool {
+        self.lead_s().is_some_and(|lead_s| lead_s > 0.0)
+    }
+
+    /// How long before the episode the warning began, in seconds; below 0 where it came after its start.
+    pub fn lead_s(&self) -> Option<f64> {
+        self.warned_s.map(|warned_s| self.episode.from_s - warned_s)
+    }
+}
+
+/// A time during which a profile warned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Warning {
+    /// When, within the judged times.
+    pub span: Span,
+    /// Whether no episode followed.
+    pub is_false: bool,
+}
+
+/// The episodes and warnings of a flight, matched.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Judged {
+    /// The episodes that start within the judged times.
+    pub answers: Vec<Answer>,
+    /// The warnings within them.
+    pub warnings: Vec<Warning>,
+}
+
+/// Matches the warnings of a flight with its episodes, within the judged time of the flight.
+///
+/// A warning is false unless an episode starts while it is on or within 10 s after it, or it begins during an episode or
+/// within 1 s after one. `lost_s` is when the log ended in the air: what followed is unknown, so a warning
+/// that is on then or ended up to 10 s before is not false.
+///
+/// # Example: a false warning, and one four seconds ahead
+/// ```
+/// use flagred_evaluation::{Span, judge};
+///
+/// let span = |from_s, to_s| Span { from_s, to_s };
+/// let (warnings, episodes) = ([span(5.0, 8.0), span(26.0, 40.0)], [span(30.0, 33.0)]);
+/// let judged = judge(&warnings, &episodes, &[span(0.0, 60.0)], None);
+/// let is_false: Vec<bool> = judged.warnings.iter().map(|warning| warning.is_false).collect();
+/// assert_eq!(is_false, [true, false]);
+/// ```
+pub fn judge(warnings: &[Span], episodes: &[Span], judged: &[Span], lost_s: Option<f64>) -> Judged {
+    let mut found = Judged::default();
+    for time in judged {
+        let inside: Vec<Span> = warnings
+            .iter()
+            .map(|warning| Span {
+                from_s: warning.from_s.max(time.from_s),
+                to_s: warning.to_s.min(time.to_s),
+            })
+            .filter(|warning| warning.from_s <= warning.to_s)
+            .collect();
+        let starting = episodes.iter().filter(|e| time.contains(e.from_s));
+        found.answers.extend(starting.map(|episode| {
+            let on = inside.iter().find(|warning| {
+                warning.to_s >= episode.from_s - ROUNDING_S && warning.from_s <= episode.to_s
+            });
+            Answer {
+                episode: *episode,
+                warned_s: on.map(|warning| warning.from_s),
+            }
+        }));
+        found.warnings.extend(inside.into_iter().map(|span| {
+            let until_s = span.to_s + FOLLOWS_S;
+            let meant = episodes.iter().any(|episode| {
+                (span.from_s - ROUNDING_S..=until_s).contains(&episode.from_s)
+                    || (episode.from_s..=episode.to_s + ECHO_S).contains(&span.from_s)
+            });
+            Warning {
+                span,
+                is_false: !meant && lost_s.is_none_or(|lost_s| lost_s > until_s),
+            }
+        }));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spans(ends: &[(f64, f64)]) -> Vec<Span> {
+        ends.iter()
+            .map(|(from_s, to_s)| Span {
+                from_s: *from_s,
+                to_s: *to_s,
+            })
+            .collect()
+    }
+
+    fn run(warnings: &[(f64, f64)], episodes: &[(f64, f64)], lost_s: Option<f64>) -> Judged {
+        let judged = spans(&[(10.0, 100.0)]);
+        judge(&spans(warnings), &spans(episodes), &judged, lost_s)
+    }
+
+    #[test]
+    fn an_episode_is_announced_by_a_warning_that_is_on_when_it_starts() {
+        let table = [
+            ((40.0, 60.0), Some(10.0), true),
+            ((50.0, 60.0), Some(0.0), false),
+            ((51.0, 60.0), Some(-1.0), false),
+            // Over before, or after.
+            ((40.0, 49.0), None, false),
+            ((56.0, 60.0), None, false),
+            // Only what is judged counts.
+            ((1.0, 60.0), Some(40.0), true),
+        ];
+        for (warning, lead_s, announced) in table {
+            let found = run(&[warning], &[(50.0, 55.0)], None);
+            assert_eq!(found.answers.len(), 1);
+            assert_eq!(found.answers[0].lead_s(), lead_s, "{warning:?}");
+            assert_eq!(found.answers[0].is_announced(), announced, "{warning:?}");
+        }
+        assert_eq!(run(&[(40.0, 60.0)], &[(5.0, 55.0)], None).answers, []);
+    }
+
+    #[test]
+    fn a_warning_is_false_where_nothing_comes_of_it() {
+        let table = [
+            ((40.0, 45.0), false),
+            ((40.0, 39.9), true),
+            ((30.0, 39.0), true),
+            ((30.0, 40.0), false),
+            ((52.0, 58.0), false),
+            ((56.0, 58.0), false),
+            ((56.5, 58.0), true),
+            ((1.0, 9.0), true),
+        ];
+        for ((from_s, to_s), is_false) in table {
+            let found = run(&[(from_s, to_s)], &[(50.0, 55.0)], None);
+            if to_s < from_s || to_s < 10.0 {
+                assert_eq!(found.warnings, []);
+            } else {
+                assert_eq!(found.warnings[0].is_false, is_false, "{from_s} to {to_s}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_flight_that_ends_in_the_air_proves_no_warning_false() {
+        assert!(!run(&[(80.0, 95.0)], &[], Some(101.0)).warnings[0].is_false);
+        assert!(run(&[(60.0, 85.0)], &[], Some(101.0)).warnings[0].is_false);
+    }
+}

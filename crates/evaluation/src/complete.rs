@@ -1,0 +1,119 @@
+//! Which flights can be learned from and evaluated on, and which of their time is judged.
+
+use flagred::verdict::VerdictSettings;
+use flagred_flightlog::{ATTITUDE, Flight, Gap, LeftOut, Options};
+
+use crate::span::Span;
+
+/// Why a flight is not complete: see [`complete`].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Incomplete {
+    /// The log has more than is kept of it.
+    #[error("not all of it is kept, which leaves out {0}")]
+    LeftOut(LeftOut),
+    /// The log lacks something.
+    #[error(transparent)]
+    Gap(Gap),
+}
+
+impl Incomplete {
+    /// What to do about it, apart from the message.
+    pub fn help(&self) -> Option<&'static str> {
+        match self {
+            Incomplete::LeftOut(_) => Some("docs/limits.md has the bounds"),
+            Incomplete::Gap(gap) => gap.help(),
+        }
+    }
+}
+
+/// What is read of a log to learn from it or to evaluate on it: the named signals, and the attitude.
+pub fn complete_options(names: &[&str]) -> Options {
+    let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
+    let mut options = Options::default();
+    options.signals = Some(wanted.collect());
+    options
+}
+
+/// Whether a flight can be learned from and evaluated on: with motors, attitude and times in the air, and nothing left out.
+///
+/// # Errors
+/// What it lacks.
+pub fn complete(flight: &Flight) -> Result<(), Incomplete> {
+    let left_out = &flight.report.left_out;
+    if left_out.messages > 0 || left_out.changes > 0 {
+        return Err(Incomplete::LeftOut(left_out.clone()));
+    }
+    let mut gaps = flight.gaps().into_iter();
+    let gap = gaps.find(|gap| !matches!(gap, Gap::TooSlow { .. }));
+    gap.map_or(Ok(()), |gap| Err(Incomplete::Gap(gap)))
+}
+
+/// What the header of a flight CSV says under a key, such as `kind` or `vehicle`.
+pub fn header<'a>(flight: &'a Flight, key: &str) -> Option<&'a str> {
+    let found = flight.header.iter().find(|(k, _)| k == key);
+    found.map(|(_, value)| value.as_str())
+}
+
+/// The judged time that the header of a flight CSV gives: from `judged_from_s` to `judged_to_s`.
+pub fn judged_by_header(flight: &Flight) -> Option<Span> {
+    let number = |key| header(flight, key)?.parse().ok();
+    Some(Span {
+        from_s: number("judged_from_s")?,
+        to_s: number("judged_to_s")?,
+    })
+}
+
+/// The judged time of a flight: that of the header, else each time in the air without the first seconds after take-off and
+/// the last before landing.
+pub fn judged_spans(flight: &Flight, settings: &VerdictSettings) -> Vec<Span> {
+    if let Some(span) = judged_by_header(flight) {
+        return Vec::from_iter((span.length_s() > 0.0).then_some(span));
+    }
+    let air = flight.in_air.iter().flat_map(|air| &air.spans);
+    air.filter_map(|span| {
+        let air = Span {
+            from_s: span.start_s,
+            to_s: span.end_s,
+        };
+        judged_span(air, span.ends_with_log, settings)
+    })
+    .collect()
+}
+
+/// The judged part of a time in the air: without the first seconds after take-off and the last before landing.
+///
+/// `None` where nothing is left. A flight that ends with its log in the air has no landing.
+fn judged_span(air: Span, ends_with_log: bool, settings: &VerdictSettings) -> Option<Span> {
+    let before_landing_s = match ends_with_log {
+        true => 0.0,
+        false => settings.quiet_before_landing_s,
+    };
+    let judged = Span {
+        from_s: air.from_s + settings.quiet_after_take_off_s,
+        to_s: air.to_s - before_landing_s,
+    };
+    (judged.length_s() > 0.0).then_some(judged)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn judged_time_leaves_out_take_off_and_landing() {
+        let settings = VerdictSettings::default();
+        let air = Span {
+            from_s: 10.0,
+            to_s: 30.0,
+        };
+        let judged = judged_span(air, false, &settings).unwrap();
+        assert_eq!((judged.from_s, judged.to_s), (15.0, 29.0));
+        assert_eq!(judged_span(air, true, &settings).unwrap().to_s, 30.0);
+        let hop = Span {
+            from_s: 10.0,
+            to_s: 12.0,
+        };
+        assert_eq!(judged_span(hop, false, &settings), None);
+    }
+}

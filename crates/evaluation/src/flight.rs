@@ -1,0 +1,357 @@
+//! One flight under evaluation: its steps with the scores of every estimator, its episodes and upsets, and the alarms.
+
+use std::path::Path;
+
+use flagred::{
+    flight::{Assessor, Finding, Verdict},
+    log,
+    verdict::{Level, VerdictSettings},
+};
+use flagred_flightlog::{Attitude, Flight, ReadError};
+
+use crate::{
+    announced::{Judged, judge},
+    baseline::BaselineObserver,
+    calm::calm_stretches,
+    complete::{Incomplete, complete, complete_options, header, judged_by_header, judged_spans},
+    critical::ErrorRecord,
+    estimators::Estimators,
+    span::Span,
+    upset::upset_s,
+};
+
+/// How far apart steps are, in seconds.
+const STEP_S: f64 = 0.5;
+
+/// Where the log does not say what is judged, steps begin so many seconds after take-off: the shortest window is full.
+const FIRST_STEP_S: f64 = 2.0;
+
+/// A step is quiet without a critical error in so many seconds before it, and an onset after so many.
+const QUIET_S: f64 = 5.0;
+const ONSET_S: f64 = 10.0;
+
+/// A baseline forgets what was before so long a time without a sample, in seconds.
+const LONGEST_GAP_S: f64 = 2.0;
+
+/// Sums of time steps are off by less than this.
+const ROUNDING_S: f64 = 1e-6;
+
+/// What became of a flight.
+pub struct Record {
+    pub(crate) file: String,
+    /// `None` where the log names no vehicle.
+    pub(crate) vehicle: Option<String>,
+    /// What the flight was about, as its header says: `gusts`, `calm`, `manoeuvre`.
+    pub(crate) kind: String,
+    pub(crate) judged_s: f64,
+    pub(crate) air: Vec<Span>,
+    /// The stretches in which nothing happens.
+    pub(crate) calm: Vec<Span>,
+    /// The largest attitude error over a second, and the largest tilt, in the air.
+    pub(crate) largest_error_deg: Option<f64>,
+    pub(crate) largest_tilt_deg: Option<f64>,
+    pub(crate) upsets: Vec<Upset>,
+    pub(crate) steps: Vec<Step>,
+    /// For each profile.
+    pub(crate) said: Vec<Said>,
+}
+
+/// The first upset of a time in the air.
+pub(crate) struct Upset {
+    pub(crate) t_s: f64,
+    pub(crate) air: Span,
+}
+
+/// A moment and what was said of it.
+pub(crate) struct Step {
+    pub(crate) t_s: f64,
+    pub(crate) is_critical: bool,
+    pub(crate) is_quiet: bool,
+    pub(crate) is_onset: bool,
+    /// For each estimator; NaN is unknown.
+    pub(crate) scores: Vec<f64>,
+}
+
+/// What a profile said of a flight.
+#[derive(Default)]
+pub(crate) struct Said {
+    /// `None` is NA.
+    pub(crate) verdict: Option<Level>,
+    /// WARN or FAIL, from raised until last reached; one that turns into the other is one.
+    pub(crate) alarms: Vec<Span>,
+    pub(crate) fails: Vec<Span>,
+    /// The times at which a level was on, against the episodes.
+    pub(crate) judged: Judged,
+}
+
+/// Why a flight cannot be evaluated.
+#[derive(Debug, thiserror::Error)]
+pub enum Unusable {
+    /// It cannot be read, or is no flight log.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// It lacks motors, attitude or times in the air.
+    #[error("`{name}` cannot be evaluated: {lacks}")]
+    Incomplete {
+        /// The flight, as the user knows it.
+        name: String,
+        /// What it lacks.
+        lacks: Incomplete,
+    },
+    /// The baselines cannot be computed of it.
+    #[error("`{name}` cannot be evaluated: {problem}")]
+    Baselines {
+        /// The flight, as the user knows it.
+        name: String,
+        /// Why not.
+        problem: String,
+    },
+}
+
+impl Unusable {
+    /// What to do about it, apart from the message.
+    pub fn help(&self) -> Option<&str> {
+        match self {
+            Unusable::Read(error) => error.help(),
+            Unusable::Incomplete { lacks, .. } => lacks.help(),
+            Unusable::Baselines { .. } => None,
+        }
+    }
+}
+
+impl Record {
+    /// Reads a log and evaluates the flight.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no flight log, and as [`Record::new`].
+    pub fn read(path: &Path, estimators: &Estimators, horizon_s: f64) -> Result<Record, Unusable> {
+        let flight = flagred_flightlog::open(path, &complete_options(&estimators.signals()))?;
+        Record::new(&path.display().to_string(), &flight, estimators, horizon_s)
+    }
+
+    /// Evaluates a flight; the risk should predict what comes within `horizon_s` seconds.
+    ///
+    /// # Errors
+    /// A flight that lacks motors, attitude or times in the air, or of which not all is kept.
+    pub fn new(
+        name: &str,
+        flight: &Flight,
+        estimators: &Estimators,
+        horizon_s: f64,
+    ) -> Result<Record, Unusable> {
+        complete(flight).map_err(|lacks| Unusable::Incomplete {
+            name: name.to_owned(),
+            lacks,
+        })?;
+        let named = |key| header(flight, key).map(str::to_owned);
+        let attitudes: Vec<(f64, Attitude)> = flight
+            .attitudes()
+            .filter(|(t_s, _)| flight.is_in_air(*t_s) == Some(true))
+            .collect();
+        let errors = ErrorRecord::new(attitudes.iter().copied());
+        let air: Vec<Span> = flight
+            .in_air
+            .iter()
+            .flat_map(|air| &air.spans)
+            .map(|span| Span {
+                from_s: span.start_s,
+                to_s: span.end_s,
+            })
+            .collect();
+        let upsets: Vec<Upset> = air
+            .iter()
+            .filter_map(|air| {
+                let t_s = upset_s(&errors, &attitudes, *air)?;
+                Some(Upset { t_s, air: *air })
+            })
+            .collect();
+        let mut steps = steps(flight, &upsets, &errors, horizon_s);
+        let warned =
+            follow(flight, estimators, &mut steps).map_err(|problem| Unusable::Baselines {
+                name: name.to_owned(),
+                problem,
+            })?;
+        let lost_s = flight
+            .in_air
+            .iter()
+            .filter_map(|air| air.spans.last())
+            .find(|span| span.ends_with_log)
+            .map(|span| span.end_s);
+        let judged = judged_spans(flight, &VerdictSettings::default());
+        let said = warned.into_iter().map(|(mut said, warnings)| {
+            said.judged = judge(&warnings, errors.episodes(), &judged, lost_s);
+            said
+        });
+        Ok(Record {
+            file: name.to_owned(),
+            vehicle: flight.vehicle.id.clone().or_else(|| named("vehicle")),
+            kind: named("kind").unwrap_or_else(|| "unnamed".to_owned()),
+            judged_s: judged.iter().map(Span::length_s).sum(),
+            largest_error_deg: errors.largest_deg(),
+            largest_tilt_deg: attitudes
+                .iter()
+                .map(|(_, attitude)| attitude.tilt_deg())
+                .reduce(f64::max),
+            calm: air
+                .iter()
+                .flat_map(|air| calm_stretches(&errors, &attitudes, *air))
+                .collect(),
+            said: said.collect(),
+            steps,
+            upsets,
+            air,
+        })
+    }
+
+    /// The name of its file.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    pub(crate) fn vehicle_name(&self) -> &str {
+        self.vehicle.as_deref().unwrap_or("unknown")
+    }
+
+    pub(crate) fn air_s(&self) -> f64 {
+        self.air.iter().map(Span::length_s).sum()
+    }
+}
+
+/// The steps of a flight, without scores yet, where it is known what became of them.
+///
+/// They are in the judged time that the header of the log gives. Without one they are in the times in the air, from 2 s
+/// after take-off to 1 s before landing, each up to its upset.
+fn steps(flight: &Flight, upsets: &[Upset], errors: &ErrorRecord, horizon_s: f64) -> Vec<Step> {
+    let settings = VerdictSettings {
+        quiet_after_take_off_s: FIRST_STEP_S,
+        ..VerdictSettings::default()
+    };
+    let header_says = judged_by_header(flight).is_some();
+    let is_upset = |t_s: f64| {
+        let mut upsets = upsets.iter();
+        !header_says && upsets.any(|upset| upset.air.contains(t_s) && t_s >= upset.t_s)
+    };
+    let spans = judged_spans(flight, &settings);
+    let times = spans.iter().flat_map(step_times);
+    times
+        .filter(|t_s| !is_upset(*t_s))
+        .filter_map(|t_s| {
+            Some(Step {
+                t_s,
+                is_critical: errors.critical_within(t_s, horizon_s)?,
+                is_quiet: errors.is_quiet(t_s, QUIET_S),
+                is_onset: errors.is_quiet(t_s, ONSET_S),
+                scores: Vec::new(),
+            })
+        })
+        .collect()
+}
+
+fn step_times(span: &Span) -> impl Iterator<Item = f64> + use<> {
+    let (from_s, to_s) = (span.from_s, span.to_s);
+    (0_u32..)
+        .map(move |i| from_s + f64::from(i) * STEP_S)
+        .take_while(move |t_s| *t_s <= to_s + ROUNDING_S)
+}
+
+/// A profile on its way through a flight.
+struct Running {
+    /// `None` where the flight lacks a signal that the profile needs.
+    assessor: Option<Assessor>,
+    risk_pct: f64,
+    warnings: Vec<Span>,
+    is_warning: bool,
+}
+
+/// Sends the samples of a flight through all estimators and fills in the scores of the steps: what an estimator says at a
+/// time is what it said after the newest sample. Gives what each profile said, with the times at which a level was on.
+fn follow(
+    flight: &Flight,
+    estimators: &Estimators,
+    steps: &mut [Step],
+) -> Result<Vec<(Said, Vec<Span>)>, String> {
+    let names = log::carried(flight, &estimators.signals());
+    let mut running: Vec<Running> = estimators
+        .profiles
+        .iter()
+        .map(|profile| Running {
+            assessor: Assessor::new(&profile.estimator, log::craft(flight, &names), None).ok(),
+            risk_pct: f64::NAN,
+            warnings: Vec::new(),
+            is_warning: false,
+        })
+        .collect();
+    let mut baselines = BaselineObserver::new(&estimators.baselines, log::craft(flight, &names))?;
+
+    let mut steps = steps.iter_mut().peekable();
+    let mut last_s = None;
+    log::for_each_sample(flight, &names, |sample| {
+        while let Some(step) = steps.next_if(|step| step.t_s < sample.t_s - ROUNDING_S) {
+            step.scores = scores(&running, &baselines);
+        }
+        let held_s = last_s.map_or(0.0, |last_s| sample.t_s - last_s);
+        last_s = Some(sample.t_s);
+        if sample.is_on_ground() || !(0.0..=LONGEST_GAP_S).contains(&held_s) {
+            baselines.clear();
+        } else if held_s > 0.0 {
+            baselines.push(sample.t_s, held_s, sample.motors, sample.signals);
+        }
+        for running in &mut running {
+            let Some(assessor) = &mut running.assessor else {
+                continue;
+            };
+            let update = assessor.push(sample);
+            running.risk_pct = update.risk.map_or(f64::NAN, |risk| risk.risk_pct);
+            let warns = update.level >= Some(Level::Warn);
+            Span::follow(
+                &mut running.warnings,
+                &mut running.is_warning,
+                sample.t_s,
+                warns,
+            );
+        }
+    });
+    for step in steps {
+        step.scores = scores(&running, &baselines);
+    }
+    let in_air_s = flight
+        .in_air
+        .as_ref()
+        .map(flagred_flightlog::Intervals::duration_s);
+    let said = running.into_iter().map(|running| {
+        let assessment = running.assessor.map(|mut assessor| {
+            if let Some(in_air_s) = in_air_s {
+                assessor.set_in_air_s(in_air_s);
+            }
+            assessor.finish()
+        });
+        let said = assessment.map_or_else(Said::default, |assessment| Said {
+            verdict: match assessment.verdict {
+                Verdict::Known(level) => Some(level),
+                Verdict::NotAvailable(_) => None,
+            },
+            alarms: alarms(&assessment.findings, Level::Warn),
+            fails: alarms(&assessment.findings, Level::Fail),
+            judged: Judged::default(),
+        });
+        (said, running.warnings)
+    });
+    Ok(said.collect())
+}
+
+/// The times of findings of a level or a higher one.
+fn alarms(findings: &[Finding], least: Level) -> Vec<Span> {
+    let findings = findings.iter().filter(|finding| finding.level >= least);
+    Span::joined(findings.map(|finding| Span {
+        from_s: finding.raised_s,
+        to_s: finding.to_s.max(finding.raised_s),
+    }))
+}
+
+fn scores(running: &[Running], baselines: &BaselineObserver<'_>) -> Vec<f64> {
+    let risks = running.iter().map(|running| running.risk_pct);
+    let baselines = baselines.scores();
+    risks
+        .chain(baselines.map(|score| score.unwrap_or(f64::NAN)))
+        .collect()
+}

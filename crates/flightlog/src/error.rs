@@ -1,0 +1,135 @@
+//! Errors of reading a log.
+
+use std::io::ErrorKind;
+
+/// A log could not be read. A damaged log is not an error: its undamaged part is read,
+/// and its [`Report`](crate::Report) counts the damage.
+///
+/// # Example
+/// ```
+/// use flagred_flightlog::{Options, ReadError};
+///
+/// let error = flagred_flightlog::read(&b"\x89PNG\r\n\x1a\n"[..], &Options::default()).unwrap_err();
+/// assert!(matches!(error, ReadError::NotALog { .. }));
+/// assert_eq!(error.to_string(), "`the log` is a PNG picture, not a flight log");
+/// ```
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The file could not be opened, or reading it failed.
+    #[error("`{path}` cannot be read: {source}")]
+    Io {
+        /// The path as the user gave it; `standard input`, or `the log` for a reader.
+        path: String,
+        /// The error of the operating system.
+        source: std::io::Error,
+    },
+    /// The file is empty.
+    #[error("`{path}` is empty")]
+    Empty {
+        /// The path as the user gave it.
+        path: String,
+    },
+    /// The file is not a flight log.
+    #[error("`{path}` is {what}, not a flight log")]
+    NotALog {
+        /// The path as the user gave it.
+        path: String,
+        /// What it looks like, such as `a PNG picture`.
+        what: String,
+    },
+    /// The file is a flight log in a format that is not read.
+    #[error("`{path}` is {what}, a format that is not read")]
+    NotRead {
+        /// The path as the user gave it.
+        path: String,
+        /// What it is.
+        what: String,
+    },
+    /// The log contradicts the range of motor outputs that was given for it.
+    #[error("`{path}` {problem}")]
+    Range {
+        /// The path as the user gave it.
+        path: String,
+        /// What contradicts it.
+        problem: String,
+        /// What to do about it.
+        help: &'static str,
+    },
+    /// A flight CSV has columns or header values that cannot be used.
+    #[error("`{path}`, line {line}: {problem}")]
+    Csv {
+        /// The path as the user gave it.
+        path: String,
+        /// Line in the file, from 1.
+        line: u64,
+        /// What is wrong there.
+        problem: String,
+        /// What to do about it.
+        help: String,
+    },
+}
+
+impl ReadError {
+    /// What to do about it, apart from the message.
+    pub fn help(&self) -> Option<&str> {
+        match self {
+            Self::Io { source, .. } => match source.kind() {
+                ErrorKind::NotFound => Some("check the path"),
+                ErrorKind::IsADirectory => Some("name the logs in it"),
+                _ => None,
+            },
+            Self::Empty { .. } => Some("the download or copy may have failed: fetch the log again"),
+            Self::NotALog { what, .. } if what.contains("git-lfs") => {
+                Some("fetch the log itself with `git lfs pull`")
+            }
+            Self::NotRead { .. } => Some(
+                "it cannot be converted to ULog: write a flight CSV (docs/flight-csv.md) of its OUT0 messages, or fly with PX4 1.4 or newer, which logs as ULog (.ulg)",
+            ),
+            Self::NotALog { what, .. } if what == TEXT => Some(
+                "a flight CSV begins with the names of its columns, commas between them: `t_s`, and `pwm1` or `motor1` and so on; a text log of ArduPilot begins with `FMT` lines",
+            ),
+            Self::NotALog { .. } => Some(
+                "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",
+            ),
+            Self::Csv { help, .. } => Some(help),
+            Self::Range { help, .. } => Some(help),
+        }
+    }
+
+    /// The same error about a log of this name, where it was read from bytes that have none.
+    ///
+    /// # Example
+    /// ```
+    /// let error = flagred_flightlog::read(&b""[..], &flagred_flightlog::Options::default()).unwrap_err();
+    /// assert_eq!(error.with_path("flight.bin").to_string(), "`flight.bin` is empty");
+    /// ```
+    #[must_use]
+    pub fn with_path(mut self, name: &str) -> Self {
+        match &mut self {
+            Self::Io { path, .. }
+            | Self::Empty { path }
+            | Self::NotALog { path, .. }
+            | Self::NotRead { path, .. }
+            | Self::Range { path, .. }
+            | Self::Csv { path, .. } => name.clone_into(path),
+        }
+        self
+    }
+}
+
+/// Description of a log in PX4's first format.
+pub(crate) const SDLOG2: &str = "an sdlog2 log (.px4log) of PX4 before ULog";
+
+/// Description of a text file that is not a log.
+pub(crate) const TEXT: &str = "a text file";
+
+/// The path in an error until the caller sets it.
+pub(crate) const UNNAMED: &str = "the log";
+
+pub(crate) fn io_error(source: std::io::Error) -> ReadError {
+    ReadError::Io {
+        path: UNNAMED.into(),
+        source,
+    }
+}

@@ -1,0 +1,390 @@
+//! `Flight`, the common type of all logs.
+
+use crate::{Geometry, Intervals, Parameter, Report, Series, Signal};
+
+/// The kind of log a flight was read from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Format {
+    /// ArduPilot DataFlash, binary (`.bin`).
+    DataFlash,
+    /// ArduPilot DataFlash as text (`.log`).
+    DataFlashText,
+    /// PX4 ULog (`.ulg`).
+    ULog,
+    /// MAVLink telemetry with time stamps (`.tlog`).
+    Tlog,
+    /// Flight CSV.
+    Csv,
+}
+
+impl std::fmt::Display for Format {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::DataFlash => "ArduPilot DataFlash",
+            Self::DataFlashText => "ArduPilot DataFlash text",
+            Self::ULog => "PX4 ULog",
+            Self::Tlog => "MAVLink tlog",
+            Self::Csv => "flight CSV",
+        })
+    }
+}
+
+/// What kind of vehicle flew.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum VehicleKind {
+    /// A multirotor: quad, hexa, octa, X8, tri, Y6 ...
+    Multirotor,
+    /// A helicopter, single or coaxial rotor.
+    Helicopter,
+    /// A fixed-wing plane.
+    Plane,
+    /// A plane that can hover: quadplane, tailsitter, tilt rotor.
+    Vtol,
+    /// A rover or a boat.
+    Rover,
+    /// A submarine.
+    Submarine,
+    /// Something else: antenna tracker, airship ...
+    Other,
+    /// The log does not say.
+    #[default]
+    Unknown,
+}
+
+impl VehicleKind {
+    /// The kind that is displayed as `name`; unknown for any other name.
+    pub(crate) fn from_name(name: &str) -> Self {
+        [
+            Self::Multirotor,
+            Self::Helicopter,
+            Self::Plane,
+            Self::Vtol,
+            Self::Rover,
+            Self::Submarine,
+            Self::Other,
+        ]
+        .into_iter()
+        .find(|kind| kind.to_string() == name)
+        .unwrap_or_default()
+    }
+}
+
+impl std::fmt::Display for VehicleKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Multirotor => "multirotor",
+            Self::Helicopter => "helicopter",
+            Self::Plane => "plane",
+            Self::Vtol => "VTOL plane",
+            Self::Rover => "rover",
+            Self::Submarine => "submarine",
+            Self::Other => "other vehicle",
+            Self::Unknown => "unknown vehicle",
+        })
+    }
+}
+
+/// The vehicle, as far as the log describes it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Vehicle {
+    /// What kind it is.
+    pub kind: VehicleKind,
+    /// Where the kind came from, such as `MSG "ArduCopter V4.5.1"`.
+    pub source: String,
+    /// Frame or type name, such as `QUAD/X`.
+    pub frame: Option<String>,
+    /// Number of motors, where the frame tells it.
+    pub motors: Option<u16>,
+    /// Firmware with version.
+    pub firmware: Option<String>,
+    /// What tells this vehicle from others of its kind: the serial number of the board, or `vehicle_id` of a flight CSV.
+    pub id: Option<String>,
+    /// Where [`Vehicle::id`] came from, such as `sys_uuid`.
+    pub id_source: Option<String>,
+    /// Its MAVLink system id. Vehicles share it unless somebody numbers them: it is 1 on a new autopilot.
+    pub system_id: Option<u8>,
+    /// How often the autopilot booted in its life, as ArduPilot counts it (`STAT_BOOTCNT`).
+    pub boot_count: Option<u32>,
+}
+
+/// One motor, and the output that drives it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Motor {
+    /// Motor number of the autopilot, from 1.
+    pub number: u16,
+    /// The output as the log names it, such as `C3` or `actuator_motors.control[2]`.
+    pub output: String,
+    /// Where the assignment came from, such as `SERVO3_FUNCTION = 35`.
+    pub source: String,
+}
+
+/// A range of commands, and where it came from.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Range {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end, above `low`.
+    pub high: f64,
+    /// Unit of both: `us`, `1` (a fraction) or `raw` (counts of a bus).
+    pub unit: &'static str,
+    /// Where it came from, such as `MOT_PWM_MIN/MAX`.
+    pub source: String,
+}
+
+impl Range {
+    /// The fraction of the range at which `value` lies, clipped to 0..1.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred_flightlog::Range;
+    ///
+    /// let range = Range { low: 1100.0, high: 1900.0, unit: "us", source: "MOT_PWM_MIN/MAX".into() };
+    /// assert_eq!((range.fraction(1300.0), range.fraction(2100.0)), (0.25, 1.0));
+    /// ```
+    pub fn fraction(&self, value: f64) -> f64 {
+        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+    }
+}
+
+/// Motor commands: one row a logged sample, one raw value a motor, on their own time base.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Commands {
+    t_s: Vec<f64>,
+    raw: Vec<f64>,
+    motors: usize,
+}
+
+impl Commands {
+    pub(crate) fn new(motors: usize) -> Self {
+        Self {
+            motors,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a row; missing values become unknown, values beyond the motors are dropped.
+    pub(crate) fn push(&mut self, t_s: f64, row: impl IntoIterator<Item = f64>) {
+        self.t_s.push(t_s);
+        self.raw.extend(
+            row.into_iter()
+                .chain(std::iter::repeat(f64::NAN))
+                .take(self.motors),
+        );
+    }
+
+    /// Number of motors.
+    pub(crate) fn motors(&self) -> usize {
+        self.motors
+    }
+
+    /// Whether not a single value is known.
+    pub(crate) fn are_unknown(&self) -> bool {
+        self.raw.iter().all(|raw| raw.is_nan())
+    }
+
+    /// Times of the rows, seconds on the log's clock.
+    pub fn t_s(&self) -> &[f64] {
+        &self.t_s
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.t_s.len()
+    }
+
+    /// No motor command was logged.
+    pub fn is_empty(&self) -> bool {
+        self.t_s.is_empty()
+    }
+
+    /// Rows in order of time: the time in seconds and the raw value of each motor, in
+    /// the unit of [`Flight::range`]. NaN is a value that is not known.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = (f64, &[f64])> {
+        // A flight without motors has no rows either, so the width is never 0 here.
+        let rows = self.raw.chunks_exact(self.motors.max(1));
+        self.t_s.iter().copied().zip(rows)
+    }
+}
+
+/// A message or a change of mode at a time.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Event<T = String> {
+    /// Time in microseconds on the log's clock.
+    pub t_us: i64,
+    /// What it was.
+    pub what: T,
+}
+
+impl<T> Event<T> {
+    pub(crate) fn new(t_s: f64, what: T) -> Self {
+        Self {
+            t_us: (t_s * 1e6).round() as i64,
+            what,
+        }
+    }
+
+    /// Time in seconds on the log's clock.
+    pub fn t_s(&self) -> f64 {
+        self.t_us as f64 * 1e-6
+    }
+}
+
+/// A flight, read from a log.
+///
+/// Times are in seconds on the log's own clock and never decrease within a series:
+/// since boot for ArduPilot and PX4 logs and for telemetry (since the first packet where motor
+/// commands carry no time), as written for CSV. Where a log holds several boots of the autopilot, the clock continues
+/// at the end of the boot before; [`Flight::boots_s`] has the start of each.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Flight {
+    /// The kind of log.
+    pub format: Format,
+    /// The vehicle.
+    pub vehicle: Vehicle,
+    /// The motors in order of their number; a column of `commands` each.
+    pub motors: Vec<Motor>,
+    /// How much each motor rolls, pitches and yaws the vehicle; `None` where the log does not
+    /// tell and the commands do not either.
+    pub geometry: Option<Geometry>,
+    /// Range of the raw commands, 0 % to 100 %; `None` when the log does not tell.
+    pub range: Option<Range>,
+    /// The part of the range that is used in flight, as fractions of it: a motor at its
+    /// upper end is saturated although the range goes further.
+    #[cfg_attr(feature = "serde", serde(rename = "effective_range"))]
+    pub effective: Range,
+    /// Why the used part counts as the whole range although the log tells limits.
+    #[cfg_attr(feature = "serde", serde(rename = "effective_range_doubt"))]
+    pub effective_doubt: Option<String>,
+    /// What is assumed of motors, their commands and ranges because the log does not report it, in words; `flagred watch`
+    /// assumes the same of the vehicle. Empty where nothing is.
+    pub assumed: Vec<String>,
+    /// Parameters of the autopilot that motors and ranges rest on, and gains, as far as the log has them.
+    pub parameters: Vec<Parameter>,
+    /// The motor commands.
+    pub commands: Commands,
+    /// All other signals.
+    pub series: Vec<Series>,
+    /// Flight modes, from the time each was entered.
+    pub modes: Vec<Event>,
+    /// Texts the autopilot wrote into the log.
+    pub messages: Vec<Event>,
+    /// When the motors were armed; `None` when the log does not tell.
+    pub armed: Option<Intervals>,
+    /// When the vehicle was in the air; `None` when the log does not tell. Land detectors
+    /// chatter: landings of less than a second are left out.
+    pub in_air: Option<Intervals>,
+    /// UTC at time 0 of the log's clock, in seconds since 1970; `None` when unknown.
+    pub utc_at_zero_s: Option<f64>,
+    /// Times at which the autopilot booted again within the log; empty for one boot.
+    pub boots_s: Vec<f64>,
+    /// The times in the air at which the clock starts again, as after a reboot, or is set back. What came after them may be
+    /// missing from the log.
+    pub rebooted_in_air_s: Vec<f64>,
+    /// Header lines of a CSV file as keys and values, in their order.
+    pub header: Vec<(String, String)>,
+    /// Amount of data and damage.
+    pub report: Report,
+}
+
+impl Flight {
+    pub(crate) fn empty(format: Format) -> Self {
+        Self {
+            format,
+            vehicle: Vehicle::default(),
+            motors: Vec::new(),
+            geometry: None,
+            range: None,
+            effective: whole_range("the log names no tighter limits"),
+            effective_doubt: None,
+            assumed: Vec::new(),
+            parameters: Vec::new(),
+            commands: Commands::default(),
+            series: Vec::new(),
+            modes: Vec::new(),
+            messages: Vec::new(),
+            armed: None,
+            in_air: None,
+            utc_at_zero_s: None,
+            boots_s: Vec::new(),
+            rebooted_in_air_s: Vec::new(),
+            header: Vec::new(),
+            report: Report::default(),
+        }
+    }
+
+    /// All signals.
+    pub fn signals(&self) -> impl Iterator<Item = Signal<'_>> {
+        self.series.iter().flat_map(Series::signals)
+    }
+
+    /// The signal of that name.
+    pub fn signal(&self, name: &str) -> Option<Signal<'_>> {
+        self.signals().find(|signal| signal.label.name == name)
+    }
+
+    /// Command on the full range, 0..1: `c = (raw - low) / (high - low)`, clipped.
+    /// `None` when the value or the range is unknown.
+    ///
+    /// A PX4 motor that is told to stop is logged as NaN in the file; it is read as 0.
+    pub fn command(&self, raw: f64) -> Option<f64> {
+        let range = self.range.as_ref()?;
+        raw.is_finite().then(|| range.fraction(raw))
+    }
+
+    /// Command on the effective range, 0..1: `e = (c - lo) / (hi - lo)`, clipped, where
+    /// `c` is [`Flight::command`] and `lo`, `hi` are [`Flight::effective`].
+    ///
+    /// ```
+    /// let log = "\
+    /// ## pwm_low_us: 1000
+    /// ## pwm_high_us: 2000
+    /// ## effective_low: 0.15
+    /// ## effective_high: 0.95
+    /// t_s,pwm1
+    /// 0,1550
+    /// ";
+    /// let flight = flagred_flightlog::read(log.as_bytes(), &flagred_flightlog::Options::default())?;
+    /// assert_eq!(flight.command(1550.0), Some(0.55));
+    /// assert!((flight.effective_command(1550.0).unwrap() - 0.5).abs() < 1e-12);
+    /// # Ok::<(), flagred_flightlog::ReadError>(())
+    /// ```
+    pub fn effective_command(&self, raw: f64) -> Option<f64> {
+        self.command(raw).map(|c| self.effective.fraction(c))
+    }
+
+    /// Whether the vehicle was in the air at `t_s`; `None` when the log does not tell.
+    pub fn is_in_air(&self, t_s: f64) -> Option<bool> {
+        self.in_air.as_ref().map(|spans| spans.contains(t_s))
+    }
+
+    /// First and last time of the motor commands and the signals.
+    pub fn time_span_s(&self) -> Option<(f64, f64)> {
+        std::iter::once(self.commands.t_s())
+            .chain(self.series.iter().map(Series::t_s))
+            .filter_map(|t_s| Some((*t_s.first()?, *t_s.last()?)))
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+
+    /// Rows of motor commands a second, without pauses; `None` under two rows.
+    pub fn command_rate_hz(&self) -> Option<f64> {
+        crate::signal::rate_hz(self.commands.t_s())
+    }
+}
+
+pub(crate) fn whole_range(why: &str) -> Range {
+    Range {
+        low: 0.0,
+        high: 1.0,
+        unit: "1",
+        source: format!("whole range: {why}"),
+    }
+}

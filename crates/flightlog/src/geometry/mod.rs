@@ -1,0 +1,180 @@
+//! Motor geometry: how much each motor rolls, pitches and yaws the vehicle, with its source.
+
+mod declared;
+pub(crate) mod infer;
+pub(crate) mod tables;
+
+pub(crate) use declared::{Declared, rotor_effects};
+
+use crate::{Flight, Motor, Series, VehicleKind};
+
+/// Mixer factors of the motors, and where they came from.
+///
+/// # Example: turning the nose is no imbalance
+/// ```
+/// let log = "# frame: QUAD/X\nt_s,motor1,motor2,motor3,motor4\n0,0.6,0.6,0.4,0.4\n";
+/// let flight = flagred_flightlog::read(log.as_bytes(), &flagred_flightlog::Options::default())?;
+/// let geometry = flight.geometry.unwrap();
+/// assert_eq!(geometry.frame.as_deref(), Some("QUAD/X"));
+/// // All of the difference between these motors is yaw.
+/// let (_, row) = flight.commands.rows().next().unwrap();
+/// let yaw: f64 = geometry.factors.iter().zip(row).map(|([_, _, yaw], c)| yaw * c).sum();
+/// assert!((yaw - 0.4).abs() < 1e-12);
+/// # Ok::<(), flagred_flightlog::ReadError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Geometry {
+    /// `[roll, pitch, yaw]` of each motor, in the order of [`Flight::motors`]; the largest of
+    /// each axis is 1. More thrust of a motor rolls the vehicle to the right where roll is
+    /// positive (a motor on the left), raises the nose where pitch is positive (a motor in
+    /// front), and turns the nose to the right where yaw is positive (a propeller that turns
+    /// counter-clockwise). Yaw is 0 for all motors where no motor command turns the vehicle,
+    /// as on a tricopter.
+    pub factors: Vec<[f64; 3]>,
+    /// Frame class and type in ArduPilot's words, such as `QUAD/X`; `None` for motor positions
+    /// without a name.
+    pub frame: Option<String>,
+    /// Declared, inferred or assumed.
+    pub basis: Basis,
+    /// Where it came from, such as `FRAME_CLASS = 1, FRAME_TYPE = 1`.
+    pub source: String,
+    /// Why the commands contradict it; `None` where they do not.
+    pub doubt: Option<String>,
+}
+
+/// First and last time of what is read of every log: the motor commands and the signals of the geometry. Which others are
+/// kept must not change when the vehicle is armed or in the air. Of a log without any of these, the time of all that is kept.
+pub(crate) fn span_s(flight: &Flight) -> Option<(f64, f64)> {
+    let is_read = |series: &&Series| {
+        let mut signals = series.signals();
+        signals.any(|signal| infer::SIGNALS.contains(&signal.label.name.as_str()))
+    };
+    let series = flight.series.iter().filter(is_read).map(Series::t_s);
+    std::iter::once(flight.commands.t_s())
+        .chain(series)
+        .filter_map(|t_s| Some((*t_s.first()?, *t_s.last()?)))
+        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        .or_else(|| flight.time_span_s())
+}
+
+/// How a [`Geometry`] is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Basis {
+    /// By parameters, messages or a header.
+    Declared,
+    /// By the motor commands, which only one of the common layouts fits.
+    Inferred,
+    /// The most common layout for that number of motors. The yaw pattern is the same in
+    /// ArduPilot's and PX4's usual orders; roll and pitch may be turned.
+    Assumed,
+}
+
+impl std::fmt::Display for Basis {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Declared => "declared",
+            Self::Inferred => "inferred",
+            Self::Assumed => "assumed",
+        })
+    }
+}
+
+/// A frame of ArduPilot: its FRAME_CLASS and FRAME_TYPE, its name, and the number and the factors of each motor.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Frame {
+    /// FRAME_CLASS.
+    pub class: i64,
+    /// FRAME_TYPE.
+    pub kind: i64,
+    /// Such as `QUAD/X`.
+    pub name: String,
+    /// The number of each motor, and its roll, pitch and yaw as in [`Geometry::factors`].
+    pub motors: Vec<(u16, [f64; 3])>,
+}
+
+/// The frames of ArduPilot whose motors are known, for a program that reads FRAME_CLASS and FRAME_TYPE itself.
+///
+/// # Example
+/// ```
+/// let x = flagred_flightlog::ardupilot_frames().find(|frame| frame.name == "QUAD/X").unwrap();
+/// assert_eq!((x.class, x.kind, x.motors[0]), (1, 1, (1, [-1.0, 1.0, 1.0])));
+/// ```
+pub fn ardupilot_frames() -> impl Iterator<Item = Frame> {
+    tables::frames().filter_map(|(class, kind)| {
+        Some(Frame {
+            class,
+            kind,
+            name: tables::name(class, kind),
+            motors: tables::layout(class, kind)?,
+        })
+    })
+}
+
+/// The geometry of these motors by what is declared; quadrotors of an unknown type are assumed
+/// to be numbered as usual.
+pub(crate) fn of(motors: &[Motor], declared: &Declared) -> Option<Geometry> {
+    let layout = match declared {
+        Declared::Factors { factors, .. } => Some(factors.clone()),
+        Declared::Frame { class, kind, .. } => {
+            // The type of a tricopter is seldom set, and only one of them is special.
+            let kind = kind.or((*class == tables::TRI).then_some(tables::X));
+            kind.and_then(|kind| tables::layout(*class, kind))
+        }
+        Declared::Nothing => None,
+    };
+    if let Some(factors) = layout.and_then(|layout| in_order(motors, &layout)) {
+        return Some(Geometry {
+            factors,
+            frame: declared.frame(),
+            basis: Basis::Declared,
+            source: declared.source().to_owned(),
+            doubt: None,
+        });
+    }
+    let is_quad =
+        motors.len() == 4 && !matches!(declared.class(), Some(class) if class != tables::QUAD);
+    let factors =
+        in_order(motors, &tables::layout(tables::QUAD, tables::X)?).filter(|_| is_quad)?;
+    Some(Geometry {
+        factors,
+        frame: Some(tables::name(tables::QUAD, tables::X)),
+        basis: Basis::Assumed,
+        source: "usual order of four motors; the type of the frame is not known".into(),
+        doubt: None,
+    })
+}
+
+/// The geometry of a flight by what its log declares; by its commands where the log does not
+/// declare any. Says where the commands contradict what is declared.
+pub(crate) fn find(flight: &Flight, declared: &Declared) -> Option<Geometry> {
+    if !matches!(
+        flight.vehicle.kind,
+        VehicleKind::Multirotor | VehicleKind::Unknown
+    ) {
+        return None;
+    }
+    match of(&flight.motors, declared) {
+        Some(mut geometry) if geometry.basis == Basis::Declared => {
+            geometry.doubt = infer::contradiction(flight, &geometry);
+            Some(geometry)
+        }
+        assumed => infer::geometry(flight, declared.class()).or(assumed),
+    }
+}
+
+/// The factors of these motors, by their numbers; `None` where one is not in the layout.
+fn in_order(motors: &[Motor], layout: &[(u16, [f64; 3])]) -> Option<Vec<[f64; 3]>> {
+    let of_motor = |motor: &Motor| {
+        let found = layout.iter().find(|(number, _)| *number == motor.number);
+        found.map(|(_, factors)| *factors)
+    };
+    let factors: Vec<[f64; 3]> = motors.iter().map(of_motor).collect::<Option<_>>()?;
+    (factors.len() == layout.len()).then_some(factors)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,291 @@
+//! Where a packet begins and ends, and whether it is whole
+//! (<https://mavlink.io/en/guide/serialization.html>).
+
+use super::checksum::{accumulate, extra};
+
+/// First bytes of packets of version 1 and 2.
+const MARKERS: [u8; 2] = [0xfe, 0xfd];
+const CHECKSUM: usize = 2;
+const SIGNATURE: usize = 13;
+/// Flag of a packet that is signed, the only one that is understood here.
+const SIGNED: u8 = 1;
+/// Bytes of the longest packet: head, payload, checksum and signature.
+pub(crate) const LONGEST: usize = 10 + 255 + CHECKSUM + SIGNATURE;
+
+/// The version of the protocol that a packet is in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Version {
+    /// MAVLink 1.
+    V1,
+    /// MAVLink 2.
+    V2,
+}
+
+/// A packet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Packet<'a> {
+    /// The version of the protocol.
+    pub version: Version,
+    /// Counts the packets of a sender, over all messages.
+    pub sequence: u8,
+    /// The vehicle or ground station that sent it.
+    pub system: u8,
+    /// The part of the system that sent it; 1 is the autopilot.
+    pub component: u8,
+    /// Which message it carries.
+    pub id: u32,
+    /// It carries a signature, which cannot be verified without the sender's key.
+    pub is_signed: bool,
+    /// The message as bytes; version 2 leaves zeros off at the end.
+    pub payload: &'a [u8],
+    /// All of the packet.
+    pub bytes: &'a [u8],
+    /// Whether the checksum holds; `None` where it cannot be verified, as for messages of other dialects.
+    pub sound: Option<bool>,
+}
+
+/// What bytes begin with.
+enum Start<'a> {
+    /// All of a packet, its checksum right or not.
+    Whole(Packet<'a>),
+    /// Perhaps a packet, but not all of it.
+    Part,
+    /// A packet that asks for a feature of the protocol that is not known here.
+    Flags(u8),
+    /// No packet.
+    Other,
+}
+
+impl<'a> Packet<'a> {
+    /// The packet at the start of `bytes`, its checksum right or not; `None` when there is none, or not all of it.
+    pub(crate) fn at(bytes: &'a [u8]) -> Option<Self> {
+        match start(bytes) {
+            Start::Whole(packet) => Some(packet),
+            Start::Part | Start::Flags(_) | Start::Other => None,
+        }
+    }
+}
+
+fn start(bytes: &[u8]) -> Start<'_> {
+    let (version, head, length, flags, [sequence, system, component], id) = match *bytes {
+        [0xfe, length, sequence, system, component, id, ..] => {
+            let sender = [sequence, system, component];
+            (Version::V1, 6, length, 0, sender, u32::from(id))
+        }
+        [
+            0xfd,
+            length,
+            flags,
+            _,
+            sequence,
+            system,
+            component,
+            a,
+            b,
+            c,
+            ..,
+        ] => {
+            let sender = [sequence, system, component];
+            let id = u32::from_le_bytes([a, b, c, 0]);
+            (Version::V2, 10, length, flags, sender, id)
+        }
+        [0xfe | 0xfd, ..] | [] => return Start::Part,
+        _ => return Start::Other,
+    };
+    if flags & !SIGNED != 0 {
+        return Start::Flags(flags);
+    }
+    let is_signed = flags & SIGNED != 0;
+    let end = head + usize::from(length);
+    let whole = end + CHECKSUM + if is_signed { SIGNATURE } else { 0 };
+    let (Some(packet), Some(payload), Some(checked), Some(&sum)) = (
+        bytes.get(..whole),
+        bytes.get(head..end),
+        bytes.get(1..end),
+        bytes.get(end..).and_then(|rest| rest.first_chunk()),
+    ) else {
+        return Start::Part;
+    };
+    let sum = u16::from_le_bytes(sum);
+    Start::Whole(Packet {
+        version,
+        sequence,
+        system,
+        component,
+        id,
+        is_signed,
+        payload,
+        bytes: packet,
+        sound: extra(id).map(|extra| accumulate(checked, extra) == sum),
+    })
+}
+
+/// What is at the start of some bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Next<'a> {
+    /// A packet; the next one begins after [`Packet::bytes`].
+    Packet(Packet<'a>),
+    /// A packet with a message that the dialect does not have, so its checksum cannot be verified; it ends where another
+    /// packet begins, or where the bytes end.
+    Unverified(Packet<'a>),
+    /// This many bytes are not a packet.
+    Skip(usize, Why),
+    /// Perhaps the beginning of a packet; more bytes will tell.
+    More,
+}
+
+/// Why bytes are skipped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Why {
+    /// They do not begin like a packet.
+    NoPacket,
+    /// The checksum is wrong.
+    Checksum,
+    /// The packet asks for a feature of the protocol that this reader does not have.
+    UnknownFlags(u8),
+}
+
+/// Returns what is at the start of `bytes`: a packet of MAVLink 1 or 2, or bytes to skip.
+///
+/// ```
+/// use flagred_flightlog::mavlink::{Next, Why, next_packet};
+///
+/// let heartbeat = [
+///     0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51,
+/// ];
+/// let Next::Packet(packet) = next_packet(&heartbeat) else { panic!() };
+/// assert_eq!((packet.system, packet.component, packet.id), (1, 1, 0));
+/// assert_eq!(next_packet(b"hello"), Next::Skip(5, Why::NoPacket));
+/// assert_eq!(next_packet(&heartbeat[..12]), Next::More);
+/// ```
+pub fn next_packet(bytes: &[u8]) -> Next<'_> {
+    let Some(garbage) = bytes.iter().position(|byte| MARKERS.contains(byte)) else {
+        return match bytes.len() {
+            0 => Next::More,
+            length => Next::Skip(length, Why::NoPacket),
+        };
+    };
+    if garbage > 0 {
+        return Next::Skip(garbage, Why::NoPacket);
+    }
+    match start(bytes) {
+        Start::Whole(packet) => match packet.sound {
+            Some(true) => Next::Packet(packet),
+            Some(false) => Next::Skip(1, Why::Checksum),
+            // Its length can be believed only where another packet, or nothing, follows.
+            None => match bytes.get(packet.bytes.len()) {
+                Some(byte) if !MARKERS.contains(byte) => Next::Skip(1, Why::NoPacket),
+                _ => Next::Unverified(packet),
+            },
+        },
+        Start::Part => Next::More,
+        Start::Flags(flags) => Next::Skip(1, Why::UnknownFlags(flags)),
+        Start::Other => Next::Skip(1, Why::NoPacket),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A heartbeat of version 1 as pymavlink 2.4.50 packs it: system 1, component 1,
+    /// quadrotor, ArduPilot, armed, mode 5, active.
+    const HEARTBEAT: [u8; 17] = [
+        0xfe, 0x09, 0x00, 0x01, 0x01, 0x00, 0x05, 0x00, 0x00, 0x00, 0x02, 0x03, 0x81, 0x04, 0x03,
+        0xbe, 0xb9,
+    ];
+
+    #[test]
+    fn a_heartbeat_is_sound_and_a_damaged_one_is_not() {
+        let packet = Packet::at(&HEARTBEAT).unwrap();
+        assert_eq!((packet.system, packet.component, packet.id), (1, 1, 0));
+        assert_eq!((packet.bytes.len(), packet.sound), (17, Some(true)));
+        let mut damaged = HEARTBEAT;
+        damaged[9] ^= 1;
+        assert_eq!(Packet::at(&damaged).unwrap().sound, Some(false));
+        assert_eq!(Packet::at(&HEARTBEAT[..16]), None);
+        assert_eq!(Packet::at(&HEARTBEAT[1..]), None);
+    }
+}
+
+#[cfg(all(test, feature = "mavlink"))]
+mod round_trips {
+    use proptest::prelude::*;
+
+    use super::super::{
+        Sender,
+        dialect::{MavMessage, NAMED_VALUE_FLOAT_DATA},
+    };
+    use super::*;
+
+    fn risk(version: Version) -> Vec<u8> {
+        let message = MavMessage::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA {
+            time_boot_ms: 1234,
+            value: 56.5,
+            name: "FR_RISK".into(),
+        });
+        Sender::new(191).packet(version, 1, &message)
+    }
+
+    #[test]
+    fn both_versions_are_read_back() {
+        for version in [Version::V1, Version::V2] {
+            let bytes = risk(version);
+            let Next::Packet(packet) = next_packet(&bytes) else {
+                panic!("{:?}", next_packet(&bytes));
+            };
+            assert_eq!(
+                (packet.version, packet.system, packet.component),
+                (version, 1, 191)
+            );
+            assert_eq!(packet.bytes, bytes);
+            let Some(MavMessage::NAMED_VALUE_FLOAT(value)) = packet.message() else {
+                panic!("{packet:?}");
+            };
+            assert_eq!(value.value, 56.5);
+            assert_eq!(value.name.to_str(), Ok("FR_RISK"));
+        }
+    }
+
+    #[test]
+    fn one_wrong_bit_is_no_packet() {
+        for version in [Version::V1, Version::V2] {
+            let bytes = risk(version);
+            for bit in 0..bytes.len() * 8 {
+                let mut damaged = bytes.clone();
+                damaged[bit / 8] ^= 1 << (bit % 8);
+                assert!(
+                    !matches!(next_packet(&damaged), Next::Packet(_)),
+                    "bit {bit} of {version:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_part_of_a_packet_asks_for_more() {
+        let bytes = risk(Version::V2);
+        for end in 0..bytes.len() {
+            assert_eq!(next_packet(&bytes[..end]), Next::More, "{end} bytes");
+        }
+    }
+
+    proptest! {
+        /// Whatever comes in, every step takes at least a byte or asks for more, and never panics.
+        #[test]
+        fn any_bytes_are_taken(bytes in prop::collection::vec(prop_oneof![Just(0xfd), Just(0xfe), any::<u8>()], 0..600)) {
+            let mut at = 0;
+            loop {
+                match next_packet(&bytes[at..]) {
+                    Next::Packet(packet) | Next::Unverified(packet) => at += packet.bytes.len(),
+                    Next::Skip(count, _) => {
+                        prop_assert!(count > 0);
+                        at += count;
+                    }
+                    Next::More => break,
+                }
+                prop_assert!(at <= bytes.len());
+            }
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Splits a stream of bytes into packets.
+
+use super::{Next, Packet, Why, next_packet};
+
+/// What was skipped.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Skipped {
+    /// Bytes that belong to no packet that could be read.
+    pub bytes: u64,
+    /// Packets whose checksum was wrong, and bytes that only looked like the beginning of one.
+    pub checksums: u64,
+    /// Packets with a message that is not known here, which are returned unverified, or with an unknown feature of the
+    /// protocol, which are skipped.
+    pub unknown: u64,
+    /// Signed packets, which cannot be verified without the key.
+    pub signed: u64,
+    /// With a key: packets that are not signed.
+    pub unsigned: u64,
+    /// With a key: packets whose signature is wrong, or whose time stamp came before.
+    pub bad_signatures: u64,
+}
+
+impl Skipped {
+    /// Whether nothing was skipped.
+    pub fn is_empty(&self) -> bool {
+        *self == Skipped::default()
+    }
+}
+
+/// Why a whole packet is not taken.
+enum Refusal {
+    /// It is signed, and there is no key.
+    Signed,
+    #[cfg(feature = "mavlink")]
+    Unsigned,
+    #[cfg(feature = "mavlink")]
+    NotGenuine,
+}
+
+/// Bytes as they arrive, and the packets in them.
+///
+/// Its memory is bounded by the largest piece that was pushed and one packet.
+///
+/// # Example: a packet that arrives in pieces
+/// ```
+/// let heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
+/// let mut stream = flagred_flightlog::mavlink::Stream::new();
+/// stream.push(b"noise");
+/// stream.push(&heartbeat[..8]);
+/// assert!(stream.packet().is_none());
+/// stream.push(&heartbeat[8..]);
+/// assert_eq!(stream.packet().map(|packet| packet.id), Some(0));
+/// assert_eq!(stream.skipped().bytes, 5);
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct Stream {
+    buffer: Vec<u8>,
+    taken: usize,
+    skipped: Skipped,
+    #[cfg(feature = "mavlink")]
+    key: Option<super::Key>,
+}
+
+impl Stream {
+    /// A stream that starts here.
+    pub fn new() -> Stream {
+        Stream::default()
+    }
+
+    /// A stream of which only packets are taken that are signed with a key.
+    #[cfg(feature = "mavlink")]
+    pub fn with_key(key: super::Key) -> Stream {
+        Stream {
+            key: Some(key),
+            ..Stream::default()
+        }
+    }
+
+    /// Adds the bytes that arrived.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.buffer.drain(..self.taken.min(self.buffer.len()));
+        self.taken = 0;
+        self.buffer.extend_from_slice(bytes);
+    }
+
+    /// Returns the next packet; `None` until more bytes arrive. Signed packets are counted and skipped, or with a key those
+    /// that are not genuine.
+    ///
+    /// A packet with an unknown message is returned, too, for recording: [`Packet::sound`] is `None`, as its checksum cannot
+    /// be verified.
+    pub fn packet(&mut self) -> Option<Packet<'_>> {
+        let length = loop {
+            match next_packet(self.buffer.get(self.taken..)?) {
+                Next::Packet(packet) | Next::Unverified(packet) => {
+                    let length = packet.bytes.len();
+                    let is_unverified = packet.sound.is_none();
+                    match self.refusal(&packet) {
+                        None => {
+                            self.skipped.unknown += u64::from(is_unverified);
+                            break length;
+                        }
+                        Some(Refusal::Signed) => self.skipped.signed += 1,
+                        #[cfg(feature = "mavlink")]
+                        Some(Refusal::Unsigned) => self.skipped.unsigned += 1,
+                        #[cfg(feature = "mavlink")]
+                        Some(Refusal::NotGenuine) => self.skipped.bad_signatures += 1,
+                    }
+                    self.taken += length;
+                }
+                Next::Skip(count, why) => {
+                    match why {
+                        Why::NoPacket => {}
+                        Why::Checksum => self.skipped.checksums += 1,
+                        Why::UnknownFlags(_) => self.skipped.unknown += 1,
+                    }
+                    self.skipped.bytes += count as u64;
+                    self.taken += count;
+                }
+                Next::More => return None,
+            }
+        };
+        let start = self.taken;
+        self.taken += length;
+        match next_packet(self.buffer.get(start..self.taken)?) {
+            Next::Packet(packet) | Next::Unverified(packet) => Some(packet),
+            _ => None,
+        }
+    }
+
+    fn refusal(&self, packet: &Packet<'_>) -> Option<Refusal> {
+        #[cfg(feature = "mavlink")]
+        if let Some(key) = &self.key {
+            return match packet.is_signed {
+                false => Some(Refusal::Unsigned),
+                true => (!key.verify(packet)).then_some(Refusal::NotGenuine),
+            };
+        }
+        packet.is_signed.then_some(Refusal::Signed)
+    }
+
+    /// Ends a datagram: discards a partial packet.
+    pub fn end(&mut self) {
+        self.skipped.bytes += self.buffer.len().saturating_sub(self.taken) as u64;
+        self.buffer.clear();
+        self.taken = 0;
+    }
+
+    /// What was skipped since the stream began.
+    pub fn skipped(&self) -> Skipped {
+        self.skipped
+    }
+}

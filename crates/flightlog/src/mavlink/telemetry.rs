@@ -1,0 +1,416 @@
+//! What the packets of one vehicle tell about its motors.
+
+use super::{
+    Packet, Setup, Version,
+    decoder::{AUTOPILOT, Decoder, Payload, ServoOutputs, Told, filled, number},
+    servo::OUTPUTS_A_PORT,
+    setup::missing,
+};
+use crate::{
+    Parameter, PulseRange, Vehicle,
+    clock::{Checked, Clock, seconds_of},
+    field::Kind,
+};
+
+const ATTITUDE: u32 = 30;
+const COMMAND_ACK: u32 = 77;
+/// MAV_CMD_SET_MESSAGE_INTERVAL, and the MAV_RESULT of a command that is accepted.
+const SET_MESSAGE_INTERVAL: f64 = 511.0;
+const ACCEPTED: f64 = 0.0;
+
+/// Messages of which a certain rate is wanted: motor commands, attitude and the landed state.
+pub(super) const RATED: [u32; 3] = [36, ATTITUDE, 245];
+
+/// Ports of SERVO_OUTPUT_RAW: the second has ArduPilot's outputs from 17 on, and PX4's AUX outputs.
+const PORTS: usize = 2;
+/// The pulses of all outputs at a time, in us.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pulses(pub(super) [[u16; OUTPUTS_A_PORT]; PORTS]);
+
+/// The latest pulses of each port, and whether they came since commands were last told.
+type Outputs = [([u16; OUTPUTS_A_PORT], bool); PORTS];
+const NO_OUTPUTS: Outputs = [([u16::MAX; OUTPUTS_A_PORT], false); PORTS];
+
+/// A landed state older than this, in seconds, is not believed over idle motors.
+const LANDED_FRESH_S: f64 = 1.5;
+
+/// A clock that jumps is believed only where the one before has been silent for so long, in seconds.
+const CLOCK_SILENT_S: f64 = 2.0;
+
+/// A clock of a live vehicle, and when its latest accepted stamp came.
+#[derive(Debug, Default)]
+struct LiveClock {
+    clock: Clock,
+    heard_s: Option<f64>,
+    /// The latest stamp as it came: a packet that comes twice is no witness of itself.
+    stamp: Option<u32>,
+}
+
+/// What a packet changed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum News {
+    /// Nothing that matters here.
+    Nothing,
+    /// A parameter became known.
+    Parameter,
+    /// New motor commands, at this time in seconds since the vehicle booted.
+    Commands {
+        /// The time.
+        t_s: f64,
+    },
+    /// The vehicle booted again: all that was known of it is forgotten, and this packet with it.
+    Rebooted,
+}
+
+/// Follows one vehicle by its packets.
+///
+/// # Example: from a heartbeat to motor commands
+/// ```
+/// use flagred_flightlog::mavlink::{News, Next, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+///
+/// // The autopilot of an armed quadrotor, in place of a link.
+/// let mut autopilot = Sender::new(1);
+/// let mut send = |message: MavMessage| autopilot.packet(Version::V2, 1, &message);
+/// let heartbeat = send(MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+///     mavtype: MavType::MAV_TYPE_QUADROTOR,
+///     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+///     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+///     system_status: MavState::MAV_STATE_ACTIVE,
+///     ..HEARTBEAT_DATA::default()
+/// }));
+///
+/// let Next::Packet(packet) = next_packet(&heartbeat) else { panic!("no packet") };
+/// let vehicle = vehicle_of(&packet).unwrap();
+/// let mut telemetry = Telemetry::new(&packet, vehicle);
+/// assert!(telemetry.is_armed() && telemetry.is_in_air());
+///
+/// let mut news = News::Nothing;
+/// for i in 1..=10 {
+///     let outputs = send(MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
+///         time_usec: 40_000 * i,
+///         servo1_raw: 1550, servo2_raw: 1550, servo3_raw: 1550, servo4_raw: 1950,
+///         ..SERVO_OUTPUT_RAW_DATA::default()
+///     }));
+///     let Next::Packet(packet) = next_packet(&outputs) else { panic!("no packet") };
+///     news = telemetry.receive(&packet, 0.04 * f64::from(i));
+/// }
+/// assert!(matches!(news, News::Commands { t_s } if (t_s - 0.4).abs() < 1e-9));
+///
+/// // No parameter came, so limits are assumed, and said to be.
+/// let setup = telemetry.setup();
+/// assert!(setup.assumed.contains(&"commands from 1000 to 2000 us".to_string()));
+/// let mut commands = [0.0; 4];
+/// telemetry.effective_commands(&setup, &mut commands);
+/// assert_eq!(commands[3], 1.0); // motor 4 is at its limit
+/// ```
+#[derive(Debug)]
+pub struct Telemetry {
+    system: u8,
+    vehicle: Vehicle,
+    version: Version,
+    decoder: Decoder,
+    parameters_changed: bool,
+    clock: LiveClock,
+    boot_clock: LiveClock,
+    clock_jumps: u64,
+    /// When a landed state came.
+    landed_state_s: Option<f64>,
+    outputs: Outputs,
+    /// The port that completes the commands of all motors.
+    last_port: usize,
+    seen: [u64; RATED.len()],
+    has_commands: bool,
+    interval_refused: bool,
+    rate_asker: Option<(u8, u8)>,
+    /// The range of motor outputs where the vehicle does not report it.
+    given: Option<PulseRange>,
+}
+
+impl Telemetry {
+    /// Starts from the heartbeat that [`vehicle_of`](super::vehicle_of) identified the vehicle by.
+    pub fn new(heartbeat: &Packet<'_>, vehicle: Vehicle) -> Telemetry {
+        let mut decoder = Decoder::live();
+        decoder.message(heartbeat.component, heartbeat.id, &filled(heartbeat));
+        Telemetry {
+            system: heartbeat.system,
+            vehicle,
+            version: heartbeat.version,
+            decoder,
+            parameters_changed: false,
+            clock: LiveClock::default(),
+            boot_clock: LiveClock::default(),
+            clock_jumps: 0,
+            landed_state_s: None,
+            outputs: NO_OUTPUTS,
+            last_port: 0,
+            seen: [0; RATED.len()],
+            has_commands: false,
+            interval_refused: false,
+            rate_asker: None,
+            given: None,
+        }
+    }
+
+    /// Uses the given range of motor outputs instead of an assumed one until the vehicle reports its own.
+    #[must_use]
+    pub fn with_range(self, given: Option<PulseRange>) -> Telemetry {
+        Telemetry { given, ..self }
+    }
+
+    /// Whether the vehicle reports a range of its own where one was given.
+    pub fn ignores_range(&self, setup: &Setup) -> bool {
+        self.given.is_some_and(|given| given.range() != setup.range)
+    }
+
+    /// The system it follows.
+    pub fn system(&self) -> u8 {
+        self.system
+    }
+
+    /// The vehicle as its heartbeat describes it.
+    pub fn vehicle(&self) -> &Vehicle {
+        &self.vehicle
+    }
+
+    /// The version of the protocol of its latest heartbeat.
+    pub fn version(&self) -> Version {
+        self.version
+    }
+
+    /// Whether the motors are armed.
+    pub fn is_armed(&self) -> bool {
+        self.decoder.is_armed()
+    }
+
+    /// Whether it is in the air: by EXTENDED_SYS_STATE, without it by the state in the heartbeats of ArduPilot (active
+    /// in the air, on standby while landed). A vehicle that does not tell is in the air while it is armed.
+    pub fn is_in_air(&self) -> bool {
+        self.decoder.is_in_air_or_armed()
+    }
+
+    /// Whether it reports at `now_s` of the receiver's clock that it is in the air; `None` where it only is armed, where its
+    /// landed state (EXTENDED_SYS_STATE) is older than 1.5 s, and while its motors are stopped on purpose.
+    pub fn reported_in_air(&self, now_s: f64) -> Option<bool> {
+        let is_fresh = |heard_s: f64| now_s - heard_s <= LANDED_FRESH_S;
+        match self.is_in_air() {
+            false => Some(false),
+            true => (self.decoder.reports_flight() && self.landed_state_s.is_some_and(is_fresh))
+                .then_some(true),
+        }
+    }
+
+    /// Whether it ever sent motor outputs (SERVO_OUTPUT_RAW).
+    pub fn has_commands(&self) -> bool {
+        self.has_commands
+    }
+
+    /// How many of each message in [`RATED`] came so far.
+    pub(super) fn seen(&self) -> [u64; RATED.len()] {
+        self.seen
+    }
+
+    /// The system and component of the latest other station whose MAV_CMD_SET_MESSAGE_INTERVAL the vehicle accepted.
+    pub fn rate_asker(&self) -> Option<(u8, u8)> {
+        self.rate_asker
+    }
+
+    /// Whether it refused MAV_CMD_SET_MESSAGE_INTERVAL.
+    pub(super) fn interval_refused(&self) -> bool {
+        self.interval_refused
+    }
+
+    /// The value of a parameter; `None` while it is not known. What it is set to in the air counts from the landing on.
+    pub fn parameter(&self, name: &str) -> Option<f64> {
+        self.decoder.parameters.get(name)
+    }
+
+    /// Whether parameters came since this was last asked: then [`Telemetry::setup`] may have changed.
+    pub fn take_parameters_changed(&mut self) -> bool {
+        std::mem::take(&mut self.parameters_changed)
+    }
+
+    /// How many time stamps jumped while the clock before went on; these packets were left out.
+    pub fn clock_jumps(&self) -> u64 {
+        self.clock_jumps
+    }
+
+    /// Takes in a packet that came at `now_s` of the receiver's clock; those of other systems tell nothing.
+    ///
+    /// A clock that jumps, back or ahead, is believed once its old time has been silent for 2 s: a vehicle that reboots
+    /// falls silent, one that somebody else speaks for does not.
+    pub fn receive(&mut self, packet: &Packet<'_>, now_s: f64) -> News {
+        if packet.system != self.system {
+            return News::Nothing;
+        }
+        // The checksum of an unknown message cannot be verified: nothing may rest on its content.
+        if packet.sound.is_none() {
+            return News::Nothing;
+        }
+        let payload = filled(packet);
+        if packet.component == AUTOPILOT {
+            self.count(packet.id, &payload, now_s);
+        }
+        let told = self.decoder.message(packet.component, packet.id, &payload);
+        if told == Told::Parameter || self.decoder.take_changed() {
+            self.parameters_changed = true;
+            self.last_port = self.setup().last_port().min(PORTS - 1);
+        }
+        match told {
+            Told::Parameter => return News::Parameter,
+            Told::Outputs(outputs) => return self.command(&outputs, now_s),
+            Told::State if packet.id == 0 => self.version = packet.version,
+            Told::Nothing if packet.component == AUTOPILOT => {
+                return self.other(packet.id, &payload, now_s);
+            }
+            Told::State | Told::Text(_) | Told::Nothing => {}
+        }
+        News::Nothing
+    }
+
+    fn count(&mut self, id: u32, payload: &Payload, now_s: f64) {
+        if id == RATED[2] {
+            self.landed_state_s = Some(now_s);
+        }
+        self.has_commands |= id == RATED[0];
+        // The two ports of one row of commands are one.
+        let is_other_port = id == RATED[0] && usize::from(payload[20]) != self.last_port;
+        let index = RATED.iter().position(|&rated| rated == id);
+        if let Some(index) = index.filter(|_| !is_other_port) {
+            self.seen[index] += 1;
+        }
+    }
+
+    fn other(&mut self, id: u32, payload: &Payload, now_s: f64) -> News {
+        let number = |offset, kind| number(payload, offset, kind);
+        match id {
+            ATTITUDE => {
+                let boot_ms = number(0, Kind::U32).unwrap_or_default();
+                return self.check_boot(boot_ms as u32, now_s);
+            }
+            COMMAND_ACK if number(0, Kind::U16) == Some(SET_MESSAGE_INTERVAL) => {
+                let is_accepted = number(2, Kind::U8) == Some(ACCEPTED);
+                // To whom it is: 0 in version 1, and by vehicles that do not tell.
+                let (system, component) = (payload[8], payload[9]);
+                if system == 0 || system == self.system {
+                    self.interval_refused |= !is_accepted;
+                } else if is_accepted {
+                    self.rate_asker = Some((system, component));
+                }
+            }
+            _ => {}
+        }
+        News::Nothing
+    }
+
+    /// Attitude has a clock of its own, which goes on over 49 days where that of the commands starts over.
+    fn check_boot(&mut self, boot_ms: u32, now_s: f64) -> News {
+        let clock = &mut self.boot_clock;
+        if clock.stamp.replace(boot_ms) == Some(boot_ms) {
+            return News::Nothing;
+        }
+        clock.check(f64::from(boot_ms) * 1e-3, now_s, &mut self.clock_jumps);
+        match clock.clock.boots_s() {
+            [] => News::Nothing,
+            _ => self.forget(),
+        }
+    }
+
+    fn command(&mut self, outputs: &ServoOutputs, now_s: f64) -> News {
+        let port = usize::from(outputs.port);
+        if port >= PORTS {
+            return News::Nothing;
+        }
+        if port != self.last_port {
+            // Those of the motors at hand follow, with the same time.
+            self.outputs[port] = (outputs.pulses_us, true);
+            return News::Nothing;
+        }
+        let clock = &mut self.clock;
+        if clock.stamp.replace(outputs.time_us) == Some(outputs.time_us) {
+            return News::Nothing;
+        }
+        let t_s = seconds_of(outputs.time_us, clock.clock.now_s());
+        let Some(t_s) = clock.check(t_s, now_s, &mut self.clock_jumps) else {
+            return News::Nothing;
+        };
+        if !clock.clock.boots_s().is_empty() {
+            return self.forget();
+        }
+        self.outputs[port] = (outputs.pulses_us, true);
+        for (pulses, is_new) in &mut self.outputs {
+            // What did not come again is not known any more.
+            if !std::mem::take(is_new) {
+                *pulses = [u16::MAX; OUTPUTS_A_PORT];
+            }
+        }
+        News::Commands { t_s }
+    }
+
+    fn forget(&mut self) -> News {
+        self.decoder.boot();
+        self.clock = LiveClock::default();
+        self.boot_clock = LiveClock::default();
+        self.landed_state_s = None;
+        self.outputs = NO_OUTPUTS;
+        self.interval_refused = false;
+        self.rate_asker = None;
+        self.last_port = 0;
+        News::Rebooted
+    }
+
+    /// Motors and ranges from what is known; what is not is assumed, and said to be.
+    pub fn setup(&self) -> Setup {
+        Setup::of(
+            &self.decoder.parameters,
+            &self.vehicle,
+            self.decoder.is_px4(),
+            self.given,
+        )
+    }
+
+    /// The parameters that motors and ranges rest on, and gains, as far as they were told.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        self.decoder.parameters.of_motors("PARAM_VALUE")
+    }
+
+    /// The parameters that motors and their range depend on, that are not known yet, and that the vehicle did not report not
+    /// to have.
+    pub(super) fn missing_parameters(&self) -> Vec<String> {
+        let mut names = missing(
+            &self.decoder.parameters,
+            &self.vehicle,
+            self.decoder.is_px4(),
+        );
+        names.retain(|name| !self.decoder.is_absent(name));
+        names
+    }
+
+    /// The latest pulses of all outputs, for [`Setup::effective_commands`].
+    pub fn pulses(&self) -> Pulses {
+        let [(first, _), (second, _)] = self.outputs;
+        Pulses([first, second])
+    }
+
+    /// The latest commands on the effective range, 0..1, a value a motor; NaN where it is not known.
+    pub fn effective_commands(&self, setup: &Setup, commands: &mut [f64]) {
+        setup.effective_commands(&self.pulses(), commands);
+    }
+}
+
+impl LiveClock {
+    /// The time of a stamp, where it can be believed.
+    fn check(&mut self, t_s: f64, now_s: f64, jumps: &mut u64) -> Option<f64> {
+        let is_alive = |heard_s: f64| now_s - heard_s < CLOCK_SILENT_S;
+        if !self.clock.is_next(t_s) && self.heard_s.is_some_and(is_alive) {
+            *jumps += 1;
+            return None;
+        }
+        let t_s = match self.clock.check(t_s) {
+            Checked::At(t_s) | Checked::Refuted(t_s) | Checked::Confirmed(_, t_s) => t_s,
+            Checked::Wait | Checked::RefutedWait => return None,
+        };
+        self.heard_s = Some(now_s);
+        Some(t_s)
+    }
+}

@@ -1,0 +1,226 @@
+//! Detects the format of a log by its content and calls the reader of that format.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use crate::error::{self, TEXT, UNNAMED, io_error};
+use crate::input::Input;
+use crate::{Commands, Flight, PulseRange, Range, ReadError, csv, dataflash, geometry, tlog, ulog};
+
+/// What to read.
+///
+/// # Example: one signal of many
+/// ```
+/// use flagred_flightlog::Options;
+///
+/// let log = "t_s,motor1,roll_deg,wind_m_s\n0,0.4,0.3,5\n";
+/// let mut only_wind = Options::default();
+/// only_wind.signals = Some(vec!["wind_m_s".into()]);
+/// let flight = flagred_flightlog::read(log.as_bytes(), &only_wind)?;
+/// assert!(flight.signal("wind_m_s").is_some() && flight.signal("roll_deg").is_none());
+/// # Ok::<(), flagred_flightlog::ReadError>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Options {
+    /// Names of the signals to keep; `None` keeps all. Motor commands, armed and in-air
+    /// times, modes and messages are always read, and the [`Report`](crate::Report) is the
+    /// same whatever is kept.
+    pub signals: Option<Vec<String>>,
+    /// Range of the motor outputs, for a log that does not report it, such as a telemetry log
+    /// without parameters. The flight's [`assumed`](Flight::assumed) names this range. A log that
+    /// reports a range of its own, or has commands above this one, is refused
+    /// ([`ReadError::Range`]).
+    pub range: Option<PulseRange>,
+}
+
+impl Options {
+    /// Whether the signal `name` is to be kept.
+    fn keeps(&self, name: &str) -> bool {
+        self.signals
+            .as_ref()
+            .is_none_or(|names| names.iter().any(|wanted| wanted == name))
+    }
+
+    /// The range of motor outputs: that of the log, else the given one.
+    pub(crate) fn range_or_given(&self, own: Option<Range>) -> Option<Range> {
+        own.or_else(|| self.range.map(PulseRange::range))
+    }
+
+    /// Whether the signal `name` is to be read: to be kept, or for the geometry.
+    pub(crate) fn wants(&self, name: &str) -> bool {
+        self.keeps(name) || geometry::infer::SIGNALS.contains(&name)
+    }
+}
+
+/// Reads the log at `path`; `-` is standard input. The content decides the format, not the
+/// name, and it may be gzipped.
+///
+/// # Errors
+///
+/// When there is no such file, when it is empty, or when it is not a flight log. A damaged
+/// log is not an error: see [`Flight::report`].
+///
+/// # Example
+/// ```no_run
+/// let flight = flagred_flightlog::open("flight.bin", &flagred_flightlog::Options::default())?;
+/// for motor in &flight.motors {
+///     println!("motor {}: output {} ({})", motor.number, motor.output, motor.source);
+/// }
+/// println!("in the air: {:?}", flight.in_air);
+/// # Ok::<(), flagred_flightlog::ReadError>(())
+/// ```
+pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Flight, ReadError> {
+    let path = path.as_ref();
+    if path == Path::new("-") {
+        return read(io::stdin().lock(), options)
+            .map_err(|error| error.with_path("standard input"));
+    }
+    let name = path.display().to_string();
+    let file = File::open(path).and_then(|file| match file.metadata()?.is_dir() {
+        true => Err(io::ErrorKind::IsADirectory.into()),
+        false => Ok(file),
+    });
+    match file {
+        Ok(file) => read(file, options).map_err(|error| error.with_path(&name)),
+        Err(source) => Err(ReadError::Io { path: name, source }),
+    }
+}
+
+/// Reads a log from any source of bytes, once and from front to back.
+///
+/// # Errors
+///
+/// As [`open`].
+///
+/// ```
+/// let log = "# vehicle: my quad\nt_s,motor1,motor2,motor3,motor4\n0.0,0.4,0.4,0.5,0.5\n";
+/// let flight = flagred_flightlog::read(log.as_bytes(), &flagred_flightlog::Options::default())?;
+/// assert_eq!(flight.motors.len(), 4);
+/// # Ok::<(), flagred_flightlog::ReadError>(())
+/// ```
+pub fn read(source: impl Read, options: &Options) -> Result<Flight, ReadError> {
+    let mut input = Input::new(Box::new(source), false);
+    let (start, _) = input.window().map_err(io_error)?;
+    if start.starts_with(&[0x1f, 0x8b]) {
+        let unpacked = flate2::read::MultiGzDecoder::new(input.into_rest());
+        input = Input::new(Box::new(unpacked), true);
+    }
+    read_unpacked(&mut input, options)
+}
+
+/// Shorter times on the ground between two in the air are chatter of the land detector.
+const SHORTEST_LANDING_S: f64 = 1.0;
+
+fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, ReadError> {
+    let (start, _) = input.window().map_err(io_error)?;
+    let mut flight = match sniff(start) {
+        Content::DataFlash => dataflash::read(input, options).map_err(io_error)?,
+        Content::DataFlashText => dataflash::text::read(input, options).map_err(io_error)?,
+        Content::ULog => ulog::read(input, options).map_err(io_error)?,
+        Content::Tlog => tlog::read(input, options).map_err(io_error)?,
+        Content::Csv => csv::read(input, options)?,
+        Content::Empty => {
+            return Err(ReadError::Empty {
+                path: UNNAMED.into(),
+            });
+        }
+        Content::Sdlog2 => {
+            return Err(ReadError::NotRead {
+                path: UNNAMED.into(),
+                what: error::SDLOG2.into(),
+            });
+        }
+        Content::Other(what) => {
+            return Err(ReadError::NotALog {
+                path: UNNAMED.into(),
+                what: what.into(),
+            });
+        }
+    };
+    if let Some(given) = options.range {
+        given.apply(&mut flight)?;
+    }
+    flight.in_air = flight
+        .in_air
+        .map(|in_air| in_air.joined(SHORTEST_LANDING_S));
+    // Rows without any known value do not count.
+    if flight.commands.are_unknown() {
+        flight.commands = Commands::default();
+    }
+    for series in &mut flight.series {
+        series.retain(|name| options.keeps(name));
+    }
+    flight.series.retain(|series| !series.is_empty());
+    flight.report.bytes = input.taken();
+    if let Some(failure) = input.failure() {
+        flight.report.truncated = true;
+        flight.report.reason = Some(failure.into());
+    }
+    Ok(flight)
+}
+
+enum Content {
+    DataFlash,
+    DataFlashText,
+    ULog,
+    Tlog,
+    Csv,
+    Empty,
+    Sdlog2,
+    Other(&'static str),
+}
+
+/// Signatures of files that people hand in by mistake.
+const OTHER_FILES: &[(&[u8], &str)] = &[
+    (b"\x89PNG", "a PNG picture"),
+    (b"\xff\xd8\xff", "a JPEG picture"),
+    (b"GIF8", "a GIF picture"),
+    (b"%PDF", "a PDF document"),
+    (b"PK\x03\x04", "a ZIP archive (unpack it first)"),
+    (b"7z\xbc\xaf", "a 7z archive (unpack it first)"),
+    (b"\x28\xb5\x2f\xfd", "a zstd archive (unpack it first)"),
+    (b"\xfd7zXZ", "an xz archive (unpack it first)"),
+    (b"BZh", "a bzip2 archive (unpack it first)"),
+    (b"\x7fELF", "a program"),
+    (b"<!DOCTYPE", "a web page"),
+    (b"<html", "a web page"),
+    (b"version https://git-lfs", "a git-lfs pointer"),
+];
+
+/// The label of the only field of sdlog2's messages of time.
+const SDLOG2: &[u8] = b"StartTime\0";
+
+/// The content of a log from its first bytes; where those are damaged, from what follows.
+fn sniff(start: &[u8]) -> Content {
+    if start.is_empty() {
+        return Content::Empty;
+    }
+    if let Some((_, what)) = OTHER_FILES.iter().find(|(sign, _)| start.starts_with(sign)) {
+        return Content::Other(what);
+    }
+    if dataflash::looks_like(start) {
+        // PX4 before ULog logged in the same encoding, with messages of its own.
+        return match start.windows(SDLOG2.len()).any(|bytes| bytes == SDLOG2) {
+            true => Content::Sdlog2,
+            false => Content::DataFlash,
+        };
+    }
+    if ulog::looks_like(start) {
+        return Content::ULog;
+    }
+    if tlog::looks_like(start) {
+        return Content::Tlog;
+    }
+    if dataflash::text::looks_like(start) {
+        return Content::DataFlashText;
+    }
+    if csv::looks_like(start) {
+        return Content::Csv;
+    }
+    match std::str::from_utf8(&start[..start.len().min(1024)]) {
+        Err(error) if error.error_len().is_some() => Content::Other("an unknown binary file"),
+        _ => Content::Other(TEXT),
+    }
+}

@@ -1,0 +1,308 @@
+//! Signals: named values over time, each group of them on a time base of its own.
+
+/// Name, unit and source of a signal.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Label {
+    /// Name with the unit in it, such as `roll_deg`.
+    pub name: String,
+    /// Unit, such as `deg`; empty when the value has none or none is known.
+    pub unit: String,
+    /// Where it came from, such as `ATT.Roll`.
+    pub source: String,
+}
+
+/// Signals that share one time base, as the fields of one log message do.
+///
+/// A value that is not known at some time is stored as NaN; [`Signal::at`] and
+/// [`Hold::at`] give `None` for it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Series {
+    t_s: Vec<f64>,
+    labels: Vec<Label>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Series {
+    pub(crate) fn new(labels: Vec<Label>) -> Self {
+        let columns = labels.iter().map(|_| Vec::new()).collect();
+        Self {
+            t_s: Vec::new(),
+            labels,
+            columns,
+        }
+    }
+
+    /// Moves all rows in time.
+    pub(crate) fn shift(&mut self, by_s: f64) {
+        self.t_s.iter_mut().for_each(|t_s| *t_s += by_s);
+    }
+
+    /// Adds one row; `values` are in the order of the labels. `true` tells that a row was
+    /// dropped, this or the last: see [`Order`].
+    pub(crate) fn push(&mut self, t_s: f64, values: impl IntoIterator<Item = f64>) -> bool {
+        let order = Order::of(&self.t_s, t_s);
+        match order {
+            Order::Last => {}
+            Order::Replaces => {
+                self.t_s.pop();
+                for column in &mut self.columns {
+                    column.pop();
+                }
+            }
+            Order::Back => return true,
+        }
+        self.t_s.push(t_s);
+        let mut values = values.into_iter();
+        for column in &mut self.columns {
+            column.push(values.next().unwrap_or(f64::NAN));
+        }
+        order != Order::Last
+    }
+
+    /// Times of the rows, in seconds on the log's clock, never decreasing.
+    pub fn t_s(&self) -> &[f64] {
+        &self.t_s
+    }
+
+    /// The signals of this series.
+    pub fn signals(&self) -> impl Iterator<Item = Signal<'_>> {
+        self.labels
+            .iter()
+            .zip(&self.columns)
+            .map(|(label, values)| Signal {
+                label,
+                t_s: &self.t_s,
+                values,
+            })
+    }
+
+    /// Whether it has no signals.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.labels.is_empty()
+    }
+
+    /// Keeps the signals whose names satisfy `keep`.
+    pub(crate) fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
+        let labels = std::mem::take(&mut self.labels);
+        let columns = std::mem::take(&mut self.columns);
+        let kept = labels.into_iter().zip(columns);
+        (self.labels, self.columns) = kept.filter(|(label, _)| keep(&label.name)).unzip();
+    }
+}
+
+/// Series in the order of preference for their signals: of signals with the same name the
+/// first stays, and series without rows or signals go.
+pub(crate) fn preferred(mut series: Vec<Series>) -> Vec<Series> {
+    let mut names = std::collections::BTreeSet::new();
+    series.retain(|series| !series.t_s.is_empty());
+    for series in &mut series {
+        series.retain(|name| names.insert(name.to_owned()));
+    }
+    series.retain(|series| !series.is_empty());
+    series
+}
+
+/// One signal: what it is, when, and its values.
+#[derive(Debug, Clone, Copy)]
+pub struct Signal<'a> {
+    /// Name, unit and source.
+    pub label: &'a Label,
+    /// Times in seconds on the log's clock, never decreasing.
+    pub t_s: &'a [f64],
+    /// One value for each time; NaN where it is not known.
+    pub values: &'a [f64],
+}
+
+impl<'a> Signal<'a> {
+    /// The latest value at or before `t_s` (zero-order hold); `None` before the first
+    /// sample and where the value is not known.
+    pub fn at(&self, t_s: f64) -> Option<f64> {
+        let after = self.t_s.partition_point(|&t| t <= t_s);
+        let value = *self.values.get(after.checked_sub(1)?)?;
+        value.is_finite().then_some(value)
+    }
+
+    /// A cursor for reading the signal at times that only go forward.
+    pub fn hold(&self) -> Hold<'a> {
+        Hold {
+            t_s: self.t_s,
+            values: self.values,
+            after: 0,
+        }
+    }
+
+    /// Samples a second without pauses; `None` under two samples.
+    pub fn rate_hz(&self) -> Option<f64> {
+        rate_hz(self.t_s)
+    }
+}
+
+/// Zero-order hold over a signal for times that only go forward: one pass over the
+/// signal in all, however many times are asked for.
+///
+/// # Example: the roll angle at each motor sample
+///
+/// ```
+/// let log = "t_s,motor1,roll_deg\n0.0,0.4,1.5\n0.1,0.5,2.5\n";
+/// let flight = flagred_flightlog::read(log.as_bytes(), &flagred_flightlog::Options::default())?;
+/// let mut roll = flight.signal("roll_deg").map(|signal| signal.hold());
+/// let held: Vec<_> = flight
+///     .commands
+///     .rows()
+///     .map(|(t_s, _)| roll.as_mut().and_then(|hold| hold.at(t_s)))
+///     .collect();
+/// assert_eq!(held, [Some(1.5), Some(2.5)]);
+/// # Ok::<(), flagred_flightlog::ReadError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Hold<'a> {
+    t_s: &'a [f64],
+    values: &'a [f64],
+    after: usize,
+}
+
+impl Hold<'_> {
+    /// The latest value at or before `t_s`; `t_s` must not be before that of the last call.
+    pub fn at(&mut self, t_s: f64) -> Option<f64> {
+        while self.t_s.get(self.after).is_some_and(|&t| t <= t_s) {
+            self.after += 1;
+        }
+        let value = *self.values.get(self.after.checked_sub(1)?)?;
+        value.is_finite().then_some(value)
+    }
+}
+
+/// The order of a row and the rows before it. Times never go back: where one does, either it
+/// or the last before it is damaged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Order {
+    /// It comes last.
+    Last,
+    /// It fits once the last row, which was too far ahead, is dropped.
+    Replaces,
+    /// It goes back even then, and is dropped itself.
+    Back,
+}
+
+impl Order {
+    pub(crate) fn of(before_s: &[f64], t_s: f64) -> Self {
+        match before_s {
+            [.., before, last] if t_s < *last && t_s < *before => Self::Back,
+            [.., last] if t_s < *last => Self::Replaces,
+            _ => Self::Last,
+        }
+    }
+}
+
+/// A clock that goes back by more than this for two rows or more, in seconds, was set back or started again.
+pub(crate) const SET_BACK_S: f64 = 0.2;
+/// Times at which a clock was set back that are kept of a log.
+const MOST_SET_BACK: usize = 1000;
+
+/// Detects a clock that is set back. The rows that are dropped for it leave no gap in the times of the others.
+#[derive(Debug, Default)]
+pub(crate) struct SetBack {
+    /// The time of the row before, where it was dropped.
+    dropped_s: Option<f64>,
+    at_s: Vec<f64>,
+}
+
+impl SetBack {
+    /// Takes the order and the time of a row, and the time of the last row that was kept before it.
+    pub(crate) fn see(&mut self, order: Order, t_s: f64, last_s: Option<&f64>) {
+        if order != Order::Back {
+            self.dropped_s = None;
+            return;
+        }
+        let before_s = self.dropped_s.replace(t_s).filter(|s| *s <= t_s);
+        let last_s = last_s.filter(|last_s| **last_s - t_s > SET_BACK_S);
+        if let (Some(_), Some(last_s)) = (before_s, last_s)
+            && self.at_s.last() != Some(last_s)
+            && self.at_s.len() < MOST_SET_BACK
+        {
+            self.at_s.push(*last_s);
+        }
+    }
+
+    /// The last time before each step back.
+    pub(crate) fn at_s(&self) -> &[f64] {
+        &self.at_s
+    }
+
+    /// Moves all times.
+    pub(crate) fn shift(&mut self, by_s: f64) {
+        self.at_s.iter_mut().for_each(|t_s| *t_s += by_s);
+    }
+}
+
+/// Samples a second: the inverse of the mean time step, without pauses. A step is a pause
+/// when it is over 2 s and over ten times the median step. `None` without any step.
+pub(crate) fn rate_hz(t_s: &[f64]) -> Option<f64> {
+    let steps = || {
+        t_s.windows(2).filter_map(|pair| match pair {
+            [a, b] => Some(b - a),
+            _ => None,
+        })
+    };
+    let mut sorted: Vec<f64> = steps().collect();
+    let middle = sorted.len() / 2;
+    if sorted.is_empty() {
+        return None;
+    }
+    let (_, median, _) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
+    let longest = (10.0 * *median).max(2.0);
+    let within = || steps().filter(|step| *step <= longest);
+    let sum_s: f64 = within().sum();
+    (sum_s > 0.0).then(|| within().count() as f64 / sum_s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn series() -> Series {
+        let mut series = Series::new(vec![Label {
+            name: "x".into(),
+            unit: String::new(),
+            source: "test".into(),
+        }]);
+        for (t, x) in [(1.0, 10.0), (2.0, 20.0), (2.0, 21.0), (4.0, f64::NAN)] {
+            series.push(t, [x]);
+        }
+        series
+    }
+
+    #[test]
+    fn holds_the_latest_value() {
+        let series = series();
+        let signal = series.signals().next().unwrap();
+        let mut hold = signal.hold();
+        for (t, expected) in [
+            (0.5, None),
+            (1.0, Some(10.0)),
+            (1.9, Some(10.0)),
+            (2.0, Some(21.0)),
+            (3.9, Some(21.0)),
+            (4.0, None),
+            (9.0, None),
+        ] {
+            assert_eq!(signal.at(t), expected, "at {t}");
+            assert_eq!(hold.at(t), expected, "hold at {t}");
+        }
+    }
+
+    #[test]
+    fn pauses_do_not_count_in_the_rate_but_bursts_do() {
+        let close = |t_s: &[f64], expected: f64| {
+            let rate = rate_hz(t_s).unwrap();
+            assert!((rate - expected).abs() < 1e-9, "{rate} for {expected}");
+        };
+        close(&[0.0, 0.1, 0.2, 500.0], 10.0);
+        close(&[0.0, 0.01, 0.02, 1.0, 1.01, 1.02, 2.0], 3.0);
+        close(&[0.0, 10.0, 20.0], 0.1);
+        assert_eq!(rate_hz(&[1.0]), None);
+        assert_eq!(rate_hz(&[1.0, 1.0]), None);
+    }
+}

@@ -1,0 +1,211 @@
+//! Rule sets of other programs, in and out: FIS (MATLAB, Octave), FLL (fuzzylite), FCL (IEC 61131-7, jFuzzyLogic and
+//! fuzzylite) and FML (IEEE 1855).
+//!
+//! Text goes in and a [`fuzzy::Model`] comes out, and the other way round. What a format says and the model cannot carry is an
+//! error, unless losses are accepted; then it is a warning. No file is opened here.
+//!
+//! ```
+//! use flagred_interchange::{Format, Losses};
+//!
+//! let text = "
+//! Engine: fan
+//! InputVariable: heat
+//!   range: 0 40
+//!   term: low Ramp 20 10
+//!   term: high Ramp 20 30
+//! OutputVariable: speed
+//!   range: 0 9
+//!   aggregation: Maximum
+//!   defuzzifier: Centroid 100
+//!   term: slow Triangle 0 2 4
+//!   term: fast Triangle 5 7 9
+//! RuleBlock:
+//!   implication: Minimum
+//!   rule: if heat is low then speed is slow
+//!   rule: if heat is high then speed is fast
+//! ";
+//! assert_eq!(Format::of(text), Some(Format::Fll));
+//! let document = flagred_interchange::read(text, Format::Fll, Losses::Refuse)?;
+//! let engine = fuzzy::Engine::new(&document.model)?;
+//! assert!(engine.evaluate(&[28.0])?[0].value() > Some(6.0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use fuzzy::{Diagnostic, Findings, Model, format::Document};
+
+mod blocks;
+mod comments;
+mod conditions;
+mod draft;
+mod fcl;
+mod fis;
+mod fll;
+mod fml;
+mod formula;
+mod names;
+mod paper;
+mod rules;
+mod shapes;
+mod words;
+
+/// A format of rule sets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// MATLAB's Fuzzy Inference System, which Octave and fuzzylite write as well.
+    Fis,
+    /// fuzzylite's FuzzyLite Language, versions 5 to 7.
+    Fll,
+    /// Fuzzy Control Language, IEC 61131-7, in the dialects of jFuzzyLogic and fuzzylite.
+    Fcl,
+    /// Fuzzy Markup Language, IEEE 1855.
+    Fml,
+}
+
+/// What becomes of that which cannot be carried over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Losses {
+    /// It is an error: what is read or written gives the same answers, or there is nothing.
+    #[default]
+    Refuse,
+    /// It is left out with a warning, and the answers may be others.
+    Accept,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Format; 4] = [Format::Fis, Format::Fll, Format::Fcl, Format::Fml];
+
+    /// The ending of file names, in lower case: `fis`.
+    #[must_use]
+    pub fn ending(self) -> &'static str {
+        match self {
+            Format::Fis => "fis",
+            Format::Fll => "fll",
+            Format::Fcl => "fcl",
+            Format::Fml => "fml",
+        }
+    }
+
+    /// Its name: `FIS`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Fis => "FIS",
+            Format::Fll => "FLL",
+            Format::Fcl => "FCL",
+            Format::Fml => "FML",
+        }
+    }
+
+    /// The format of a text, told by what it begins with behind comments; `None` where it is none of them.
+    #[must_use]
+    pub fn of(text: &str) -> Option<Format> {
+        let text = comments::behind(text);
+        let starts = |word: &str| {
+            text.get(..word.len())
+                .is_some_and(|start| start.eq_ignore_ascii_case(word))
+        };
+        let roots = ["fuzzySystem", "fuzzyController"];
+        if starts("<") && roots.iter().any(|root| text.contains(root)) {
+            Some(Format::Fml)
+        } else if starts("[System]") {
+            Some(Format::Fis)
+        } else if starts("FUNCTION_BLOCK") || starts("VAR_INPUT") {
+            Some(Format::Fcl)
+        } else if starts("Engine:") {
+            Some(Format::Fll)
+        } else {
+            None
+        }
+    }
+}
+
+/// Reads a rule set of another program.
+///
+/// The spans of the document and of all findings are of `text`.
+///
+/// # Errors
+///
+/// All that keeps the text from being read, and what the model cannot carry where losses are refused.
+pub fn read(text: &str, format: Format, losses: Losses) -> Result<Document, Findings> {
+    match format {
+        Format::Fis => fis::read(text, losses),
+        Format::Fll => fll::read(text, losses),
+        Format::Fcl => fcl::read(text, None, losses),
+        Format::Fml => fml::read(text, losses),
+    }
+}
+
+/// Reads one function block of an FCL that has several, by its name.
+///
+/// # Errors
+///
+/// As [`read`]; and no function block has that name.
+pub fn read_block(text: &str, name: &str, losses: Losses) -> Result<Document, Findings> {
+    fcl::read(text, Some(name), losses)
+}
+
+/// Reads a rule set in whatever format it is: one of these, or YAML.
+///
+/// # Errors
+///
+/// As [`read`] without losses, and as [`fuzzy::yaml::parse`]; all that is wrong with the model.
+pub fn document(text: &str) -> Result<Document, Findings> {
+    let Some(format) = Format::of(text) else {
+        return fuzzy::yaml::parse(text);
+    };
+    let document = read(text, format, Losses::Refuse)?;
+    document.validate(text)?;
+    Ok(document)
+}
+
+/// What [`write()`] makes.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Written {
+    /// The rule set in the format.
+    pub text: String,
+    /// What the format says in another way, and what it cannot say where losses are accepted.
+    pub findings: Findings,
+}
+
+/// Writes a rule set for another program.
+///
+/// # Errors
+///
+/// What is wrong with the model, and what the format cannot say where losses are refused. What is left with losses must be a rule
+/// set, too: it is read back.
+pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, Findings> {
+    let invalid = fuzzy::validate(model, &fuzzy::format::Spans::default());
+    if !invalid.is_empty() {
+        return Err(Findings(invalid));
+    }
+    let written = match format {
+        Format::Fis => fis::write(model, losses),
+        Format::Fll => fll::write(model, losses),
+        Format::Fcl => fcl::write(model, losses),
+        Format::Fml => fml::write(model, losses),
+    }?;
+    let again = read(&written.text, format, losses);
+    match again.and_then(|document| document.validate(&written.text)) {
+        Ok(()) => Ok(written),
+        Err(Findings(unreadable)) => {
+            let what = unreadable.first().map_or("", |finding| &finding.message);
+            let message = format!(
+                "what {} can hold of it is not a rule set: {what}",
+                format.name()
+            );
+            let finding = Diagnostic::error("unreadable", 0..0, message);
+            let mut findings = written.findings;
+            findings
+                .0
+                .push(finding.help("change what the other findings name"));
+            Err(findings)
+        }
+    }
+}
+
+/// The example of the README, run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,227 @@
+//! What is written is read again, and gives the same values.
+
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail by panics, and tell what fails"
+)]
+
+use flagred_interchange::{Format, Losses};
+use fuzzy::{Engine, Model};
+
+/// Rule sets of this repository that formats can say.
+const SETS: [(&str, &str); 4] = [
+    (
+        "flagred",
+        include_str!("../../../rules/flagred.yaml"),
+    ),
+    (
+        "flagred-paper",
+        include_str!("../../../rules/flagred-paper.yaml"),
+    ),
+    ("takagi-sugeno", TAKAGI_SUGENO),
+    ("curves", CURVES),
+];
+
+const TAKAGI_SUGENO: &str = "
+fuzzy: 1
+name: tip
+inputs:
+  service: {range: [0, 10], terms: {poor: {gaussian: {mean: 0, sd: 2}}, good: {gaussian: {mean: 10, sd: 2}}}}
+  food: {range: [0, 10], partition: [bad, fair, fine]}
+outputs:
+  tip:
+    range: [0, 30]
+    defuzzifier: weighted_average
+    terms: {low: {constant: 5}, high: {linear: {service: 1.5, food: -0.25, constant: 8}}}
+operators: {and: product, or: probabilistic_sum}
+rules:
+  - IF service IS poor AND food IS bad THEN tip IS low
+  - IF service IS NOT poor OR food IS fine THEN tip IS high WITH 0.5
+";
+
+const CURVES: &str = "
+fuzzy: 1
+name: 'every curve'
+inputs:
+  'the x':
+    range: [0, 10]
+    terms:
+      low: {z_shape: [0, 5]}
+      middle: {pi_shape: [2, 4, 4, 6]}
+      high: {s_shape: [5, 10]}
+      'very': {trapezoid: [1, 2, 3, 4]}
+outputs:
+  y:
+    range: [0, 100]
+    samples: {midpoint: 1000}
+    terms:
+      low: {left_shoulder: [10, 40]}
+      middle: {triangle: [20, 50, 80]}
+      high: {piecewise: [[60, 0], [90, 1]]}
+rules:
+  - IF 'the x' IS low THEN y IS low
+  - IF 'the x' IS middle OR 'the x' IS very 'very' THEN y IS middle
+  - IF 'the x' IS high THEN y IS high
+";
+
+fn same_values(before: &Model, after: &Model, context: &str) {
+    let engines = [before, after]
+        .map(|model| Engine::new(model).unwrap_or_else(|f| panic!("{context}: {f}")));
+    let mut seed = 1_u64;
+    for _ in 0..500 {
+        let inputs: Vec<f64> = before
+            .inputs
+            .iter()
+            .map(|input| {
+                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                input.low + (input.high - input.low) * (seed >> 11) as f64 / (1_u64 << 53) as f64
+            })
+            .collect();
+        let [before, after] = engines
+            .each_ref()
+            .map(|engine| engine.evaluate(&inputs).unwrap());
+        for (before, after) in before.iter().zip(&after) {
+            let difference = match (before.value(), after.value()) {
+                (Some(before), Some(after)) => (before - after).abs(),
+                (before, after) => panic!("{context}: {inputs:?}: {before:?} {after:?}"),
+            };
+            assert!(
+                difference < 1e-9,
+                "{context}: {inputs:?}: {before:?} {after:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_written_is_read_again_and_gives_the_same_values() {
+    let mut refused = String::new();
+    for (name, text) in SETS {
+        let model: Model = text
+            .parse()
+            .unwrap_or_else(|findings| panic!("{name}: {findings}"));
+        for format in Format::ALL {
+            let context = format!("{name}.{}", format.ending());
+            let written = match flagred_interchange::write(&model, format, Losses::Refuse) {
+                Ok(written) => written,
+                Err(findings) => {
+                    refused.push_str(&format!("{context}\n{findings}\n"));
+                    continue;
+                }
+            };
+            assert_eq!(Format::of(&written.text), Some(format), "{context}");
+            let document = flagred_interchange::read(&written.text, format, Losses::Refuse)
+                .unwrap_or_else(|findings| panic!("{context}: {findings}\n{}", written.text));
+            let mut again = document.model;
+            if format == Format::Fll || model.outputs.iter().any(|output| output.samples.is_some())
+            {
+                for (before, after) in model.outputs.iter().zip(&mut again.outputs) {
+                    after.samples = before.samples;
+                }
+            }
+            same_values(&model, &again, &context);
+        }
+    }
+    insta::assert_snapshot!(refused);
+}
+
+/// A rule set of one rule for each term of the output.
+fn with_output(name: &str, output: &str) -> Model {
+    let text = format!(
+        "fuzzy: 1\nname: {name}\ninputs: {{x: {{range: [0, 1], partition: [low, high]}}}}\n\
+         outputs: {{y: {{range: [0, 1], {output}}}}}\n\
+         rules: [IF x IS low THEN y IS a, IF x IS high THEN y IS b]\n"
+    );
+    text.parse().unwrap_or_else(|findings| panic!("{findings}"))
+}
+
+const NUMBERS: &str =
+    "defuzzifier: weighted_average, terms: {a: {constant: -5}, b: {constant: 20}}";
+
+#[test]
+fn an_fcl_keeps_constants_outside_the_range() {
+    let model = with_output("outside", NUMBERS);
+    let written = flagred_interchange::write(&model, Format::Fcl, Losses::Refuse).unwrap();
+    assert!(
+        written.text.contains("RANGE := (-5 .. 20);"),
+        "{}",
+        written.text
+    );
+    let again = flagred_interchange::read(&written.text, Format::Fcl, Losses::Refuse).unwrap();
+    same_values(&model, &again.model, "outside");
+}
+
+#[test]
+fn names_of_rule_sets_are_written_so_that_they_can_be_read() {
+    for name in ["3d", "'my rules'", "var_input", "'1 + 1'", "größe"] {
+        let model = with_output(name, NUMBERS);
+        let written = flagred_interchange::write(&model, Format::Fcl, Losses::Refuse).unwrap();
+        let told = written.findings.to_string();
+        assert!(told.contains("renamed"), "{name}: {told}");
+        let again = flagred_interchange::read(&written.text, Format::Fcl, Losses::Refuse)
+            .unwrap_or_else(|findings| panic!("{findings}\n{}", written.text));
+        same_values(&model, &again.model, name);
+    }
+}
+
+/// A name that the format takes as it is stays, even where another one before it would become the same.
+#[test]
+fn valid_names_stay_beside_names_that_change() {
+    let text = "fuzzy: 1\nname: names\n\
+                inputs: {my temp: {range: [0, 1], partition: [too low, too_low]}, my_temp: {range: [0, 1], partition: [low, high]}}\n\
+                outputs: {y: {range: [0, 1], defuzzifier: weighted_average, terms: {low: {constant: 0}, high: {constant: 1}}}}\n\
+                rules:\n  - IF 'my temp' IS 'too low' AND my_temp IS low THEN y IS low\n  \
+                - IF 'my temp' IS too_low AND my_temp IS high THEN y IS high\n";
+    let model: Model = text.parse().unwrap_or_else(|findings| panic!("{findings}"));
+    for format in [Format::Fis, Format::Fll, Format::Fcl, Format::Fml] {
+        let written = flagred_interchange::write(&model, format, Losses::Accept)
+            .unwrap_or_else(|findings| panic!("{findings}"));
+        let again = flagred_interchange::read(&written.text, format, Losses::Refuse)
+            .unwrap_or_else(|findings| panic!("{findings}\n{}", written.text));
+        let [first, second] = &again.model.inputs[..] else {
+            panic!("{}", written.text);
+        };
+        assert_eq!(second.name, "my_temp", "{}", written.text);
+        assert_eq!(first.terms[1].name, "too_low", "{}", written.text);
+        same_values(&model, &again.model, "names");
+    }
+}
+
+#[test]
+fn what_no_format_can_carry_is_refused_even_where_losses_are_accepted() {
+    let tsukamoto =
+        "defuzzifier: tsukamoto, terms: {a: {left_shoulder: [0, 1]}, b: {right_shoulder: [0, 1]}}";
+    let model = with_output("tsukamoto", tsukamoto);
+    let refused = flagred_interchange::write(&model, Format::Fis, Losses::Accept).unwrap_err();
+    assert!(refused.to_string().contains("`tsukamoto`"), "{refused}");
+    let text = "fuzzy: 1\nname: chain\ninputs: {x: {range: [0, 1], partition: [low, high]}}\n\
+                outputs: {y: {range: [0, 1], partition: [low, high]}, \
+                z: {range: [0, 1], defuzzifier: weighted_average, terms: {a: {linear: {y: 2, constant: 1}}}}}\n\
+                rules: [IF x IS low THEN y IS low, IF x IS high THEN y IS high, IF x IS low THEN z IS a]\n";
+    let model: Model = text.parse().unwrap();
+    for format in [Format::Fis, Format::Fll, Format::Fml] {
+        let refused = flagred_interchange::write(&model, format, Losses::Accept).unwrap_err();
+        assert!(!refused.0.is_empty());
+        assert!(flagred_interchange::write(&model, format, Losses::Refuse).is_err());
+    }
+}
+
+#[test]
+fn what_means_something_else_elsewhere_is_a_loss() {
+    let mut model = with_output("weak", NUMBERS);
+    model.least_strength = 0.25;
+    let text = "fuzzy: 1\nname: chain\ninputs: {x: {range: [0, 1], partition: [low, high]}}\n\
+                outputs: {y: {range: [0, 1], partition: [low, high]}, z: {range: [0, 1], partition: [low, high]}}\n\
+                rules: [IF x IS low THEN y IS low, IF x IS high THEN y IS high, IF y IS high THEN z IS low]\n";
+    let chain: Model = text.parse().unwrap();
+    for format in Format::ALL {
+        let refused = flagred_interchange::write(&model, format, Losses::Refuse).unwrap_err();
+        assert_eq!(refused.0[0].code, "least-strength");
+        assert!(flagred_interchange::write(&model, format, Losses::Accept).is_ok());
+    }
+    let refused = flagred_interchange::write(&chain, Format::Fll, Losses::Refuse).unwrap_err();
+    assert!(refused.0.iter().any(|finding| finding.code == "chain"));
+}

@@ -1,0 +1,362 @@
+//! The curves of a report, and the data they are drawn from.
+
+use flagred::{
+    estimator::Estimator,
+    flight::{Assessment, Step},
+    profile::CRITICAL_ERROR_DEG,
+    verdict::{Level, Threshold},
+};
+use flagred_flightlog::{Flight, Options, Signal};
+use fuzzy::{
+    Model,
+    drawing::{Scale, number},
+};
+
+use crate::{
+    curve::{Stretch, path},
+    timeline::{Line, Mark, Panel, Phase, Size, Timeline},
+};
+
+/// The signals that a report draws besides those of the profile.
+pub const SIGNALS: [&str; 6] = [
+    "roll_des_deg",
+    "roll_deg",
+    "pitch_des_deg",
+    "pitch_deg",
+    "battery_v",
+    "battery_remaining_pct",
+];
+
+/// What is read of a log to assess it, and where it is drawn to draw it: only what is looked at is decoded.
+pub fn options(estimator: &Estimator, drawn: bool) -> Options {
+    let drawn = drawn.then_some(SIGNALS);
+    let mut signals: Vec<String> = estimator
+        .profile()
+        .signals()
+        .into_iter()
+        .chain(drawn.into_iter().flatten())
+        .map(str::to_owned)
+        .collect();
+    signals.sort_unstable();
+    let mut options = Options::default();
+    options.signals = Some(signals);
+    options
+}
+
+/// The scale of a percentage.
+const PERCENT: (Scale, &str) = (Scale::new(0.0, 100.0), "%");
+
+/// The most events that are drawn; the last one counts the others.
+const MOST_EVENTS: usize = 200;
+
+/// The stretch that is drawn: from the first take-off to the last landing, or the whole log where there is none.
+pub(crate) fn stretch(flight: &Flight) -> Stretch {
+    let air = flight.in_air.iter().flat_map(|air| &air.spans);
+    let hull = air
+        .map(|span| (span.start_s, span.end_s))
+        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let (start_s, end_s) = hull.or_else(|| flight.time_span_s()).unwrap_or((0.0, 1.0));
+    Stretch {
+        start_s,
+        end_s: end_s.max(start_s + 0.1),
+    }
+}
+
+/// The shortest stretch that is drawn, in seconds.
+const SHORTEST_S: f64 = 0.1;
+
+/// The part of a stretch that lies within another, which is no shorter than the shortest that is drawn.
+pub(crate) fn within(part: Stretch, whole: Stretch) -> Stretch {
+    let latest_s = (whole.end_s - SHORTEST_S).max(whole.start_s);
+    // What is no number gives way to the ends of the whole.
+    let start_s = part.start_s.max(whole.start_s).min(latest_s);
+    let end_s = part.end_s.min(whole.end_s).max(start_s + SHORTEST_S);
+    Stretch { start_s, end_s }
+}
+
+/// The flight modes, findings and events of a flight over a stretch of time, for all its curves.
+pub(crate) fn timeline(flight: &Flight, assessed: &Assessment, shown: Stretch) -> Timeline {
+    let whole = stretch(flight);
+    let stretch = Stretch {
+        start_s: shown.start_s.max(whole.start_s),
+        end_s: shown.end_s.min(whole.end_s),
+    };
+    let ends = flight.modes.iter().skip(1).map(|next| next.t_s());
+    let ends = ends.chain([f64::INFINITY]);
+    let mut kinds: Vec<&str> = Vec::new();
+    let mut phases: Vec<Phase> = Vec::new();
+    let mut more = 0;
+    for (mode, end_s) in flight.modes.iter().zip(ends) {
+        let span = |within: Stretch| Stretch {
+            start_s: mode.t_s().max(within.start_s),
+            end_s: end_s.min(within.end_s),
+        };
+        let is_some = |span: Stretch| span.end_s > span.start_s;
+        // Whatever part of the flight is shown, a mode has the same shade.
+        if is_some(span(whole)) && !kinds.contains(&mode.what.as_str()) {
+            kinds.push(&mode.what);
+        }
+        let span = span(stretch);
+        if is_some(span) && phases.len() == MOST_EVENTS {
+            more += 1;
+        } else if is_some(span) {
+            let kind = kinds.iter().position(|known| *known == mode.what);
+            phases.push(Phase {
+                stretch: span,
+                name: mode.what.clone(),
+                kind: kind.unwrap_or_default(),
+            });
+        }
+    }
+    if let Some(last) = phases.last_mut().filter(|_| more > 0) {
+        last.name = format!("and {} more flight modes", more + 1);
+        last.stretch.end_s = stretch.end_s;
+    }
+    // The gravest finding comes first; it is drawn last, on top of the others.
+    let findings = assessed.findings.iter().rev().map(|finding| {
+        let span = Stretch {
+            start_s: finding.from_s,
+            end_s: finding.to_s,
+        };
+        (span, level_class(finding.level))
+    });
+    let said = flight
+        .messages
+        .iter()
+        .map(|message| (message.t_s(), message.what.clone()));
+    let boots = flight.boots_s.iter();
+    let boots = boots.map(|t_s| (*t_s, "the autopilot rebooted".to_owned()));
+    let mut events: Vec<(f64, String)> = said
+        .chain(boots)
+        .filter(|(t_s, _)| stretch.contains(*t_s))
+        .collect();
+    events.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if events.len() > MOST_EVENTS {
+        let more = format!("and {} more events", events.len() - MOST_EVENTS + 1);
+        events.truncate(MOST_EVENTS - 1);
+        if let Some((t_s, _)) = events.last() {
+            events.push((*t_s, more));
+        }
+    }
+    Timeline {
+        stretch: shown,
+        phases,
+        alerts: findings.collect(),
+        events,
+    }
+}
+
+pub(crate) fn level_class(level: Level) -> &'static str {
+    match level {
+        Level::Good | Level::Info => "good",
+        Level::Warn => "warn",
+        Level::Fail => "fail",
+    }
+}
+
+/// The curve of one value of the steps.
+fn of_steps(
+    steps: &[Step],
+    stretch: Stretch,
+    gap_s: f64,
+    decimals: usize,
+    value: impl Fn(&Step) -> Option<f64>,
+) -> String {
+    let points = steps
+        .iter()
+        .map(|step| (step.t_s, value(step).unwrap_or(f64::NAN)));
+    path(points, stretch, gap_s, decimals)
+}
+
+/// A curve is broken where there is no sample for this long: five samples, at least the profile's longest gap.
+fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
+    let longest_gap_s = estimator.profile().sampling.longest_gap_s;
+    rate_hz.map_or(longest_gap_s, |rate_hz| longest_gap_s.max(5.0 / rate_hz))
+}
+
+/// Risk and elevated risk; `None` where no risk is known.
+pub(crate) fn risk(
+    assessed: &Assessment,
+    estimator: &Estimator,
+    stretch: Stretch,
+) -> Option<Panel> {
+    let gap_s = gap_s(estimator, None);
+    let draw =
+        |value: &dyn Fn(&Step) -> Option<f64>| of_steps(&assessed.steps, stretch, gap_s, 1, value);
+    let risk = draw(&|step| step.estimate.map(|estimate| estimate.risk_pct));
+    if risk.is_empty() {
+        return None;
+    }
+    let verdict = &estimator.profile().verdict;
+    let mark = |threshold: &Threshold, level| {
+        threshold.risk_pct.map(|risk_pct| Mark {
+            value: risk_pct,
+            class: level_class(level),
+            name: format!("{} from {} %", level, number(risk_pct, 1)),
+        })
+    };
+    let marks = [
+        mark(&verdict.warn.raise, Level::Warn),
+        mark(&verdict.fail.raise, Level::Fail),
+    ];
+    let elevated = draw(&|step| step.elevated_risk_pct);
+    let lines = vec![
+        Line::new("elevated", "elevated risk", elevated),
+        Line::new("risk", "risk", risk),
+    ];
+    Some(Panel {
+        marks: marks.into_iter().flatten().collect(),
+        ..Panel::new("Risk", PERCENT, Size::Large, lines)
+    })
+}
+
+/// The smallest distance of a motor from its lower and from its upper limit, and the mean margin.
+pub(crate) fn margins(
+    flight: &Flight,
+    assessed: &Assessment,
+    estimator: &Estimator,
+    stretch: Stretch,
+) -> Option<Panel> {
+    let gap_s = gap_s(estimator, flight.command_rate_hz());
+    let least = |side: &dyn Fn(f64) -> f64| {
+        let rows = flight.commands.rows().map(|(t_s, row)| {
+            let sides = row.iter().filter_map(|raw| flight.effective_command(*raw));
+            (t_s, sides.map(side).fold(f64::NAN, f64::min))
+        });
+        path(rows, stretch, gap_s, 3)
+    };
+    let low = least(&|e| e);
+    if low.is_empty() {
+        return None;
+    }
+    let mean = of_steps(&assessed.steps, stretch, gap_s, 3, |step| step.margin);
+    let lines = vec![
+        Line::new("mean", "mean margin", mean),
+        Line::new("low", "to its lower limit", low),
+        Line::new("high", "to its upper limit", least(&|e| 1.0 - e)),
+    ];
+    let scale = (Scale::new(0.0, 1.0), "");
+    Some(Panel::new(
+        "Margin of the nearest motor",
+        scale,
+        Size::Medium,
+        lines,
+    ))
+}
+
+/// The command of each motor on its full range; the parts outside the effective range are shaded.
+pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
+    let gap_s = gap_s(estimator, flight.command_rate_hz());
+    let limits = &flight.effective;
+    let limit = |share: f64| Mark {
+        value: share * 100.0,
+        class: "limit",
+        name: String::new(),
+    };
+    let panel = |(i, motor): (usize, &flagred_flightlog::Motor)| {
+        let rows = flight.commands.rows().map(|(t_s, row)| {
+            let command = row.get(i).and_then(|raw| flight.command(*raw));
+            (t_s, command.unwrap_or(f64::NAN) * 100.0)
+        });
+        let data = path(rows, stretch, gap_s, 1);
+        let lines = vec![Line::new("motor", motor.output.as_str(), data)];
+        Panel {
+            marks: [limits.low, limits.high].map(limit).into(),
+            zones: vec![
+                Scale::new(0.0, limits.low * 100.0),
+                Scale::new(limits.high * 100.0, 100.0),
+            ],
+            ..Panel::new(
+                format!("Motor {}", motor.number),
+                PERCENT,
+                Size::Small,
+                lines,
+            )
+        }
+    };
+    let panels = flight.motors.iter().enumerate().map(panel);
+    panels.filter(Panel::has_data).collect()
+}
+
+/// The inputs of the rules, each with its index.
+pub(crate) fn inputs(
+    assessed: &Assessment,
+    estimator: &Estimator,
+    model: &Model,
+    stretch: Stretch,
+) -> Vec<(usize, Panel)> {
+    let gap_s = gap_s(estimator, None);
+    let panel = |(i, input): (usize, &flagred::profile::ProfileInput)| {
+        let scale = super::decision::focus(model, &input.name, i, &assessed.steps);
+        let unit = model.inputs.iter().find(|known| known.name == input.name);
+        let unit = unit.and_then(|known| known.unit.as_deref());
+        let data = of_steps(&assessed.steps, stretch, gap_s, 4, |step| {
+            step.inputs.get(i).copied()
+        });
+        let lines = vec![Line::new("value", unit.unwrap_or_default(), data)];
+        let panel = Panel::new(input.name.as_str(), (scale, ""), Size::Small, lines);
+        panel.has_data().then_some((i, panel))
+    };
+    let inputs = estimator.profile().inputs.iter().enumerate();
+    inputs.filter_map(panel).collect()
+}
+
+/// The attitude error in degrees: `sqrt((roll_des - roll)^2 + (pitch_des - pitch)^2)`.
+pub(crate) fn attitude_error(
+    flight: &Flight,
+    estimator: &Estimator,
+    stretch: Stretch,
+) -> Option<Panel> {
+    let roll = flight.signal("roll_deg")?;
+    let errors: Vec<(f64, f64)> = flight
+        .attitudes()
+        .map(|(t_s, attitude)| (t_s, attitude.squared_error_deg2().sqrt()))
+        .collect();
+    // The scale reaches the critical error at least, so that a calm flight looks calm.
+    let largest = errors
+        .iter()
+        .filter(|(t_s, _)| stretch.contains(*t_s))
+        .map(|(_, error)| *error)
+        .fold(CRITICAL_ERROR_DEG * 1.1, f64::max);
+    let gap_s = gap_s(estimator, roll.rate_hz());
+    let data = path(errors.into_iter(), stretch, gap_s, 2);
+    let name = "roll and pitch against their set points";
+    let lines = vec![Line::new("value", name, data)];
+    let scale = (Scale::new(0.0, largest), "°");
+    let panel = Panel {
+        marks: vec![Mark {
+            value: CRITICAL_ERROR_DEG,
+            class: "limit",
+            name: "critical".into(),
+        }],
+        ..Panel::new("Attitude error", scale, Size::Medium, lines)
+    };
+    panel.has_data().then_some(panel)
+}
+
+/// Battery voltage and remaining charge, where the log has them.
+pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
+    let panel = |title: &str, scale, signal: Signal<'_>, decimals| {
+        let points = signal.t_s.iter().copied();
+        let points = points.zip(signal.values.iter().copied());
+        let gap_s = gap_s(estimator, signal.rate_hz());
+        let data = path(points, stretch, gap_s, decimals);
+        let lines = vec![Line::new("value", signal.label.source.as_str(), data)];
+        Panel::new(title, scale, Size::Medium, lines)
+    };
+    let voltage = flight.signal("battery_v").and_then(|signal| {
+        let seen = signal.t_s.iter().zip(signal.values);
+        let seen = seen.filter(|(t_s, value)| stretch.contains(**t_s) && value.is_finite());
+        let (low, high) = seen
+            .map(|(_, value)| (*value, *value))
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        let room = ((high - low) * 0.1).max(0.1);
+        let scale = Scale::new((low - room).max(0.0), high + room);
+        Some(panel("Battery voltage", (scale, "V"), signal, 2))
+    });
+    let remaining = flight
+        .signal("battery_remaining_pct")
+        .map(|signal| panel("Battery remaining", PERCENT, signal, 1));
+    let panels = voltage.into_iter().chain(remaining);
+    panels.filter(Panel::has_data).collect()
+}

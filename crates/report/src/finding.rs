@@ -1,0 +1,155 @@
+//! Findings in words: one line a cause.
+
+use flagred::{
+    estimator::Estimator,
+    flight::{Cause, Finding, Words},
+    verdict::Measure,
+};
+use flagred_flightlog::Motor;
+use fuzzy::drawing::number;
+
+/// What a finding is told with.
+#[derive(Clone, Copy)]
+pub struct Teller<'a> {
+    /// The profile and its rule set.
+    pub estimator: &'a Estimator,
+    /// The motors of the flight.
+    pub motors: &'a [Motor],
+}
+
+/// The findings of one cause.
+pub struct Line<'a> {
+    /// The gravest of them.
+    pub worst: &'a Finding,
+    count: usize,
+}
+
+/// One line a cause, in the order of the findings: the gravest first.
+pub fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
+    let mut lines: Vec<Line<'_>> = Vec::new();
+    for finding in findings {
+        match lines.iter_mut().find(|line| is_same(line.worst, finding)) {
+            Some(line) => {
+                line.count += 1;
+                if (finding.level, gravity(finding)) > (line.worst.level, gravity(line.worst)) {
+                    line.worst = finding;
+                }
+            }
+            None => lines.push(Line {
+                worst: finding,
+                count: 1,
+            }),
+        }
+    }
+    lines
+}
+
+/// Whether two findings have one cause: an input of the rules, or what a notice is about.
+fn is_same(a: &Finding, b: &Finding) -> bool {
+    let motor = |finding: &Finding| finding.motor.map(|motor| motor.motor);
+    match (a.is_of_risk(), b.is_of_risk()) {
+        (true, true) if a.risk != b.risk => false,
+        (true, true) => match (&a.cause, &b.cause) {
+            (Some(a), Some(b)) => a.input == b.input,
+            (a, b) => a.is_none() && b.is_none(),
+        },
+        (false, false) => a.measure == b.measure && motor(a) == motor(b),
+        _ => false,
+    }
+}
+
+/// How bad its peak is: of a reserve, how small.
+fn gravity(finding: &Finding) -> f64 {
+    match finding.measure {
+        Measure::Reserve => -finding.peak_pct,
+        _ => finding.peak_pct,
+    }
+}
+
+impl<'a> Teller<'a> {
+    /// What a pilot reads of a finding.
+    pub fn words(&self, finding: &Finding) -> Words {
+        numbered(finding, self.motors).words(self.estimator)
+    }
+
+    /// The findings of one cause: `3 times, worst 12.0 to 14.5 s: ...`. A finding beside the risk holds until landing and has no
+    /// span.
+    pub fn line(&self, line: &Line<'_>) -> String {
+        let Line { worst, count } = line;
+        let text = self.words(worst).text;
+        match (*count, worst.is_of_risk()) {
+            (1, true) => format!("{}: {text}", span(worst)),
+            (count, true) => format!("{count} times, worst {}: {text}", span(worst)),
+            (1, false) => text,
+            (count, false) => format!("{count} times: {text}"),
+        }
+    }
+
+    /// One finding: when, and what.
+    pub fn finding(&self, finding: &Finding) -> String {
+        format!("{}: {}", span(finding), self.words(finding).text)
+    }
+
+    /// The facts behind a finding: the input and the rule that raised the risk, the threshold, when its levels were raised, the
+    /// motor's output and margin.
+    pub fn details(&self, finding: &Finding) -> String {
+        let mut parts = Vec::new();
+        if let Some(cause) = &finding.cause {
+            let value = number(cause.value, 3);
+            parts.push(format!("{cause}: {value}, rule {}", cause.rule + 1));
+            parts.extend(self.description(cause).map(str::to_owned));
+        }
+        let mut raised = format!(
+            "{} over {} %, raised at {:.1} s",
+            finding.measure,
+            number(finding.threshold_pct, 2),
+            finding.raised_s
+        );
+        if finding.measure == Measure::Reserve {
+            raised = raised.replace("over", "under");
+        }
+        if let Some(failed_s) = finding.failed_s {
+            raised += &format!(", FAIL at {failed_s:.1} s");
+        }
+        parts.push(raised);
+        if let (Some(motor), Some(found)) = (self.motor(finding), &finding.motor) {
+            parts.push(match finding.is_of_risk() {
+                true => format!(
+                    "output {}, margin {:.2} on average, {:.2} at least",
+                    motor.output, found.mean_margin, found.least_margin
+                ),
+                false => format!("output {}", motor.output),
+            });
+        }
+        parts.join("; ")
+    }
+
+    /// The motor that a finding names.
+    pub fn motor(&self, finding: &Finding) -> Option<&'a Motor> {
+        finding.motor.and_then(|motor| self.motors.get(motor.motor))
+    }
+
+    fn description(&self, cause: &Cause) -> Option<&'a str> {
+        let mut inputs = self.estimator.model().inputs.iter();
+        let input = inputs.find(|input| input.name == cause.input)?;
+        input.description.as_deref()
+    }
+}
+
+/// The finding with the autopilot's numbers of its motors in place of their indices in the samples.
+pub fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
+    let mut finding = finding.clone();
+    let number = |index: usize| {
+        let motor = motors.get(index);
+        motor.map_or(index, |motor| usize::from(motor.number).saturating_sub(1))
+    };
+    if let Some(named) = &mut finding.found.motor {
+        named.motor = number(named.motor);
+        named.or = named.or.map(number);
+    }
+    finding
+}
+
+fn span(finding: &Finding) -> String {
+    format!("{:.1} to {:.1} s", finding.from_s, finding.to_s)
+}

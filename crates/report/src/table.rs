@@ -1,0 +1,80 @@
+//! What is written into tables, which spreadsheets and terminals read, too.
+
+use std::{
+    borrow::Cow,
+    io::{self, Write},
+};
+
+use flagred_flightlog::Flight;
+use fuzzy::drawing::{visible, visible_lines};
+
+/// What makes a spreadsheet read a cell as a formula.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
+/// A text as a cell: visible, and with an apostrophe in front where a spreadsheet would compute it.
+pub fn cell(text: &str) -> Cow<'_, str> {
+    if text.starts_with(FORMULA) {
+        Cow::Owned(format!("'{}", visible(text)))
+    } else {
+        visible(text)
+    }
+}
+
+/// A cell that is copied from a table: a number stays as it is.
+pub fn number_or_cell(text: &str) -> Cow<'_, str> {
+    match text.trim().parse::<f64>() {
+        Ok(_) => Cow::Borrowed(text),
+        Err(_) => cell(text),
+    }
+}
+
+/// Writes a flight as flight CSV, with the hidden characters of its texts visible.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub fn write_flight(out: impl Write, flight: &Flight) -> io::Result<()> {
+    flight.write_csv(Visible(out))
+}
+
+/// Makes the hidden characters of all that goes through visible; ends of lines stay.
+struct Visible<W>(W);
+
+impl<W: Write> Write for Visible<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let is_plain = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n');
+        if bytes.iter().all(is_plain) {
+            return self.0.write(bytes);
+        }
+        // Formatted text comes in pieces of whole characters, where no buffer stands before this.
+        let text = String::from_utf8_lossy(bytes);
+        self.0.write_all(visible_lines(&text).as_bytes())?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_cell_is_a_formula() {
+        for (text, written) in [
+            ("flight.bin", "flight.bin"),
+            ("=HYPERLINK(1)", "'=HYPERLINK(1)"),
+            ("@SUM(A1)", "'@SUM(A1)"),
+            ("-2+3+cmd|' /C calc'!A0", "'-2+3+cmd|' /C calc'!A0"),
+            ("\t=1", "'\\u{9}=1"),
+            ("a\u{1b}[2J", "a\\u{1b}[2J"),
+        ] {
+            assert_eq!(cell(text), written);
+            assert_eq!(number_or_cell(text), written);
+        }
+        for number in ["-2.5", "+1e3", " -7 ", "0.1", "-inf"] {
+            assert_eq!(number_or_cell(number), number);
+        }
+    }
+}

@@ -1,0 +1,357 @@
+//! A flight's assessment in words, for the terminal.
+
+use std::io::{self, Write};
+
+use anstyle::{AnsiColor, Style};
+use flagred::{
+    estimator::Estimator,
+    flight::{Assessment, Peak, Summary, Verdict},
+    profile::{Followed, Profile},
+    verdict::Level,
+};
+use flagred_flightlog::Flight;
+use fuzzy::drawing::{number, visible};
+
+use crate::{
+    curve::over_time_text,
+    finding::{self, Teller},
+};
+
+/// Columns of the picture of risk over time.
+const PICTURE_COLUMNS: usize = 64;
+
+/// Writes the assessment of one flight: one line a cause, or every finding with its details.
+pub fn write(
+    out: &mut impl Write,
+    name: &str,
+    flight: &Flight,
+    estimator: &Estimator,
+    assessed: &Assessment,
+    verbose: bool,
+) -> io::Result<()> {
+    let style = style(&assessed.verdict);
+    writeln!(
+        out,
+        "{style}{:<4}{style:#} {}",
+        assessed.verdict,
+        visible(name)
+    )?;
+    indented(out, &vehicle(flight))?;
+    if let Verdict::NotAvailable(reason) = &assessed.verdict {
+        indented(out, &format!("no verdict: {reason}"))?;
+        if let Some(help) = reason.help() {
+            indented(out, &format!("help: {help}"))?;
+        }
+    }
+    if !flight.report.is_clean() {
+        indented(out, &damage(&flight.report))?;
+    }
+    for note in notes(flight, assessed) {
+        indented(out, &note)?;
+    }
+    if let Some(spans) = &flight.in_air
+        && assessed.summary.in_air_s > 0.0
+    {
+        let when = spans
+            .spans
+            .iter()
+            .map(|s| format!("{:.1} to {:.1} s", s.start_s, s.end_s));
+        let mut text = format!(
+            "in the air {:.1} s ({})",
+            assessed.summary.in_air_s,
+            first_spans(when)
+        );
+        if verbose {
+            let rate_hz = flight.command_rate_hz().unwrap_or(0.0);
+            let profile = &estimator.profile().name;
+            text += &format!(", motors at {rate_hz:.1} Hz; profile {profile}");
+        }
+        indented(out, &text)?;
+    }
+    if assessed.summary.assessed_s > 0.0 {
+        indented(out, &summary(&assessed.summary, verbose))?;
+        if verbose && let Some(text) = reliability(&assessed.summary, estimator.profile()) {
+            indented(out, &text)?;
+        }
+    }
+    writeln!(out)?;
+    let teller = Teller {
+        estimator,
+        motors: &flight.motors,
+    };
+    if verbose {
+        for finding in &assessed.findings {
+            line(out, finding.level, &teller.finding(finding))?;
+            indented(out, &teller.words(finding).advice)?;
+            indented(out, &teller.details(finding))?;
+        }
+    } else {
+        for one in finding::lines(&assessed.findings) {
+            line(out, one.worst.level, &teller.line(&one))?;
+            indented(out, &teller.words(one.worst).advice)?;
+        }
+    }
+    if !assessed.findings.is_empty() {
+        writeln!(out)?;
+    }
+    let judged = assessed.steps.iter().filter(|step| step.judged);
+    let points: Vec<(f64, Option<f64>)> = judged
+        .map(|step| (step.t_s, step.estimate.map(|e| e.risk_pct)))
+        .collect();
+    if points.iter().any(|(_, risk)| risk.is_some()) {
+        writeln!(out, "risk over time")?;
+        writeln!(out, "{}", over_time_text(&points, PICTURE_COLUMNS))?;
+    }
+    Ok(())
+}
+
+/// Writes the assessment of one of several flights in a line: the verdict, the log, and its gravest finding or the reason why there
+/// is no verdict.
+pub fn write_line(
+    out: &mut impl Write,
+    name: &str,
+    flight: &Flight,
+    estimator: &Estimator,
+    assessed: &Assessment,
+) -> io::Result<()> {
+    let style = style(&assessed.verdict);
+    let verdict = &assessed.verdict;
+    let mut parts = Vec::new();
+    if let Verdict::NotAvailable(reason) = verdict {
+        parts.push(format!("no verdict: {reason}"));
+    }
+    if let Some(peak) = assessed.summary.risk_max {
+        parts.push(format!(
+            "highest risk {:.0} % in {:.1} s in the air",
+            peak.value_pct, assessed.summary.in_air_s
+        ));
+    }
+    let teller = Teller {
+        estimator,
+        motors: &flight.motors,
+    };
+    let lines = finding::lines(&assessed.findings);
+    if let Some(gravest) = lines.first() {
+        parts.push(teller.line(gravest).trim_end_matches('.').to_owned());
+    }
+    match lines.len() {
+        0 | 1 => {}
+        2 => parts.push("1 more finding".into()),
+        count => parts.push(format!("{} more findings", count - 1)),
+    }
+    let (name, text) = (visible(name), parts.join("; "));
+    writeln!(
+        out,
+        "{style}{verdict:<4}{style:#} {name}: {}",
+        visible(&text)
+    )
+}
+
+fn line(out: &mut impl Write, level: Level, text: &str) -> io::Result<()> {
+    let style = level_style(level);
+    writeln!(out, "{style}{level:<4}{style:#} {}", visible(text))
+}
+
+fn indented(out: &mut impl Write, text: &str) -> io::Result<()> {
+    writeln!(out, "     {}", visible(text))
+}
+
+/// The vehicle in a line: firmware, frame, motors and ranges.
+pub fn vehicle(flight: &Flight) -> String {
+    let mut parts = vec![flight.format.to_string()];
+    parts.extend(flight.vehicle.firmware.clone());
+    parts.extend(flight.vehicle.frame.clone());
+    if let (Some(first), Some(last)) = (flight.motors.first(), flight.motors.last()) {
+        parts.push(match flight.motors.len() {
+            1 => format!("1 motor ({})", first.output),
+            n => format!("{n} motors ({}..{})", first.output, last.output),
+        });
+    }
+    if let Some(range) = &flight.range {
+        let unit = match range.unit {
+            "1" => "",
+            unit => &format!(" {unit}"),
+        };
+        parts.push(format!("{} to {}{unit}", range.low, range.high));
+        parts.push(effective_range(&flight.effective));
+    }
+    parts.join(", ")
+}
+
+/// The part of a range of commands that is used in flight.
+pub fn effective_range(effective: &flagred_flightlog::Range) -> String {
+    format!(
+        "effective range {} to {} %",
+        number(100.0 * effective.low, 1),
+        number(100.0 * effective.high, 1)
+    )
+}
+
+/// Spans of time that are listed in a line.
+const MOST_SPANS: usize = 12;
+
+/// The first of many spans, the others counted.
+pub fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
+    let first: Vec<String> = spans.by_ref().take(MOST_SPANS).collect();
+    match spans.len() {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
+    }
+}
+
+/// What the verdict does not rest on: limits that are none, and what is left out of a log that is too large.
+pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(doubt) = &flight.effective_doubt {
+        notes.push(format!("the effective range is the whole range: {doubt}"));
+    }
+    if !flight.assumed.is_empty() {
+        let assumed = flight.assumed.join("; ");
+        notes.push(format!(
+            "the log does not report everything, assumed: {assumed}"
+        ));
+    }
+    let left_out = &flight.report.left_out;
+    if !left_out.is_empty() {
+        notes.push(format!(
+            "not all of the log is kept: {left_out} are left out"
+        ));
+    }
+    if assessed.findings_left_out > 0 {
+        notes.push(format!(
+            "the {} gravest findings are kept, {} others are left out",
+            assessed.findings.len(),
+            assessed.findings_left_out
+        ));
+    }
+    if let Some(step_s) = assessed.widened_step_s {
+        notes.push(format!(
+            "the steps are {} s apart, so that not more than {} are kept",
+            number(step_s, 6),
+            flagred::flight::MOST_STEPS
+        ));
+    }
+    notes
+}
+
+/// Most logs that are cut off inside a message, when the power goes, lose less than this.
+const ONE_MESSAGE_BYTES: u64 = 256;
+
+/// What is wrong with a log that could be read in part.
+pub fn damage(report: &flagred_flightlog::Report) -> String {
+    if report.truncated && report.bad_messages == 0 && report.skipped_bytes <= ONE_MESSAGE_BYTES {
+        let (last, are) = match report.skipped_bytes {
+            1 => ("last byte".to_owned(), "is"),
+            bytes => (format!("last {bytes} bytes"), "are"),
+        };
+        return format!("the log ends inside a message: its {last} {are} ignored");
+    }
+    let mut parts = Vec::new();
+    if report.bad_messages > 0 {
+        let plural = if report.bad_messages == 1 { "" } else { "s" };
+        parts.push(format!("{} bad message{plural}", report.bad_messages));
+    }
+    if report.skipped_bytes > 0 {
+        parts.push(format!(
+            "{} of {} bytes skipped",
+            report.skipped_bytes, report.bytes
+        ));
+    }
+    if report.truncated {
+        parts.push("the end is missing".to_owned());
+    }
+    let reason = report
+        .reason
+        .as_ref()
+        .map(|r| format!(" ({r})"))
+        .unwrap_or_default();
+    format!("damaged log, read in part: {}{reason}", parts.join(", "))
+}
+
+/// What is lost where a log is written as flight CSV.
+pub fn conversion(name: &str, flight: &Flight) -> Vec<String> {
+    let report = &flight.report;
+    let damage = report.reason.as_ref();
+    let damage = damage
+        .map(|reason| format!("`{name}` is damaged: {reason}; the undamaged part is converted"));
+    let left_out = &report.left_out;
+    let left_out = (!left_out.is_empty())
+        .then(|| format!("not all of `{name}` is converted: {left_out} are left out"));
+    damage.into_iter().chain(left_out).collect()
+}
+
+fn summary(summary: &Summary, verbose: bool) -> String {
+    let at = |peak: Option<Peak>| {
+        peak.map_or("unknown".to_owned(), |peak| {
+            format!("{:.0} % at {:.1} s", peak.value_pct, peak.t_s)
+        })
+    };
+    let share = |part: f64| 100.0 * part / summary.in_air_s;
+    let mut text = format!(
+        "risk: mean {}, highest {}",
+        summary
+            .risk_mean_pct
+            .map_or("unknown".to_owned(), |mean| format!("{mean:.0} %")),
+        at(summary.risk_max),
+    );
+    if verbose {
+        text += &format!("; elevated risk: highest {}", at(summary.elevated_risk_max));
+    }
+    if summary.filled_s > 0.0 {
+        text += &format!(
+            "; interpolated for {:.0} % of the time, where no rule applies",
+            share(summary.filled_s)
+        );
+    }
+    if share(summary.assessed_s) < 95.0 {
+        text += &format!(
+            "; risk unknown for {:.0} % of the time",
+            100.0 - share(summary.assessed_s)
+        );
+    }
+    text
+}
+
+/// `54 % of 1280`; `None` without a moment.
+pub(crate) fn share(counts: Followed) -> Option<String> {
+    let share_pct = counts.share_pct()?;
+    Some(format!("{share_pct:.0} % of {}", counts.moments))
+}
+
+/// What followed moments with a risk as high as the highest one of a flight; `None` where it was not measured.
+fn reliability(summary: &Summary, profile: &Profile) -> Option<String> {
+    let highest_pct = summary.risk_max?.value_pct;
+    let mut rows = profile.reliability.iter().rev();
+    let row = rows.find(|row| row.from_pct <= highest_pct && highest_pct <= row.to_pct)?;
+    let shares: Vec<String> = [("real", row.real), ("simulated", row.simulated)]
+        .into_iter()
+        .filter_map(|(name, counts)| Some(format!("{} on {name} vehicles", share(counts?)?)))
+        .collect();
+    (!shares.is_empty()).then(|| {
+        format!(
+            "moments with a risk of {} to {} % that were followed by an attitude error over 5 degrees within 5 s: {}",
+            row.from_pct,
+            row.to_pct,
+            shares.join(", ")
+        )
+    })
+}
+
+fn style(verdict: &Verdict) -> Style {
+    match verdict {
+        Verdict::Known(level) => level_style(*level),
+        Verdict::NotAvailable(_) => Style::new().bold(),
+    }
+}
+
+/// The style of a level on a terminal.
+pub fn level_style(level: Level) -> Style {
+    match level {
+        Level::Good => AnsiColor::Green,
+        Level::Info => AnsiColor::Cyan,
+        Level::Warn => AnsiColor::Yellow,
+        Level::Fail => AnsiColor::Red,
+    }
+    .on_default()
+    .bold()
+}

@@ -1,0 +1,350 @@
+//! Inputs, partitions and rules from rows of data, where none are known: structure identification (Takagi and Sugeno 1985;
+//! Sugeno and Yasukawa 1993).
+
+mod clusters;
+mod fit;
+mod model;
+mod structure;
+mod validation;
+
+use fuzzy::Model;
+
+use crate::{
+    Loss, TuneError,
+    data::{Data, range},
+    folds::Folds,
+};
+
+use clusters::Clusters;
+use fit::{Fit, RIDGE};
+use structure::{Axis, Structure};
+
+pub use model::MOST_TERMS;
+pub use validation::{Judged, judge};
+
+/// What a rule concludes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Consequents {
+    /// A number.
+    #[default]
+    Constants,
+    /// A line over the inputs.
+    Lines,
+}
+
+/// What rules ask of the inputs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Antecedents {
+    /// Partitions: a rule for each combination of terms.
+    #[default]
+    Partitions,
+    /// Clusters, found by subtractive clustering (Chiu 1994): a rule for each.
+    Clusters,
+}
+
+/// What is looked for.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Identification {
+    /// What rules ask of the inputs.
+    pub antecedents: Antecedents,
+    /// What rules conclude.
+    pub consequents: Consequents,
+    /// The inputs to use, by their names; empty: those that help.
+    pub inputs: Vec<String>,
+    /// The most inputs, where those that help are looked for.
+    pub most_inputs: usize,
+    /// The most terms of an input, from 2 to [`MOST_TERMS`].
+    pub most_terms: usize,
+    /// The most rules.
+    pub most_rules: usize,
+    /// By what share of it a step must make the error on rows left out smaller.
+    pub least_gain: f64,
+    /// The fewest rows that must fire a rule more strongly than any other, or there is no such rule.
+    pub least_support: usize,
+    /// Into how many parts the rows or groups are divided to choose a step.
+    pub folds: u32,
+    /// For these parts.
+    pub seed: u64,
+}
+
+impl Default for Identification {
+    /// Partitions and constants; at most 4 inputs, 5 terms each and 25 rules; a step gains 2 %; 5 parts.
+    fn default() -> Self {
+        Identification {
+            antecedents: Antecedents::Partitions,
+            consequents: Consequents::Constants,
+            inputs: Vec::new(),
+            most_inputs: 4,
+            most_terms: 5,
+            most_rules: 25,
+            least_gain: 0.02,
+            least_support: 1,
+            folds: 5,
+            seed: 0,
+        }
+    }
+}
+
+/// A model from data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identified {
+    /// The model: a Takagi-Sugeno output, the product as conjunction.
+    pub model: Model,
+    /// The columns that the inputs of the model are, by their index.
+    pub columns: Vec<usize>,
+    /// The steps of the search.
+    pub steps: Vec<Step>,
+    /// The combinations of terms without enough rows, which have no rule.
+    pub without_rows: usize,
+}
+
+/// A step of the search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// The input that is new, or has more terms than before.
+    pub input: String,
+    /// How many terms it has now; of clusters, how many there are.
+    pub terms: usize,
+    /// The root mean square of the error on rows left out, in the unit of the output.
+    pub left_out: f64,
+}
+
+/// By what share of the error of the mean a step must make the error smaller, too: what is that small is of no interest.
+const LEAST_GAIN_OF_ALL: f64 = 1e-3;
+
+/// The radii that are tried, as shares of the ranges.
+const RADII: [f64; 4] = [0.3, 0.5, 0.7, 1.0];
+
+/// Columns that may be inputs: each step of the search tries all of them.
+const MOST_COLUMNS: usize = 500;
+
+/// Refuses tables with more columns than [`identify`] takes, so that a program can ask before it reads their rows.
+///
+/// # Errors
+/// [`TuneError::TooManyColumns`].
+pub fn check_columns(columns: usize) -> Result<(), TuneError> {
+    match columns > MOST_COLUMNS {
+        true => Err(TuneError::TooManyColumns {
+            columns,
+            most: MOST_COLUMNS,
+        }),
+        false => Ok(()),
+    }
+}
+
+/// Finds inputs, partitions or clusters, and rules, for columns of data and the truths. The search goes forward: each step takes
+/// the input that is new, or the term that is new, with the smallest error on rows left out, as long as it helps enough. Peaks
+/// are at quantiles, rounded; consequents are solved for by least squares with a ridge. [`crate::tune`] moves both from there.
+///
+/// The error of a step is of rows that its consequents do not know; the steps themselves were chosen by it. [`judge`] tells
+/// what the whole search is worth.
+///
+/// # Errors
+/// The rows cannot be used, a name is unknown, or no input helps.
+///
+/// # Example: which of three columns matter
+/// ```
+/// use flagred_tuning::{Data, identify::{Identification, identify}};
+///
+/// // The output is the product of the first two columns; the third has nothing to do with it.
+/// let mut data = Data { inputs: vec![Vec::new(); 3], ..Data::default() };
+/// for i in 0..1000 {
+///     let row = [f64::from(i % 10), f64::from(i / 10 % 10), f64::from(i * 7919 % 13)];
+///     data.inputs.iter_mut().zip(row).for_each(|(column, x)| column.push(x));
+///     data.truths.push(row[0] * row[1]);
+/// }
+/// let names = ["width", "length", "noise"].map(str::to_owned);
+/// let found = identify(&names, "area", &data, &Identification::default())?;
+/// assert_eq!(found.columns.len(), 2);
+/// let area = fuzzy::Engine::new(&found.model)?.evaluate(&[5.0, 5.0])?[0].value();
+/// assert!((area.unwrap() - 25.0).abs() < 2.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn identify(
+    names: &[String],
+    output: &str,
+    data: &Data,
+    settings: &Identification,
+) -> Result<Identified, TuneError> {
+    data.check_columns(names.len(), Loss::Squared)?;
+    check_columns(names.len())?;
+    let data = &*data.weighted();
+    let named = |name: &String| {
+        let found = names.iter().position(|known| known == name);
+        found.ok_or_else(|| TuneError::Unknown { name: name.clone() })
+    };
+    let wanted: Vec<usize> = settings
+        .inputs
+        .iter()
+        .map(named)
+        .collect::<Result<_, _>>()?;
+    let (low, high) = range(&data.truths);
+    if low == high {
+        return Err(TuneError::NoInputHelps);
+    }
+    let folds = Folds::new(data, settings.folds, settings.seed);
+    let sorted = data.inputs.iter().map(|column| {
+        let mut values = column.clone();
+        values.sort_by(f64::total_cmp);
+        values
+    });
+    let search = Search {
+        data,
+        sorted: sorted.collect(),
+        settings,
+        folds,
+        wanted: &wanted,
+    };
+    let (structure, steps) = search.run();
+    let steps = steps.into_iter().map(|(input, terms, left_out)| Step {
+        input: names[input].clone(),
+        terms,
+        left_out,
+    });
+    if structure.inputs().is_empty() {
+        return Err(TuneError::NoInputHelps);
+    }
+    let mut identified = model::model(names, output, data, settings, &structure);
+    identified.steps = steps.collect();
+    Ok(identified)
+}
+
+struct Search<'a> {
+    data: &'a Data,
+    /// The values of each input, from the least.
+    sorted: Vec<Vec<f64>>,
+    settings: &'a Identification,
+    folds: Folds,
+    /// The inputs to use, where they were given.
+    wanted: &'a [usize],
+}
+
+/// The input that a step changed, its terms, and the error after it.
+type Taken = (usize, usize, f64);
+
+impl Search<'_> {
+    fn run(&self) -> (Structure, Vec<Taken>) {
+        let mut best = Structure::Grid(Vec::new());
+        let mut error = self.error(&best);
+        let least_of_all = LEAST_GAIN_OF_ALL * error;
+        let mut steps = Vec::new();
+        loop {
+            let next = self
+                .grown(&best)
+                .into_iter()
+                .map(|(input, terms, structure)| {
+                    let error = self.error(&structure);
+                    (input, terms, error, structure)
+                })
+                .min_by(|a, b| a.2.total_cmp(&b.2));
+            let Some((input, terms, left_out, structure)) = next else {
+                break;
+            };
+            // Inputs that were asked for are taken whatever they gain.
+            let is_asked_for =
+                structure.inputs().len() > best.inputs().len() && !self.wanted.is_empty();
+            let least = least_of_all.max(self.settings.least_gain * error);
+            if !is_asked_for && left_out >= error - least {
+                break;
+            }
+            steps.push((input, terms, left_out));
+            (best, error) = (structure, left_out);
+        }
+        (best, steps)
+    }
+
+    fn error(&self, structure: &Structure) -> f64 {
+        let fit = Fit {
+            structure,
+            consequents: self.settings.consequents,
+            kept: &vec![true; structure.rules()],
+            ridge: RIDGE,
+        };
+        fit.left_out(self.data, &self.folds)
+    }
+
+    /// What a structure may become in a step: the input that changed, how many terms it has, and the structure.
+    fn grown(&self, from: &Structure) -> Vec<(usize, usize, Structure)> {
+        let used = from.inputs();
+        let is_open = |input: &usize| {
+            let (low, high) = range(&self.data.inputs[*input]);
+            low < high && !used.contains(input)
+        };
+        let fresh: Vec<usize> = match self.wanted {
+            [] if used.len() >= self.settings.most_inputs => Vec::new(),
+            [] => (0..self.data.inputs.len()).filter(is_open).collect(),
+            wanted => wanted.iter().copied().filter(is_open).collect(),
+        };
+        match self.settings.antecedents {
+            Antecedents::Clusters => self.clusters(&used, &fresh),
+            Antecedents::Partitions => self.grids(from, &fresh),
+        }
+    }
+
+    fn clusters(&self, used: &[usize], fresh: &[usize]) -> Vec<(usize, usize, Structure)> {
+        let all = fresh
+            .iter()
+            .flat_map(|input| RADII.map(|radius| (*input, radius)));
+        let found = all.map(|(input, radius)| {
+            let inputs: Vec<usize> = used.iter().copied().chain([input]).collect();
+            let clusters = Clusters::find(self.data, &inputs, radius, self.settings.most_rules);
+            (input, clusters.centers.len(), Structure::Clusters(clusters))
+        });
+        found.collect()
+    }
+
+    /// A new input with two or three terms, or another term of one that is in use.
+    fn grids(&self, from: &Structure, fresh: &[usize]) -> Vec<(usize, usize, Structure)> {
+        let Structure::Grid(axes) = from else {
+            return Vec::new();
+        };
+        let mut grown = Vec::new();
+        let mut take = |input: usize, terms: usize, axes: Vec<Axis>| {
+            let structure = Structure::Grid(axes);
+            if structure.rules() <= self.settings.most_rules {
+                grown.push((input, terms, structure));
+            }
+        };
+        let most_terms = self.settings.most_terms.min(MOST_TERMS);
+        for input in fresh {
+            for terms in 2..=most_terms.min(3) {
+                if let Some(axis) = self.axis(*input, terms) {
+                    take(*input, terms, axes.iter().cloned().chain([axis]).collect());
+                }
+            }
+        }
+        for (i, axis) in axes.iter().enumerate() {
+            let terms = axis.peaks.len() + 1;
+            if terms <= most_terms
+                && let Some(axis) = self.axis(axis.input, terms)
+            {
+                let mut axes = axes.clone();
+                axes[i] = axis;
+                take(axes[i].input, terms, axes);
+            }
+        }
+        grown
+    }
+
+    /// Peaks at quantiles from 5 to 95 %; `None` where they are not far enough apart.
+    fn axis(&self, input: usize, terms: usize) -> Option<Axis> {
+        let values = &self.sorted[input];
+        let (low, high) = (values.first()?, values.last()?);
+        let last = values.len() - 1;
+        let quantile = |i: usize| {
+            let share = 0.05 + 0.9 * i as f64 / (terms - 1) as f64;
+            model::round(
+                values[(share * last as f64).round() as usize],
+                high - low,
+                f64::round,
+            )
+        };
+        let peaks: Vec<f64> = (0..terms).map(quantile).collect();
+        let is_apart = peaks.is_sorted_by(|a, b| b - a >= 0.02 * (high - low));
+        is_apart.then_some(Axis { input, peaks })
+    }
+}
+
+#[cfg(test)]
+mod tests;

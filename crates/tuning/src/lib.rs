@@ -1,0 +1,270 @@
+//! Tunes fuzzy rule sets on data: peaks of partitions, parameters of membership functions, consequents and weights.
+//!
+//! The rules stay as they are, and so does what keeps them readable: the order of the terms of a variable, a least distance
+//! between their peaks, partitions whose degrees sum to 1, vertical edges, what touches the end of a range; no width, slope or
+//! flank grows or shrinks by more than five times. These hold by construction: the search moves free numbers, each value of
+//! which makes such a model.
+//!
+//! [`tune`] makes a [`Loss`] small by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). With squared errors the
+//! consequents of a Takagi-Sugeno output are solved for at every step, as ANFIS does (Jang 1993). [`cross_validate`] tells
+//! what tuning is worth on rows that were left out.
+//!
+//! [`identify`] finds inputs, partitions and rules where none are known; [`simplify()`] says the same with fewer rules.
+
+mod consequents;
+mod data;
+mod folds;
+pub mod identify;
+mod loss;
+mod numbers;
+mod objective;
+mod ordered;
+mod parameters;
+mod reliability;
+mod search;
+mod settings;
+mod simplify;
+mod validation;
+
+use std::ops::ControlFlow;
+
+use fuzzy::{Model, check, model::MembershipFunction};
+
+pub use data::Data;
+pub use folds::Interval;
+pub use numbers::{Moved, Number, moved_although_fixed, numbers, with_numbers_of};
+pub use reliability::Bin;
+pub use settings::{Loss, Settings, TuneError};
+pub use simplify::{
+    Difference, EQUAL, MOST_RULES, Simplified, SimplifyError, SimplifySettings, simplify,
+};
+pub use validation::{CurvePoint, Validation, cross_validate, learning_curve};
+
+use objective::{Objective, Point};
+use parameters::Parameters;
+
+/// A tuned model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tuned {
+    /// The model.
+    pub model: Model,
+    /// The loss of the model as it was; see [`Loss`].
+    pub before: f64,
+    /// The loss of the tuned model.
+    pub after: f64,
+    /// The rows without a value of the tuned model, which count as the middle of the range.
+    pub without_value: usize,
+    /// The numbers that moved.
+    pub moved: Vec<Moved>,
+    /// The constants, as `variable.term`, that are at the end of the range (see [`Settings::beyond_range`]) and whose loss would be
+    /// smaller beyond it.
+    pub at_bounds: Vec<String>,
+    /// Whether the watcher ended the search.
+    pub is_stopped: bool,
+}
+
+/// How far a search is.
+#[derive(Debug)]
+pub struct Progress<'a> {
+    /// The start, counted from 1.
+    pub start: u32,
+    /// The step of this start, counted from 1.
+    pub iteration: u32,
+    /// The loss of the best model so far, over all starts.
+    pub loss: f64,
+    /// That model.
+    pub model: &'a Model,
+}
+
+/// Moves what may move of a model so that the loss on the rows becomes small. Only steps that help are taken; rounding, where
+/// [`Settings::digits`] asks for it, may cost some of the gain. The same arguments give the same result.
+///
+/// `watch` is called before every step; with `Break` the search ends with the best model so far.
+///
+/// # Errors
+/// The rows do not fit the model or the loss, a name is unknown, nothing may move, or the model cannot be used.
+///
+/// # Example: where warm begins
+/// ```
+/// use std::ops::ControlFlow;
+/// use flagred_tuning::{Data, Settings, tune};
+///
+/// let model = fuzzy::yaml::parse("
+/// fuzzy: 1
+/// name: fan
+/// inputs:
+///   heat: {range: [0, 40], partition: {cool: 5, hot: 35}}
+/// outputs:
+///   speed:
+///     range: [0, 10]
+///     terms: {slow: {singleton: 2}, fast: {singleton: 8}}
+/// rules:
+///   - IF heat IS cool THEN speed IS slow
+///   - IF heat IS hot THEN speed IS fast
+/// ")?.model;
+/// // The fan turns slowly up to 20 degrees, fast from 30 degrees on.
+/// let heat: Vec<f64> = (0..=40).map(f64::from).collect();
+/// let speed = |heat: &f64| 2.0 + 6.0 * ((heat - 20.0) / 10.0).clamp(0.0, 1.0);
+/// let data = Data { truths: heat.iter().map(speed).collect(), inputs: vec![heat], ..Data::default() };
+/// let tuned = tune(&model, &data, &Settings::default(), &mut |_| ControlFlow::Continue(()))?;
+/// assert!(tuned.before > 1.0 && tuned.after < 0.01);
+/// let peaks = tuned.model.inputs[0].partition_peaks().unwrap();
+/// assert!((peaks[0] - 20.0).abs() < 0.1 && (peaks[1] - 30.0).abs() < 0.1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn tune(
+    model: &Model,
+    data: &Data,
+    settings: &Settings,
+    watch: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Tuned, TuneError> {
+    data.check(model, settings.loss)?;
+    let parameters = Parameters::new(model, settings)?;
+    let objective = Objective::new(model, &parameters, data, settings);
+    let before = objective.point(model.clone())?;
+    if let Some(claim) = objective.broken_claim(model)? {
+        return Err(TuneError::NotMonotone {
+            input: claim.input,
+            direction: match claim.direction {
+                check::Direction::Increasing => "increasing",
+                check::Direction::Decreasing => "decreasing",
+            },
+        });
+    }
+    let before = (objective.measure(&before), before);
+    if !(before.0.is_finite() && before.1.slopes.loss.is_finite()) {
+        return Err(TuneError::NotFinite);
+    }
+    let mut best = before.clone();
+    let improve = |best: &mut (f64, Point), point: &Point| {
+        if point.slopes.loss < best.1.slopes.loss {
+            *best = (objective.measure(point), point.clone());
+        }
+    };
+    let mut is_stopped = false;
+    let mut random = fastrand::Rng::with_seed(settings.seed);
+    for start in 1..=settings.starts.max(1) {
+        // A free number of 1 is a factor of e.
+        let mut jitter = || {
+            if start == 1 {
+                0.0
+            } else {
+                2.0 * random.f64() - 1.0
+            }
+        };
+        let from: Vec<f64> = (0..parameters.free()).map(|_| jitter()).collect();
+        let told = &mut |iteration: u32, at: Option<&Point>| {
+            at.into_iter().for_each(|at| improve(&mut best, at));
+            watch(&Progress {
+                start,
+                iteration,
+                loss: best.0,
+                model: &best.1.model,
+            })
+        };
+        let (found, flow) =
+            search::search(&objective, &parameters, &from, settings.iterations, told)?;
+        found.iter().for_each(|found| improve(&mut best, found));
+        is_stopped = flow.is_break();
+        if is_stopped {
+            break;
+        }
+    }
+    let mut best = best.1;
+    if let Some(digits) = settings.digits {
+        best = rounded(&objective, &parameters, model, best, digits)?;
+    }
+    Ok(Tuned {
+        before: before.0,
+        after: objective.measure(&best),
+        without_value: best
+            .predictions
+            .iter()
+            .filter(|place| place.is_nan())
+            .count(),
+        at_bounds: at_bounds(&objective, &parameters, &best),
+        moved: numbers::moved(model, &best.model),
+        model: best.model,
+        is_stopped,
+    })
+}
+
+/// Rounds what moved, a number at a time, to the neighbour with the smaller loss. A number whose neighbours both break a
+/// constraint stays.
+fn rounded(
+    objective: &Objective<'_>,
+    parameters: &Parameters,
+    before: &Model,
+    mut at: Point,
+    digits: u32,
+) -> Result<Point, TuneError> {
+    let originals = numbers(before);
+    let widths = numbers::widths(before);
+    for (index, (original, width)) in originals.iter().zip(widths).enumerate() {
+        let known = numbers(&at.model);
+        let Some(number) = known
+            .get(index)
+            .filter(|number| number.value != original.value)
+        else {
+            continue;
+        };
+        // What touches stays together: the sides of a vertical edge, two terms that begin at one place.
+        let variable = |number: &Number| number.of.split('.').next().map(str::to_owned);
+        let is_equal = |(_, other): &(usize, &Number)| {
+            other.value == number.value && variable(other) == variable(number)
+        };
+        let equal = known.iter().enumerate().filter(is_equal).map(|(i, _)| i);
+        let equal: Vec<usize> = equal.collect();
+        let mut nearest: Option<Point> = None;
+        for value in numbers::round(number.value, digits, width) {
+            let model = numbers::with(&at.model, &equal, value);
+            if !parameters.keeps(&model) || objective.broken_claim(&model)?.is_some() {
+                continue;
+            }
+            let point = objective.point(model)?;
+            if nearest
+                .as_ref()
+                .is_none_or(|best| point.slopes.loss < best.slopes.loss)
+            {
+                nearest = Some(point);
+            }
+        }
+        at = nearest.unwrap_or(at);
+    }
+    Ok(at)
+}
+
+/// The constants at a bound whose loss is smaller a little beyond it.
+fn at_bounds(objective: &Objective<'_>, parameters: &Parameters, at: &Point) -> Vec<String> {
+    const BEYOND: f64 = 1e-3;
+    let Some(output) = at.model.outputs.first() else {
+        return Vec::new();
+    };
+    let variable = &output.variable;
+    let step = BEYOND * (variable.high - variable.low);
+    let mut names = Vec::new();
+    for (index, (low, high)) in parameters.bounded() {
+        let mut model = at.model.clone();
+        let output = model.outputs.first_mut();
+        let Some(term) = output.and_then(|output| output.variable.terms.get_mut(index)) else {
+            continue;
+        };
+        let MembershipFunction::Constant { value } = &mut term.membership_function else {
+            continue;
+        };
+        *value += match *value {
+            value if value >= high => step,
+            value if value <= low => -step,
+            _ => continue,
+        };
+        let name = format!("{}.{}", variable.name, term.name);
+        let beyond = objective.point(model);
+        if beyond.is_ok_and(|beyond| beyond.slopes.loss < at.slopes.loss) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests;
