@@ -12,7 +12,6 @@ use fuzzy::{
     check::extent,
     diagnostic::{Diagnostic, Severity, nearest, suggest},
     tree::{Node, Value},
-    yaml,
 };
 
 use crate::{
@@ -39,29 +38,28 @@ const LEAST_SHARE: f64 = 0.02;
 /// # Example: a threshold above what the rules can say
 /// ```
 /// use flagred::{check, shipped};
+/// use fuzzy::Source;
 ///
-/// let rules = shipped::flagred_paper_rules();
+/// let rules = Source::new(shipped::RULE_SETS[1].text);
 /// let text = shipped::PROFILES[1].text.replace("fail: {risk: 85", "fail: {risk: 99");
-/// let (findings, estimator) = check::profile(&text, &rules, &[]);
+/// let (findings, estimator) = check::profile(&Source::new(text), &rules, &[]);
 /// assert_eq!(findings.0[0].code, "out-of-reach");
 /// assert!(estimator.is_some());
 /// ```
 pub fn profile(
-    text: &str,
-    model: &Model,
+    profile: &fuzzy::Source,
+    rules: &fuzzy::Source,
     signals: &[(&str, &str)],
 ) -> (Findings, Option<Estimator>) {
-    let tree = match yaml::read(text) {
-        Ok(tree) => tree,
-        Err(findings) => return (findings, None),
-    };
-    let profile = match Profile::from_tree(&tree, text) {
-        Ok(profile) => profile,
-        Err(findings) => return (findings, None),
+    let text = profile.text();
+    let (tree, profile) = match (profile.tree(), Profile::from_source(profile)) {
+        (Ok(tree), Ok(profile)) => (tree, profile),
+        (Err(findings), _) => return (findings.clone(), None),
+        (_, Err(findings)) => return (findings, None),
     };
     let mut found = Vec::new();
-    let at = Places(&tree);
-    let estimator = compile(&profile, model, &at, &mut found);
+    let at = Places(tree);
+    let estimator = compile(&profile, rules, &at, &mut found);
     if let Some(estimator) = &estimator {
         thresholds(estimator, &["verdict"], &at, &mut found);
         for other in estimator.others() {
@@ -69,7 +67,7 @@ pub fn profile(
             thresholds(other, &place, &at, &mut found);
         }
         for input in &profile.inputs {
-            found.extend(signal(input, model, signals, &at));
+            found.extend(signal(input, estimator.engine().model(), signals, &at));
         }
     }
     let is_usable = found.iter().all(|one| one.severity < Severity::Error);
@@ -84,7 +82,8 @@ pub fn profile(
 ///
 /// # Example: a battery as one more vote
 /// ```
-/// use flagred::{check, profile::Profile, shipped};
+/// use flagred::{check, shipped};
+/// use fuzzy::Source;
 ///
 /// let rules = shipped::RULE_SETS[0].text;
 /// let rules = rules
@@ -92,18 +91,19 @@ pub fn profile(
 ///     .replace("rules:\n", "rules:\n  - IF battery IS empty THEN risk IS very_high\n");
 /// let text = shipped::PROFILES[0].text;
 /// let text = text.replace("inputs:", "inputs:\n  battery: {last: battery_remaining_pct}");
-/// let (fits, estimator) = check::profile(&text, &rules.parse()?, &[]);
+/// let profile = Source::new(text);
+/// let (fits, estimator) = check::profile(&profile, &Source::new(rules), &[]);
 /// assert!(fits.0.is_empty());
-/// let found = check::outvoted(&text, &estimator.ok_or("errors")?);
+/// let found = check::outvoted(&profile, &estimator.ok_or("errors")?);
 /// assert!(found.0[0].message.starts_with("`battery` cannot raise a warning alone"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn outvoted(text: &str, estimator: &Estimator) -> Findings {
-    let found = match yaml::read(text) {
-        Ok(tree) => alone::outvoted(estimator, &Places(&tree)),
+pub fn outvoted(profile: &fuzzy::Source, estimator: &Estimator) -> Findings {
+    let found = match profile.tree() {
+        Ok(tree) => alone::outvoted(estimator, &Places(tree)),
         Err(_) => Vec::new(),
     };
-    Findings::locate(found, text)
+    Findings::locate(found, profile.text())
 }
 
 /// The values of a document by their keys.
@@ -135,11 +135,16 @@ impl Places<'_> {
 /// The estimator, or why there is none, at the place of the profile that is to be changed.
 fn compile(
     profile: &Profile,
-    model: &Model,
+    rules: &fuzzy::Source,
     at: &Places,
     found: &mut Vec<Diagnostic>,
 ) -> Option<Estimator> {
-    let error = match Estimator::new(profile, model) {
+    let engine = rules.engine();
+    let compiled = match engine {
+        Ok(engine) => Estimator::with_engine(profile, engine),
+        Err(findings) => Err(findings.clone().into()),
+    };
+    let error = match compiled {
         Ok(estimator) => return Some(estimator),
         Err(error) => error,
     };
@@ -157,12 +162,12 @@ fn compile(
             format!("add `{input}: {{mean: SIGNAL}}` to `inputs`"),
         ),
         EstimatorError::NoSuchInput { input } => {
-            let inputs = model.inputs.iter().map(|i| i.name.as_str());
+            let inputs = engine.iter().flat_map(|engine| engine.input_names());
             let help = suggest(input, inputs).unwrap_or_else(|| "remove it".into());
             ("unknown-input", at.of(&["inputs", input]), help)
         }
         EstimatorError::NoSuchOutput { output } => {
-            let outputs = model.outputs.iter().map(|o| o.variable.name.as_str());
+            let outputs = engine.iter().flat_map(|engine| engine.output_names());
             let help = suggest(output, outputs)
                 .unwrap_or_else(|| "name the output with `output: NAME`".into());
             ("unknown-output", at.of(&of_output(output)), help)

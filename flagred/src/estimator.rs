@@ -107,17 +107,18 @@ impl Estimator {
     /// Where the rule set does not compile, the two do not name the same inputs, an output is no percentage, or an output
     /// keeps its previous value.
     pub fn new(profile: &Profile, model: &Model) -> Result<Estimator, EstimatorError> {
-        Estimator::with_engine(profile, model, Engine::new(model)?)
+        Estimator::with_engine(profile, &Engine::new(model)?)
     }
 
-    fn with_engine(
+    /// As [`new`](Self::new), with a rule set that is compiled.
+    pub(crate) fn with_engine(
         profile: &Profile,
-        model: &Model,
-        engine: Engine,
+        engine: &Engine,
     ) -> Result<Estimator, EstimatorError> {
+        let model = engine.model();
         let others = profile.other_risks.iter().map(|risk| {
             let profile = profile.of_risk(risk);
-            Estimator::with_engine(&profile, model, engine.clone())
+            Estimator::with_engine(&profile, engine)
         });
         let others = others.collect::<Result<Vec<Estimator>, EstimatorError>>()?;
         let output =
@@ -185,8 +186,8 @@ impl Estimator {
             said,
             others,
             profile: profile.clone(),
-            filling: Filling::new(&engine, model, output, &profile.gap)?,
-            engine,
+            filling: Filling::new(engine, model, output, &profile.gap)?,
+            engine: engine.clone(),
             output,
             order,
             channels,

@@ -12,7 +12,7 @@ use alloc::{
     vec::Vec,
 };
 
-use fuzzy::{Engine, Findings, Model};
+use fuzzy::{Findings, Source};
 
 use crate::{check, estimator::Estimator, profile::Profile, shipped};
 
@@ -21,10 +21,10 @@ use crate::{check, estimator::Estimator, profile::Profile, shipped};
 pub struct Loaded {
     /// Profile and rule set, compiled.
     pub estimator: Estimator,
-    /// The profile.
-    pub profile_text: String,
-    /// The rule set.
-    pub rules_text: String,
+    /// The profile as it was written.
+    pub profile: Source,
+    /// The rule set as it was written.
+    pub rules: Source,
     /// What does not keep the profile from being used.
     pub warnings: Findings,
     /// Where it may have been read from; empty for a shipped one.
@@ -97,126 +97,112 @@ pub fn load<E>(
     name: &str,
     read: impl Fn(&Path) -> Result<String, E>,
 ) -> Result<Loaded, LoadError<E>> {
-    let (profile, text, folder) = self::read(name, &read)?;
-    compile(name, &profile, text, folder.as_deref(), read)
+    let (profile, source, folder) = self::read(name, &read)?;
+    let rules = rule_set(&profile, folder.as_deref(), read)?;
+    finish(name, &profile.rules, (source, folder.as_deref()), rules)
 }
 
 /// As [`load`], of a text that was read from a file in a folder, or from no file.
 ///
 /// # Errors
 /// As [`load`].
-pub fn from_text<E>(
+pub fn from_source<E>(
     name: &str,
-    text: String,
+    profile: Source,
     folder: Option<&Path>,
     read: impl Fn(&Path) -> Result<String, E>,
 ) -> Result<Loaded, LoadError<E>> {
-    let profile = parse(name, &text)?;
-    compile(name, &profile, text, folder, read)
+    let parsed = parse(name, &profile)?;
+    let rules = rule_set(&parsed, folder, read)?;
+    finish(name, &parsed.rules, (profile, folder), rules)
 }
 
-/// As [`from_text`], with the text of the rule set too, which stands in for the one that the profile names.
+/// As [`from_source`], with the rule set too, which stands in for the one that the profile names.
 ///
 /// # Errors
 /// As [`load`]; nothing is read.
-pub fn with_rules<E>(name: &str, text: String, rules: String) -> Result<Loaded, LoadError<E>> {
-    let profile = parse(name, &text)?;
-    let model = compiled(&profile, profile.rules.clone(), &rules)?;
-    finish(name, &profile, (text, None), (model, rules))
-}
-
-fn compile<E>(
-    name: &str,
-    profile: &Profile,
-    profile_text: String,
-    folder: Option<&Path>,
-    read: impl Fn(&Path) -> Result<String, E>,
-) -> Result<Loaded, LoadError<E>> {
-    let rules = model(profile, folder, read)?;
-    finish(name, profile, (profile_text, folder), rules)
+pub fn with_rules<E>(name: &str, profile: Source, rules: Source) -> Result<Loaded, LoadError<E>> {
+    let parsed = parse(name, &profile)?;
+    let rules = compiled(&parsed, parsed.rules.clone(), rules)?;
+    finish(name, &parsed.rules, (profile, None), rules)
 }
 
 fn finish<E>(
     name: &str,
-    profile: &Profile,
-    (profile_text, folder): (String, Option<&Path>),
-    (model, rules_text): (Model, String),
+    rules_name: &str,
+    (profile, folder): (Source, Option<&Path>),
+    rules: Source,
 ) -> Result<Loaded, LoadError<E>> {
-    let (findings, estimator) = fit(&profile_text, &model);
+    let (findings, estimator) = fit(&profile, &rules);
     let Some(estimator) = estimator else {
         return Err(LoadError::Findings {
             file: name.to_owned(),
-            text: profile_text,
+            text: profile.text().to_owned(),
             findings,
         });
     };
-    let beside = |folder: &Path| [PathBuf::from(name), folder.join(&profile.rules)];
+    let beside = |folder: &Path| [PathBuf::from(name), folder.join(rules_name)];
     Ok(Loaded {
         files: folder.into_iter().flat_map(beside).collect(),
         estimator,
-        profile_text,
-        rules_text,
+        profile,
+        rules,
         warnings: findings,
     })
 }
 
-/// The findings about the text of a profile and the rule set that it names, for the author: [`fit`] and
-/// [`check::outvoted`].
+/// The findings about a profile and the rule set that it names, for the author: [`fit`] and [`check::outvoted`].
 #[doc(hidden)] // For the programs of this repository.
-pub fn examine(profile_text: &str, model: &Model) -> (Findings, Option<Estimator>) {
-    let (mut findings, estimator) = fit(profile_text, model);
+pub fn examine(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>) {
+    let (mut findings, estimator) = fit(profile, rules);
     if let Some(estimator) = &estimator {
-        let outvoted = check::outvoted(profile_text, estimator);
+        let outvoted = check::outvoted(profile, estimator);
         findings.0.extend(outvoted.0);
     }
     (findings, estimator)
 }
 
 /// The findings of [`check::profile`] with the signals that logs carry.
-pub fn fit(profile_text: &str, model: &Model) -> (Findings, Option<Estimator>) {
+pub fn fit(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>) {
     let known = flagred_flightlog::known_signals();
     let signals: Vec<(&str, &str)> = known.iter().map(|s| (s.name, s.unit)).collect();
-    check::profile(profile_text, model, &signals)
+    check::profile(profile, rules, &signals)
 }
 
-/// The rule set that a profile names, and its text.
+/// The rule set that a profile names. It compiles.
 ///
 /// # Errors
 /// As [`load`].
 #[doc(hidden)] // For the programs of this repository.
-pub fn model<E>(
+pub fn rule_set<E>(
     profile: &Profile,
     folder: Option<&Path>,
     read: impl Fn(&Path) -> Result<String, E>,
-) -> Result<(Model, String), LoadError<E>> {
+) -> Result<Source, LoadError<E>> {
     let (file, text) = rules(profile, folder, read)?;
-    Ok((compiled(profile, file, &text)?, text))
+    compiled(profile, file, Source::new(text))
 }
 
 /// A rule set that compiles; `file` is what its findings name.
-fn compiled<E>(profile: &Profile, file: String, text: &str) -> Result<Model, LoadError<E>> {
-    let document = match fuzzy::yaml::parse(text) {
-        Err(_) if !is_meant_as_rules(text) => {
-            return Err(LoadError::unusable(format!(
-                "profile `{}` names `{file}`, which is not a rule set",
-                profile.name
-            ))
-            .help("a rule set has the keys `inputs`, `outputs` and `rules`"));
-        }
-        parsed => parsed,
-    };
-    let compiled = document.and_then(|document| {
-        document.validate(text)?;
-        Engine::new(&document.model).map(|_| document.model)
-    });
-    compiled.map_err(|findings| LoadError::Findings {
-        file,
-        text: text.to_owned(),
-        findings,
-    })
+fn compiled<E>(profile: &Profile, file: String, source: Source) -> Result<Source, LoadError<E>> {
+    if source.document().is_err() && !is_meant_as_rules(source.text()) {
+        return Err(LoadError::unusable(format!(
+            "profile `{}` names `{file}`, which is not a rule set",
+            profile.name
+        ))
+        .help("a rule set has the keys `inputs`, `outputs` and `rules`"));
+    }
+    match source.engine().err().cloned() {
+        None => Ok(source),
+        Some(findings) => Err(LoadError::Findings {
+            file,
+            text: source.text().to_owned(),
+            findings,
+        }),
+    }
 }
 
-/// Reads a profile without its rule set: also its text, and of a file the folder it is in.
+/// Reads a profile without its rule set: also what it was written as, and of a file the folder it is in.
 ///
 /// # Errors
 /// As [`load`].
@@ -224,7 +210,7 @@ fn compiled<E>(profile: &Profile, file: String, text: &str) -> Result<Model, Loa
 pub fn read<E>(
     name: &str,
     read: impl Fn(&Path) -> Result<String, E>,
-) -> Result<(Profile, String, Option<PathBuf>), LoadError<E>> {
+) -> Result<(Profile, Source, Option<PathBuf>), LoadError<E>> {
     let path = Path::new(name);
     let shipped = shipped::PROFILES.iter().find(|known| known.name == name);
     let (text, folder) = match shipped {
@@ -234,18 +220,19 @@ pub fn read<E>(
             (text, path.parent().map(Path::to_owned))
         }
     };
-    Ok((parse(name, &text)?, text, folder))
+    let source = Source::new(text);
+    Ok((parse(name, &source)?, source, folder))
 }
 
-fn parse<E>(name: &str, text: &str) -> Result<Profile, LoadError<E>> {
-    text.parse::<Profile>().map_err(|findings| {
-        if fuzzy::yaml::parse(text).is_ok() {
+fn parse<E>(name: &str, source: &Source) -> Result<Profile, LoadError<E>> {
+    Profile::from_source(source).map_err(|findings| {
+        if source.document().is_ok() {
             let file = Path::new(name);
             let file = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
             return LoadError::unusable(format!("`{name}` is a rule set, not a profile"))
                 .help(format!("write a profile that names it, with `rules: {file}` and where each input comes from"));
         }
-        LoadError::Findings { file: name.to_owned(), text: text.to_owned(), findings }
+        LoadError::Findings { file: name.to_owned(), text: source.text().to_owned(), findings }
     })
 }
 

@@ -30,7 +30,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - [`yaml::parse`] reads a rule set with the span of each part; [`Findings`] are all errors of a text or model.
+//! - [`yaml::parse`] reads a rule set with the span of each part; [`Findings`] are all errors of a text or model. [`Source`]
+//!   is a text whose tree, rule set and engine are made once.
 //! - [`Model::builder`] makes a model in code; [`rule`] is the rule language.
 //! - [`Engine::evaluate_with`] evaluates into outcomes of the caller: use it in loops, where the allocations of
 //!   [`Engine::evaluate`] take longer than the evaluation. [`map`] evaluates a grid.
@@ -76,6 +77,8 @@ pub mod rule;
 #[cfg(feature = "serde")]
 mod serial;
 mod shape;
+#[cfg(all(feature = "std", feature = "yaml"))]
+mod source;
 #[cfg_attr(
     not(feature = "alloc"),
     allow(
@@ -100,6 +103,8 @@ pub use diagnostic::{Diagnostic, Findings};
 pub use engine::{Engine, Outcome};
 #[cfg(feature = "alloc")]
 pub use model::Model;
+#[cfg(all(feature = "std", feature = "yaml"))]
+pub use source::Source;
 #[cfg(feature = "alloc")]
 pub use validate::validate;
 

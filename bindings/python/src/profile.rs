@@ -1,12 +1,12 @@
 //! Profiles: where the inputs of a rule set come from, and when it warns.
 
-use std::{fs, path::Path, sync::Arc};
+use std::{fs, io, path::Path, sync::Arc};
 
 use flagred::{
     loaded::{self, LoadError, Loaded},
     shipped,
 };
-use fuzzy::{Findings, Model};
+use fuzzy::Source;
 use pyo3::prelude::*;
 
 use crate::errors::{data_error, diagnostics, os_error, rule_set_error};
@@ -55,57 +55,50 @@ pub(crate) fn _built_in(name: &str) -> Option<&'static str> {
         .map(|known| known.text)
 }
 
+/// A profile that was loaded from a file or by its name, or why it was not.
+fn usable(
+    py: Python<'_>,
+    file: &str,
+    loaded: Result<Loaded, LoadError<io::Error>>,
+) -> PyResult<Profile> {
+    match loaded {
+        Ok(loaded) => Ok(Profile::new(file, loaded)),
+        Err(LoadError::Read(error)) => {
+            let names = shipped::profile_names().join(", ");
+            let help = format!("built-in profiles are {names}");
+            Err(os_error(py, &error, file, Some(&help))?)
+        }
+        Err(LoadError::Findings {
+            file,
+            text,
+            findings,
+        }) => Err(rule_set_error(py, &findings, &file, &text)),
+        Err(LoadError::Unusable { message, help }) => Err(data_error(message, help)),
+    }
+}
+
 #[pymethods]
 impl Profile {
     #[new]
     #[pyo3(signature = (name = "flagred"))]
     pub(crate) fn load(py: Python<'_>, name: &str) -> PyResult<Self> {
         let loaded = loaded::load(name, |path: &Path| fs::read_to_string(path));
-        match loaded {
-            Ok(loaded) => Ok(Profile::new(name, loaded)),
-            Err(LoadError::Read(error)) => {
-                let names = shipped::profile_names().join(", ");
-                let help = format!("built-in profiles are {names}");
-                Err(os_error(py, &error, name, Some(&help))?)
-            }
-            Err(LoadError::Findings {
-                file,
-                text,
-                findings,
-            }) => Err(rule_set_error(py, &findings, &file, &text)),
-            Err(LoadError::Unusable { message, help }) => Err(data_error(message, help)),
-        }
+        usable(py, name, loaded)
     }
 
     /// A profile of its text and that of its rule set, as a pickle has them.
     #[staticmethod]
     fn _of_texts(py: Python<'_>, file: &str, profile: String, rules: String) -> PyResult<Self> {
-        let model: Result<Model, Findings> = rules.parse();
-        let model = model.map_err(|findings| rule_set_error(py, &findings, file, &rules))?;
-        let (findings, estimator) = loaded::fit(&profile, &model);
-        let Some(estimator) = estimator else {
-            return Err(rule_set_error(py, &findings, file, &profile));
-        };
-        let loaded = Loaded {
-            estimator,
-            profile_text: profile,
-            rules_text: rules,
-            warnings: findings,
-            files: Vec::new(),
-        };
-        Ok(Profile::new(file, loaded))
+        let [profile, rules] = [profile, rules].map(Source::new);
+        usable(py, file, loaded::with_rules(file, profile, rules))
     }
 
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
     ) -> PyResult<(Bound<'py, PyAny>, (String, String, String))> {
         let profile = slf.get();
-        let (profile_text, rules_text) = (&profile.loaded.profile_text, &profile.loaded.rules_text);
-        let texts = (
-            profile.file.clone(),
-            profile_text.clone(),
-            rules_text.clone(),
-        );
+        let (text, rules) = (profile.loaded.profile.text(), profile.loaded.rules.text());
+        let texts = (profile.file.clone(), text.to_owned(), rules.to_owned());
         Ok((slf.getattr("_of_texts")?, texts))
     }
 
@@ -132,13 +125,13 @@ impl Profile {
     /// The profile as it is written.
     #[getter]
     fn text(&self) -> &str {
-        &self.loaded.profile_text
+        self.loaded.profile.text()
     }
 
     /// Its rule set as it is written.
     #[getter]
     fn rules_text(&self) -> &str {
-        &self.loaded.rules_text
+        self.loaded.rules.text()
     }
 
     /// What is doubtful about it.
@@ -148,7 +141,7 @@ impl Profile {
             py,
             &self.loaded.warnings,
             &self.file,
-            &self.loaded.profile_text,
+            self.loaded.profile.text(),
         )
     }
 

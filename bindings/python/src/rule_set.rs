@@ -390,9 +390,14 @@ impl RuleSet {
                 .push(claim.map_err(|help| data_error("no claim", Some(help)))?);
         }
         let source = self.source();
+        let compiled = match source.compile(py) {
+            Ok(compiled) => Arc::clone(compiled),
+            Err(findings) => return diagnostics(py, findings, &source.file, &source.text),
+        };
         let checked = Arc::clone(&source);
         let checked = interruptible(py, move || {
-            check::document(&checked.document, &checked.text, &options)
+            let Source { document, text, .. } = &*checked;
+            check::document(document, &compiled.engine, text, &options)
         })?;
         let (findings, _) =
             checked.map_err(|finding| data_error(&finding.message, finding.help.clone()))?;

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use fuzzy::{
-    Engine, Findings,
+    Findings,
     format::{self, Document},
     yaml,
 };
@@ -37,17 +37,19 @@ impl Source {
         }))
     }
 
-    fn compile(&self, py: Python<'_>) -> Result<Arc<Compiled>, Findings> {
-        self.document.validate(&self.text)?;
-        let engine = Engine::new(&self.document.model)?;
-        Ok(Arc::new(Compiled::new(py, engine)))
+    /// The compiled rule set, or its errors.
+    pub(crate) fn compile(&self, py: Python<'_>) -> Result<&Arc<Compiled>, &Findings> {
+        let compile = || {
+            let engine = self.document.compile(&self.text)?;
+            Ok(Arc::new(Compiled::new(py, engine)))
+        };
+        self.compiled.get_or_init(compile).as_ref()
     }
 
     /// The compiled rule set.
     pub(crate) fn compiled(&self, py: Python<'_>) -> PyResult<&Arc<Compiled>> {
-        let compiled = self.compiled.get_or_init(|| self.compile(py));
         let drawn = |findings| rule_set_error(py, findings, &self.file, &self.text);
-        compiled.as_ref().map_err(drawn)
+        self.compile(py).map_err(drawn)
     }
 }
 

@@ -94,6 +94,11 @@ export class RuleText {
     return guarded(() => this.#text.isProfile);
   }
 
+  /** The rule set, or the profile with its rule set, compiled; throws what is wrong with it. */
+  ruleSet(): RuleSet {
+    return new RuleSet(guarded(() => this.#text.ruleSet()));
+  }
+
   /** What `flagred check` finds. */
   findings(): Diagnostic[] {
     return parsed(() => this.#text.findings());
@@ -214,8 +219,8 @@ export class RuleSet {
   readonly #set: wasm.RuleSet;
 
   /** Compiles a rule set in YAML, FIS, FLL, FCL or FML, or that of a profile; throws what is wrong with it. */
-  constructor(text: string) {
-    this.#set = guarded(() => new wasm.RuleSet(text));
+  constructor(text: string | wasm.RuleSet) {
+    this.#set = typeof text === 'string' ? guarded(() => new wasm.RuleSet(text)) : text;
   }
 
   about(): About {

@@ -3,12 +3,13 @@
 use std::cell::OnceCell;
 
 use flagred::{
-    check::{Alone, alone},
+    check::{Alone, alone, outvoted},
+    estimator::Estimator,
     loaded,
     profile::Profile,
 };
 use fuzzy::{
-    Model, check,
+    Model, Source, check,
     diagnostic::{Diagnostic, Findings},
     format::{self, Partial},
     tree::Value,
@@ -19,10 +20,12 @@ use crate::provenance;
 /// A rule set or a profile that an editor shows.
 #[derive(Debug)]
 pub struct Document {
-    text: String,
+    source: Source,
     /// The rule set as far as it can be read; of a profile, the one that it names.
-    rules: Option<Partial>,
+    partial: Option<Partial>,
     profile: Option<OpenProfile>,
+    /// A profile compiled with its rule set, and what is wrong with the two.
+    fitted: OnceCell<(Findings, Option<Estimator>)>,
     /// Found when somebody asks: it is most of the work.
     findings: OnceCell<Findings>,
 }
@@ -31,7 +34,7 @@ pub struct Document {
 #[derive(Debug)]
 struct OpenProfile {
     read: Result<Profile, Findings>,
-    rules_text: Option<String>,
+    rules: Option<Source>,
 }
 
 impl Document {
@@ -40,47 +43,64 @@ impl Document {
         text: impl Into<String>,
         rules_of: impl FnOnce(&Profile) -> Option<String>,
     ) -> Document {
-        let text = text.into();
-        let profile = is_profile(&text).then(|| {
-            let read = text.parse::<Profile>();
-            let rules_text = read.as_ref().ok().and_then(rules_of);
-            OpenProfile { read, rules_text }
+        let source = flagred_interchange::source(text);
+        let profile = is_profile(&source).then(|| {
+            let read = Profile::from_source(&source);
+            let rules = read.as_ref().ok().and_then(rules_of).map(Source::new);
+            OpenProfile { read, rules }
         });
-        let rules = match &profile {
-            Some(profile) => profile.rules_text.as_deref().and_then(partial),
-            None => partial(&text),
+        let partial = match &profile {
+            Some(profile) => profile.rules.as_ref().and_then(partial),
+            None => partial(&source),
         };
         Document {
-            text,
-            rules,
+            source,
+            partial,
             profile,
+            fitted: OnceCell::new(),
             findings: OnceCell::new(),
         }
     }
 
     /// The text.
     pub fn text(&self) -> &str {
-        &self.text
+        self.source.text()
+    }
+
+    /// The text, and what is made of it.
+    pub fn source(&self) -> &Source {
+        &self.source
     }
 
     /// What `flagred check` finds.
     pub fn findings(&self) -> &Findings {
-        self.findings.get_or_init(|| match &self.profile {
-            Some(profile) => profile.findings(&self.text),
+        self.findings.get_or_init(|| match self.fitted() {
+            Some((findings, estimator)) => {
+                let outvoted = estimator.as_ref().map(|e| outvoted(&self.source, e));
+                let outvoted = outvoted.into_iter().flat_map(|findings| findings.0);
+                Findings(findings.0.iter().cloned().chain(outvoted).collect())
+            }
             // Only claims are refused, and none are made.
-            None => examine(&self.text, &check::Options::default()).map_or_else(
-                |finding| Findings::locate(vec![*finding], &self.text),
+            None => examine(&self.source, &check::Options::default()).map_or_else(
+                |finding| Findings::locate(vec![*finding], self.text()),
                 |examined| examined.findings,
             ),
         })
     }
 
+    /// A profile compiled with its rule set; none of a rule set and of a profile with errors.
+    pub fn estimator(&self) -> Option<&Estimator> {
+        self.fitted()?.1.as_ref()
+    }
+
+    fn fitted(&self) -> Option<&(Findings, Option<Estimator>)> {
+        let profile = self.profile.as_ref()?;
+        Some(self.fitted.get_or_init(|| profile.fit(&self.source)))
+    }
+
     /// What each input of a profile reaches alone; nothing of a rule set and of a profile with errors.
     pub fn alone(&self) -> Vec<Alone> {
-        let rules = self.profile.as_ref().and_then(|p| p.rules_text.as_deref());
-        let rules = rules.and_then(|text| fuzzy::yaml::parse(text).ok());
-        let estimator = rules.and_then(|rules| loaded::fit(&self.text, &rules.model).1);
-        estimator.as_ref().map(alone).unwrap_or_default()
+        self.estimator().map(alone).unwrap_or_default()
     }
 
     /// Whether it is a profile.
@@ -95,37 +115,36 @@ impl Document {
 
     /// The rule set as far as it can be read; of a profile, the one that it names.
     pub fn model(&self) -> Option<&Model> {
-        self.rules.as_ref().map(|rules| &rules.model)
+        self.partial.as_ref().map(|rules| &rules.model)
     }
 
     /// The rule set as far as it can be read, with its places; none of a profile.
     pub(crate) fn rules(&self) -> Option<&Partial> {
-        self.rules.as_ref().filter(|_| self.profile.is_none())
+        self.partial.as_ref().filter(|_| self.profile.is_none())
     }
 }
 
 impl OpenProfile {
-    fn findings(&self, text: &str) -> Findings {
-        let profile = match &self.read {
-            Ok(profile) => profile,
-            Err(findings) => return findings.clone(),
-        };
-        match self.rules_text.as_deref().map(fuzzy::yaml::parse) {
-            Some(Ok(document)) => loaded::examine(text, &document.model).0,
-            _ => unusable_rules(text, &profile.rules),
+    fn fit(&self, source: &Source) -> (Findings, Option<Estimator>) {
+        match (&self.read, &self.rules) {
+            (Err(findings), _) => (findings.clone(), None),
+            (Ok(_), Some(rules)) if rules.document().is_ok() => loaded::fit(source, rules),
+            (Ok(profile), _) => (unusable_rules(source.text(), &profile.rules), None),
         }
     }
 }
 
-pub(crate) fn partial(text: &str) -> Option<Partial> {
-    format::read_partly(&fuzzy::yaml::read(text).ok()?)
+pub(crate) fn partial(source: &Source) -> Option<Partial> {
+    format::read_partly(source.tree().ok()?)
 }
 
 /// Whether a text is meant to be a profile: whether it has the key `flagred`, also where it is no YAML yet.
-pub fn is_profile(text: &str) -> bool {
-    let tree = fuzzy::yaml::read(text).map(|tree| tree.value);
-    let Ok(Value::Mapping(pairs)) = tree else {
-        return text.lines().any(|line| line.starts_with("flagred:"));
+pub fn is_profile(source: &Source) -> bool {
+    let Ok(Value::Mapping(pairs)) = source.tree().map(|tree| &tree.value) else {
+        return source
+            .text()
+            .lines()
+            .any(|line| line.starts_with("flagred:"));
     };
     let mut keys = pairs.iter().map(|(key, _)| &key.value);
     keys.any(|key| matches!(key, Value::Scalar(key) if key.text == "flagred"))
@@ -133,31 +152,34 @@ pub fn is_profile(text: &str) -> bool {
 
 /// What there is to say of a rule set.
 #[derive(Debug)]
-pub struct Examined {
+pub struct Examined<'s> {
     /// All findings.
     pub findings: Findings,
     /// The rule set and its analysis, where it can be analysed.
-    pub analysed: Option<(format::Document, check::Report)>,
+    pub analysed: Option<(&'s format::Document, check::Report)>,
 }
 
-/// Examines a rule set, in YAML or a format of another program.
+/// Examines a rule set.
 ///
 /// # Errors
 /// A claim of the options names what the rule set does not have.
-pub fn examine(text: &str, options: &check::Options) -> Result<Examined, Box<Diagnostic>> {
-    let document = match flagred_interchange::document(text) {
-        Ok(document) => document,
-        Err(findings) => {
+pub fn examine<'s>(
+    source: &'s Source,
+    options: &check::Options,
+) -> Result<Examined<'s>, Box<Diagnostic>> {
+    let (document, engine) = match (source.document(), source.engine()) {
+        (Ok(document), Ok(engine)) => (document, engine),
+        (Err(findings), _) | (_, Err(findings)) => {
             return Ok(Examined {
-                findings,
+                findings: findings.clone(),
                 analysed: None,
             });
         }
     };
-    let (findings, report) = check::document(&document, text, options)?;
+    let (findings, report) = check::document(document, engine, source.text(), options)?;
     Ok(Examined {
-        findings: provenance::with_edited(findings, &document, text),
-        analysed: report.map(|report| (document, report)),
+        findings: provenance::with_edited(findings, document, source.text()),
+        analysed: Some((document, report)),
     })
 }
 

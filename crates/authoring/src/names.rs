@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use fuzzy::{
+    Source,
     format::Partial,
     model::{Term, Variable},
     rule::{self, Name},
@@ -206,7 +207,7 @@ pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range
         let names = all(rules).into_iter();
         names.map(|(_, meaning)| meaning).collect()
     };
-    let renamed = partial(&edited(document.text(), &edits));
+    let renamed = partial(&Source::new(edited(document.text(), &edits)));
     match renamed.is_some_and(|renamed| meanings(&renamed) == meanings(rules)) {
         true => Ok(spans),
         false => Err(format!(

@@ -14,7 +14,7 @@ use flagred::{
 };
 use flagred_authoring::{Examined, answers::Checked, is_profile, provenance};
 use fuzzy::{
-    check,
+    Source, check,
     diagnostic::{Findings, Severity},
     drawing::{number, visible},
 };
@@ -91,12 +91,14 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
             None => read_text(path)?,
         };
         let file = path.display().to_string();
-        let (profile, examined) = if is_profile(&text) {
-            let (name, findings, alone) = examine_profile(path, &text)?;
+        let source = flagred_interchange::source(text);
+        let text = source.text();
+        let (profile, examined) = if is_profile(&source) {
+            let (name, findings, alone) = examine_profile(path, &source)?;
             let analysed = None;
             (Some((name, alone)), Examined { findings, analysed })
         } else {
-            (None, examine(&text, arguments)?)
+            (None, examine(&source, arguments)?)
         };
         let findings = &examined.findings;
         // Only what people read has colours.
@@ -106,7 +108,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         };
         match format {
             Format::Text => {
-                write!(out, "{}", draw(&findings.0, &file, &text, true))?;
+                write!(out, "{}", draw(&findings.0, &file, text, true))?;
                 let steps = examined
                     .analysed
                     .iter()
@@ -130,8 +132,8 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                 serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
                 writeln!(out)?;
             }
-            Format::Sarif => sarif.add(&findings.0, &file, &text),
-            Format::Github => write_github(&mut out, &findings.0, &file, &text)?,
+            Format::Sarif => sarif.add(&findings.0, &file, text),
+            Format::Github => write_github(&mut out, &findings.0, &file, text)?,
         }
         out.finish()?;
         let worst = findings.0.iter().map(|finding| finding.severity).max();
@@ -148,11 +150,11 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
 }
 
 /// All findings, and the analysis where the rule set can be analysed.
-fn examine(text: &str, arguments: &Arguments) -> Result<Examined, Failure> {
+fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>, Failure> {
     let mut options = check::Options::default();
     options.coverage = arguments.coverage;
     options.monotone.clone_from(&arguments.monotone);
-    flagred_authoring::examine(text, &options).map_err(|finding| {
+    flagred_authoring::examine(source, &options).map_err(|finding| {
         Failure::usage(format!("--monotone: {}", finding.message)).help_if(finding.help)
     })
 }
@@ -161,16 +163,16 @@ fn examine(text: &str, arguments: &Arguments) -> Result<Examined, Failure> {
 /// errors is refused: they are in another file.
 fn examine_profile(
     path: &Path,
-    text: &str,
+    source: &Source,
 ) -> Result<(Option<String>, Findings, Vec<Alone>), Failure> {
-    let profile = match text.parse::<Profile>() {
+    let profile = match Profile::from_source(source) {
         Ok(profile) => profile,
         Err(findings) => return Ok((None, findings, Vec::new())),
     };
     let is_file = path != Path::new("-") && built_in::profile_at(path).is_none();
     let folder = is_file.then(|| path.parent()).flatten();
-    let (model, _) = profile::model(&profile, folder)?;
-    let (findings, estimator) = profile::examine(text, &model);
+    let rules = profile::rule_set(&profile, folder)?;
+    let (findings, estimator) = profile::examine(source, &rules);
     let alone = estimator.as_ref().map(alone).unwrap_or_default();
     Ok((Some(profile.name), findings, alone))
 }

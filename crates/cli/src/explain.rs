@@ -42,11 +42,12 @@ fn assignment(text: &str) -> Result<(String, f64), String> {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model])?;
     let svg = files.optional(arguments.svg.as_ref())?;
-    let (model, engine) = rule_set::load(&arguments.model)?;
-    let values = values(&model, &arguments.inputs)?;
+    let engine = rule_set::load(&arguments.model)?;
+    let model = engine.model();
+    let values = values(model, &arguments.inputs)?;
     let explanation = engine.explain(&values).map_err(Failure::usage)?;
     if let Some(svg) = svg {
-        svg.write(&explanation_svg(&model, &explanation))?;
+        svg.write(&explanation_svg(model, &explanation))?;
         return Ok(Exit::Clean);
     }
     let mut out = Stdout::text();
@@ -55,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
         writeln!(out)?;
     } else {
-        write!(out, "{}", explanation_text(&model, &explanation))?;
+        write!(out, "{}", explanation_text(model, &explanation))?;
     }
     out.finish()?;
     Ok(Exit::Clean)

@@ -1,14 +1,15 @@
 //! What commands make of bytes, without files, sockets or a terminal: for the fuzz targets and the tests that share their
 //! bodies. No interface: it changes without notice.
 
-use std::{net::SocketAddr, sync::Arc};
+use std::{convert::Infallible, net::SocketAddr, sync::Arc};
 
-use flagred::{estimator::Estimator, log::assess, profile, shipped};
+use flagred::{estimator::Estimator, loaded, log::assess, shipped};
+use flagred_authoring::examine;
 use flagred_flightlog::{
     Flight,
     mavlink::{Sender, Stream},
 };
-use fuzzy::{Findings, Model, check};
+use fuzzy::{Findings, Source, check};
 
 use flagred_report::{
     document,
@@ -34,15 +35,9 @@ pub struct Profile(Loaded);
 impl Profile {
     /// A profile with a rule set, where they compile.
     pub fn new(profile_text: &str, rules_text: &str) -> Option<Profile> {
-        let profile = profile_text.parse::<profile::Profile>().ok()?;
-        let model = rules_text.parse::<Model>().ok()?;
-        Some(Profile(Loaded {
-            estimator: Estimator::new(&profile, &model).ok()?,
-            profile_text: profile_text.to_owned(),
-            rules_text: rules_text.to_owned(),
-            warnings: Findings(Vec::new()),
-            files: Vec::new(),
-        }))
+        let [profile, rules] = [profile_text, rules_text].map(Source::new);
+        let loaded = loaded::with_rules::<Infallible>("the profile", profile, rules);
+        loaded.ok().map(Profile)
     }
 
     /// The default one.
@@ -115,13 +110,14 @@ pub fn converted(flight: &Flight) -> std::io::Result<Vec<u8>> {
 
 /// The findings of `check`, drawn, and the analysis where there is one.
 pub fn checked(text: &str) -> (Findings, String, Option<check::Report>) {
-    let checked = fuzzy::yaml::parse(text)
-        .map(|document| check::document(&document, text, &check::Options::default()));
-    let (findings, report) = match checked {
-        Ok(Ok(checked)) => checked,
-        // Of claims, and none are made.
-        Ok(Err(finding)) => (Findings(vec![*finding]), None),
-        Err(findings) => (findings, None),
+    let source = Source::new(text);
+    let (findings, report) = match examine(&source, &check::Options::default()) {
+        Ok(examined) => (
+            examined.findings,
+            examined.analysed.map(|(_, report)| report),
+        ),
+        // Only claims are refused, and none are made.
+        Err(finding) => (Findings(vec![*finding]), None),
     };
     let drawn = draw(&findings.0, "rules.yaml", text, false);
     (findings, drawn, report)

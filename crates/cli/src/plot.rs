@@ -3,7 +3,7 @@
 use std::{io::Write as _, path::PathBuf};
 
 use fuzzy::{
-    Engine, Model,
+    Engine,
     drawing::{Axis, Cell, Scale, Slice, variables_svg, variables_text},
 };
 
@@ -30,21 +30,23 @@ const POINTS: usize = 401;
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model])?;
     let svg = files.optional(arguments.svg.as_ref())?;
-    let (model, engine) = rule_set::load(&arguments.model)?;
-    let curves = curves(&model, &engine)?;
+    let engine = rule_set::load(&arguments.model)?;
+    let model = engine.model();
+    let curves = curves(&engine)?;
     if let Some(svg) = svg {
-        svg.write(&variables_svg(&model, &curves))?;
+        svg.write(&variables_svg(model, &curves))?;
         return Ok(Exit::Clean);
     }
     let mut out = Stdout::text();
-    write!(out, "{}", variables_text(&model, &curves, painted))?;
+    write!(out, "{}", variables_text(model, &curves, painted))?;
     out.finish()?;
     Ok(Exit::Clean)
 }
 
 /// The outputs over the only input; none where there are more. Each point is evaluated once for all outputs: in a chain one output
 /// needs those before it.
-fn curves(model: &Model, engine: &Engine) -> Result<Vec<Slice>, Failure> {
+fn curves(engine: &Engine) -> Result<Vec<Slice>, Failure> {
+    let model = engine.model();
     let [input] = &model.inputs[..] else {
         return Ok(Vec::new());
     };

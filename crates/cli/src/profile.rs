@@ -7,7 +7,7 @@ use flagred::{
     profile::Profile,
     shipped,
 };
-use fuzzy::Model;
+use fuzzy::Source;
 
 use crate::{
     diagnostics::{read_text, refuse, show},
@@ -22,27 +22,27 @@ pub(crate) const DEFAULT: &str = "flagred";
 /// Compiles a profile, which is a shipped one's name or a file, with its rule set. Warnings are drawn on standard error.
 pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
     let loaded = loaded::load(name, |path| read_profile(name, path)).map_err(failure)?;
-    show(&loaded.warnings, name, &loaded.profile_text);
+    show(&loaded.warnings, name, loaded.profile.text());
     Ok(loaded)
 }
 
 /// As [`load`], of a text that was read from a file.
-pub(crate) fn from_text(path: &Path, text: String) -> Result<Loaded, Failure> {
+pub(crate) fn from_source(path: &Path, source: Source) -> Result<Loaded, Failure> {
     let name = path.display().to_string();
     let is_stdin = path == Path::new("-");
     let folder = path.parent().filter(|_| !is_stdin);
-    let loaded = loaded::from_text(&name, text, folder, read_text).map_err(failure)?;
-    show(&loaded.warnings, &name, &loaded.profile_text);
+    let loaded = loaded::from_source(&name, source, folder, read_text).map_err(failure)?;
+    show(&loaded.warnings, &name, loaded.profile.text());
     Ok(loaded)
 }
 
-/// The rule set that a profile names, and its text.
-pub(crate) fn model(profile: &Profile, folder: Option<&Path>) -> Result<(Model, String), Failure> {
-    loaded::model(profile, folder, read_text).map_err(failure)
+/// The rule set that a profile names. It compiles.
+pub(crate) fn rule_set(profile: &Profile, folder: Option<&Path>) -> Result<Source, Failure> {
+    loaded::rule_set(profile, folder, read_text).map_err(failure)
 }
 
-/// Reads a profile without its rule set: also its text, and of a file the folder it is in.
-pub(crate) fn read(name: &str) -> Result<(Profile, String, Option<PathBuf>), Failure> {
+/// Reads a profile without its rule set: also what it was written as, and of a file the folder it is in.
+pub(crate) fn read(name: &str) -> Result<(Profile, Source, Option<PathBuf>), Failure> {
     loaded::read(name, |path| read_profile(name, path)).map_err(failure)
 }
 

@@ -50,15 +50,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading(arguments.data.iter().chain([&rewrite.model]))?;
     let output = files.output(&rewrite.output, Replace::forced(rewrite.force))?;
     let name = rewrite.model.display().to_string();
-    let (document, text) = rule_set::read(&rewrite.model)?;
-    rule_set::compile(&document, &name, &text)?;
-    let model = document.model;
-    let (rows, refused) = rows(arguments, &model)?;
+    let source = rule_set::read(&rewrite.model)?;
+    let model = rule_set::engine(&source, &name)?.model();
+    let (rows, refused) = rows(arguments, model)?;
     let mut settings = SimplifySettings::default();
     settings.tolerance = arguments.tolerance;
     settings.rows_only = arguments.rows_only;
     settings.seed = arguments.seed;
-    let simplified = simplify(&model, &rows, &settings).map_err(|error| {
+    let simplified = simplify(model, &rows, &settings).map_err(|error| {
         let help = match error {
             SimplifyError::NoRows => {
                 "the tables have a header and no rows; leave out `--rows-only`"
@@ -72,12 +71,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     })?;
     let outcome = Outcome {
         arguments,
-        model: &model,
+        model,
         rows: rows.first().map_or(0, Vec::len),
         refused,
         simplified,
     };
-    output.write(&outcome.rule_set(&text)?)?;
+    output.write(&outcome.rule_set(source.text())?)?;
     let mut out = Stdout::beside(&[&output]);
     if rewrite.json {
         serde_json::to_writer_pretty(&mut out, &outcome.document())

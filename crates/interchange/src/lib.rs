@@ -31,7 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use fuzzy::{Diagnostic, Findings, Model, format::Document};
+use fuzzy::{Diagnostic, Findings, Model, Source, format::Document};
 
 mod blocks;
 mod comments;
@@ -157,6 +157,18 @@ pub fn document(text: &str) -> Result<Document, Findings> {
     let document = read(text, format, Losses::Refuse)?;
     document.validate(text)?;
     Ok(document)
+}
+
+/// A text in whatever format it is, as [`document`] reads it.
+pub fn source(text: impl Into<String>) -> Source {
+    let text = text.into();
+    match Format::of(&text) {
+        None => Source::new(text),
+        Some(_) => {
+            let document = document(&text);
+            Source::with_document(text, document)
+        }
+    }
 }
 
 /// What [`write()`] makes.

@@ -13,10 +13,7 @@ use fuzzy::{Engine, Model};
 
 /// Rule sets of this repository that formats can say.
 const SETS: [(&str, &str); 4] = [
-    (
-        "flagred",
-        include_str!("../../../rules/flagred.yaml"),
-    ),
+    ("flagred", include_str!("../../../rules/flagred.yaml")),
     (
         "flagred-paper",
         include_str!("../../../rules/flagred-paper.yaml"),

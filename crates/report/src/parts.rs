@@ -457,7 +457,7 @@ fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
 /// The profile and the rule set as they are written.
 pub(crate) fn texts(loaded: &Loaded) -> Markup {
     html! {
-        h2 { "Profile" } pre { (loaded.profile_text) }
-        h2 { "Rule set" } pre { (loaded.rules_text) }
+        h2 { "Profile" } pre { (loaded.profile.text()) }
+        h2 { "Rule set" } pre { (loaded.rules.text()) }
     }
 }

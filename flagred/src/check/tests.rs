@@ -1,5 +1,3 @@
-use fuzzy::Model;
-
 use super::*;
 use crate::verdict::Level;
 
@@ -34,15 +32,20 @@ const SIGNALS: [(&str, &str); 4] = [
     ("roll_deg", "deg"),
 ];
 
-fn rules(text: &str) -> Model {
-    fuzzy::yaml::parse(text).unwrap().model
+/// The findings of a profile's text with a rule set's text.
+fn fit(text: &str, rules: &str) -> (Findings, Option<Estimator>) {
+    profile(
+        &fuzzy::Source::new(text),
+        &fuzzy::Source::new(rules),
+        &SIGNALS,
+    )
 }
 
 /// What is found after a part of the profile, or of the rule set, is replaced: the text it is about, and the finding.
 fn found(replaced: &str, by: &str) -> Vec<String> {
     let (text, model) = (PROFILE.replace(replaced, by), RULES.replace(replaced, by));
     assert_ne!((PROFILE, RULES), (text.as_str(), model.as_str()));
-    let (findings, estimator) = profile(&text, &rules(&model), &SIGNALS);
+    let (findings, estimator) = fit(&text, &model);
     let is_error = |one: &Diagnostic| one.severity == Severity::Error;
     assert_eq!(estimator.is_none(), findings.0.iter().any(is_error));
     let shown = |one: &Diagnostic| format!("{}: {one}", &text[one.span.clone()]);
@@ -51,12 +54,12 @@ fn found(replaced: &str, by: &str) -> Vec<String> {
 
 #[test]
 fn a_profile_that_fits_its_rule_set_has_no_finding() {
-    let (findings, estimator) = profile(PROFILE, &rules(RULES), &SIGNALS);
+    let (findings, estimator) = fit(PROFILE, RULES);
     assert_eq!(findings.0, []);
     assert!(estimator.is_some());
     for (shipped, rules) in crate::shipped::PROFILES.iter().zip([0, 1, 2]) {
-        let model = self::rules(crate::shipped::RULE_SETS[rules].text);
-        let (findings, estimator) = profile(shipped.text, &model, &SIGNALS);
+        let rules = crate::shipped::RULE_SETS[rules].text;
+        let (findings, estimator) = fit(shipped.text, rules);
         assert_eq!(findings.0, [], "{}", shipped.name);
         assert!(estimator.is_some());
     }
@@ -134,7 +137,7 @@ fn what_does_not_fit_is_told_at_its_place() {
 
 #[test]
 fn a_mistake_in_the_profile_is_told_first() {
-    let (findings, estimator) = profile("flagred: 1\nname: x", &rules(RULES), &SIGNALS);
+    let (findings, estimator) = fit("flagred: 1\nname: x", RULES);
     assert!(estimator.is_none());
     assert!(findings.0.iter().all(|one| one.code == "missing-key"));
 }
@@ -146,7 +149,7 @@ fn the_levels_of_another_risk_are_checked_at_their_place() {
         "  tip_over: {range: [0, 100], partition: [low, medium, high]}\nrules:\n  - IF margin IS low THEN tip_over IS high\n  - IF margin IS high THEN tip_over IS low",
     );
     let text = format!("{PROFILE}other_risks:\n  tip_over:\n    fail: {{risk: 95}}\n");
-    let (findings, estimator) = profile(&text, &self::rules(&rules), &SIGNALS);
+    let (findings, estimator) = fit(&text, &rules);
     let [finding] = findings.0.as_slice() else {
         panic!("{findings}")
     };
@@ -169,12 +172,12 @@ fn an_input_beside_the_motors_that_raises_no_level_alone_is_outvoted() {
     let found = |rule: &str, signal: &str| {
         let rules = rules.replacen("\nrules:\n", &format!("\nrules:\n  - {rule}\n"), 1);
         let text = with(signal);
-        let (_, estimator) = profile(&text, &self::rules(&rules), &SIGNALS);
+        let (_, estimator) = fit(&text, &rules);
         let estimator = estimator.unwrap();
         let reached = alone(&estimator)
             .into_iter()
             .find(|one| one.input == "battery");
-        let told = outvoted(&text, &estimator).0;
+        let told = outvoted(&fuzzy::Source::new(&*text), &estimator).0;
         (
             reached.unwrap(),
             told.iter()
@@ -199,7 +202,14 @@ fn an_input_beside_the_motors_that_raises_no_level_alone_is_outvoted() {
     assert_eq!(found(vote, "{mean: motor_command}").1, [] as [&str; 0]);
 
     let shipped = crate::shipped::flagred_battery();
-    assert_eq!(outvoted(crate::shipped::PROFILES[2].text, &shipped).0, []);
+    assert_eq!(
+        outvoted(
+            &fuzzy::Source::new(crate::shipped::PROFILES[2].text),
+            &shipped
+        )
+        .0,
+        []
+    );
     let reached = alone(&shipped);
     let battery = reached.iter().find(|one| one.input == "battery").unwrap();
     assert_eq!(

@@ -4,9 +4,9 @@ use alloc::{format, string::String, vec::Vec};
 use core::str::FromStr;
 
 use fuzzy::{
+    Source,
     diagnostic::{Diagnostic, Findings},
     tree::{Fields, Node, Value},
-    yaml,
 };
 
 mod findings;
@@ -39,17 +39,20 @@ impl FromStr for Profile {
 
     /// Reads a profile from YAML; on failure gives all errors of the text, each with its location and help.
     fn from_str(text: &str) -> Result<Profile, Findings> {
-        Profile::from_tree(&yaml::read(text)?, text)
+        Profile::from_source(&Source::new(text))
     }
 }
 
 impl Profile {
-    /// Reads a profile from the tree of a text.
-    pub(crate) fn from_tree(tree: &Node, text: &str) -> Result<Profile, Findings> {
+    /// As [`from_str`](Self::from_str), of a text that others read too.
+    ///
+    /// # Errors
+    /// As [`from_str`](Self::from_str).
+    pub fn from_source(source: &Source) -> Result<Profile, Findings> {
         let mut found = Vec::new();
-        match read(tree, &mut found) {
+        match read(source.tree().map_err(Clone::clone)?, &mut found) {
             Some(profile) if found.is_empty() => Ok(profile),
-            _ => Err(Findings::locate(found, text)),
+            _ => Err(Findings::locate(found, source.text())),
         }
     }
 }

@@ -225,28 +225,21 @@ fn claims(
     Ok((found.collect(), probe.is_complete))
 }
 
-/// Checks a rule set that was read: its errors, or else the warnings of reading and the analysis, as located findings.
-///
-/// A rule set without rules is read with a warning, because rules are learned into it; here it is an error.
+/// Checks a rule set that was read from a text: the warnings of reading and the analysis, as located findings. `engine` is
+/// what it compiles to.
 ///
 /// # Errors
 /// As [`check`].
 pub fn document(
     document: &Document,
+    engine: &Engine,
     text: &str,
     options: &Options,
-) -> Result<(Findings, Option<Report>), alloc::boxed::Box<Diagnostic>> {
-    if let Err(findings) = document.validate(text) {
-        return Ok((findings, None));
-    }
-    let engine = match Engine::new(&document.model) {
-        Ok(engine) => engine,
-        Err(findings) => return Ok((findings, None)),
-    };
-    let report = check(&engine, options)?;
+) -> Result<(Findings, Report), alloc::boxed::Box<Diagnostic>> {
+    let report = check(engine, options)?;
     let mut findings = document.warnings.0.clone();
     findings.extend(report.findings(&document.model, &document.spans));
-    Ok((Findings::locate(findings, text), Some(report)))
+    Ok((Findings::locate(findings, text), report))
 }
 
 /// The rules that fire nowhere, ascending.

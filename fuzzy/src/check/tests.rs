@@ -105,9 +105,9 @@ inputs: {heat: {range: [0, 40], partition: {hot: 35, cool: 5}}}
 outputs: {speed: {range: [0, 10], partition: [slow, fast]}}
 rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
 ";
-    let document = crate::yaml::parse(text).unwrap();
-    let (findings, report) = super::document(&document, text, &Options::default()).unwrap();
-    assert!(report.is_some());
+    let source = crate::Source::new(text);
+    let (document, engine) = (source.document().unwrap(), source.engine().unwrap());
+    let (findings, _) = super::document(document, engine, text, &Options::default()).unwrap();
     let found = findings
         .0
         .iter()

@@ -46,6 +46,11 @@ impl Engine {
         if !invalid.is_empty() {
             return Err(Findings(invalid));
         }
+        Ok(Engine::compile(model))
+    }
+
+    /// Compiles a valid model.
+    pub(crate) fn compile(model: &Model) -> Self {
         let (first, later) = stages(model);
         let inputs = model.inputs.iter().map(Input::of);
         let outputs = model.outputs.iter().map(|output| NamedOutput {
@@ -68,7 +73,7 @@ impl Engine {
                 chain.conclusions(&said);
             }
         }
-        Ok(engine)
+        engine
     }
 }
 

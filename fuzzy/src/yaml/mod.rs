@@ -78,8 +78,12 @@ pub fn read(text: &str) -> Result<Node, Findings> {
 /// # Ok::<(), fuzzy::diagnostic::Findings>(())
 /// ```
 pub fn parse(text: &str) -> Result<Document, Findings> {
-    let tree = read(text)?;
-    match format::read(&tree) {
+    document(&read(text)?, text)
+}
+
+/// The rule set in the tree of a text.
+pub(crate) fn document(tree: &Node, text: &str) -> Result<Document, Findings> {
+    match format::read(tree) {
         Ok(document) => Ok(Document {
             warnings: Findings::locate(document.warnings.0, text),
             ..document

@@ -47,7 +47,7 @@ function of(text: string): Known {
 function read(text: string): Known {
   const open = new RuleText(text);
   try {
-    return { text, open, set: new RuleSet(text), refusal: '' };
+    return { text, open, set: open.ruleSet(), refusal: '' };
   } catch (error) {
     if (!(error instanceof Error) || error.name === 'Panic') throw error;
     return { text, open, set: undefined, refusal: error.message };

@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use flagred::loaded::Loaded;
 use flagred_report::Stretch;
 use flagred_report::page::{self, Subject};
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
@@ -29,8 +30,7 @@ impl Comparison {
             loaded: Rc::clone(&assessment.loaded),
         };
         if let Some(first) = self.0.first()
-            && (&first.loaded.profile_text, &first.loaded.rules_text)
-                != (&added.loaded.profile_text, &added.loaded.rules_text)
+            && texts(&first.loaded) != texts(&added.loaded)
         {
             let message = "flights are compared that were assessed with one profile";
             return Err(failure(message, None));
@@ -79,4 +79,8 @@ impl Comparison {
     fn subjects(&self) -> Vec<&Subject> {
         self.0.iter().map(|one| &*one.subject).collect()
     }
+}
+
+fn texts(loaded: &Loaded) -> (&str, &str) {
+    (loaded.profile.text(), loaded.rules.text())
 }

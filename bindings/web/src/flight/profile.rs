@@ -37,9 +37,10 @@ impl Profile {
             Some(text) => text,
             None => shipped_text(&name)?,
         };
+        let text = fuzzy::Source::new(text);
         let loaded = match &rules {
-            Some(rules) => loaded::with_rules(&name, text, rules.clone()),
-            None => loaded::from_text(&name, text, None, no_file),
+            Some(rules) => loaded::with_rules(&name, text, fuzzy::Source::new(rules)),
+            None => loaded::from_source(&name, text, None, no_file),
         };
         Ok(Profile {
             loaded: Rc::new(loaded.map_err(refusal)?),
@@ -62,13 +63,17 @@ impl Profile {
     /// Its text.
     #[wasm_bindgen(getter)]
     pub fn text(&self) -> String {
-        self.loaded.profile_text.clone()
+        self.loaded.profile.text().to_owned()
     }
 
     /// What does not keep it from being used, drawn in its text; empty where there is nothing.
     #[wasm_bindgen(getter)]
     pub fn warnings(&self) -> String {
-        drawn(&self.loaded.warnings, &self.name, &self.loaded.profile_text)
+        drawn(
+            &self.loaded.warnings,
+            &self.name,
+            self.loaded.profile.text(),
+        )
     }
 
     /// The signals that are to be read of a log to assess it and to draw the report.
@@ -91,7 +96,7 @@ impl Profile {
         let changes: Value = serde_json::from_str(changes).map_err(|error| failure(error, None))?;
         let mut wanted = self.loaded.estimator.profile().verdict;
         change(&mut wanted, &changes);
-        let text = &self.loaded.profile_text;
+        let text = self.loaded.profile.text();
         let text = flagred::profile::Profile::rewritten(text, &wanted);
         let text = text.map_err(|findings| {
             let first = findings.0.first();

@@ -18,8 +18,8 @@ use crate::failure::failure;
 /// The document of `flagred check --json`. A rule set that a profile names is a shipped one.
 #[wasm_bindgen(js_name = checkRules)]
 pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
-    if flagred_authoring::is_profile(text) {
-        let document = text::document(text);
+    let document = text::document(text);
+    if document.is_profile() {
         let name = document.profile().map(|profile| profile.name.as_str());
         let alone = document.alone();
         return json(&Checked::profile(
@@ -29,7 +29,7 @@ pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
             &alone,
         ));
     }
-    let examined = flagred_authoring::examine(text, &check::Options::default());
+    let examined = flagred_authoring::examine(document.source(), &check::Options::default());
     let examined =
         examined.map_err(|finding| failure(&finding.message, finding.help.as_deref()))?;
     json(&Checked::rules(file, &examined))

@@ -1,10 +1,8 @@
 //! A rule set, compiled: its values, their reasons, maps and pictures.
 
-use flagred::{
-    gap::Filling,
-    loaded::{self, LoadError},
-};
+use flagred::gap::Filling;
 use flagred_authoring::{
+    Document,
     answers::Explained,
     slice::{self, Mapped},
 };
@@ -118,15 +116,7 @@ impl RuleSet {
     /// Compiles a rule set in YAML, FIS, FLL, FCL or FML, or the rule set of a profile.
     #[wasm_bindgen(constructor)]
     pub fn new(text: &str) -> Result<RuleSet, JsError> {
-        if flagred_authoring::is_profile(text) {
-            return of_profile(text);
-        }
-        let document = flagred_interchange::document(text).map_err(refused)?;
-        document.validate(text).map_err(refused)?;
-        Ok(RuleSet {
-            engine: Engine::new(&document.model).map_err(refused)?,
-            profile: None,
-        })
+        RuleSet::of(&super::text::document(text))
     }
 
     /// Its name, inputs, outputs and rules, as JSON.
@@ -270,6 +260,26 @@ impl RuleSet {
         }
     }
 
+    /// Compiles an open text.
+    pub(super) fn of(document: &Document) -> Result<RuleSet, JsError> {
+        if !document.is_profile() {
+            let engine = document.source().engine().map_err(refused)?.clone();
+            let profile = None;
+            return Ok(RuleSet { engine, profile });
+        }
+        let estimator = document.estimator();
+        let estimator = estimator.ok_or_else(|| refused(document.findings()))?;
+        let engine = estimator.engine().clone();
+        let profile = estimator.profile();
+        let output = engine.output(&profile.output).unwrap_or(0);
+        let filling = Filling::new(&engine, engine.model(), output, &profile.gap);
+        let filling = filling.map_err(|error| failure(error, None))?;
+        Ok(RuleSet {
+            profile: Some((output, filling, profile.gap.method.name())),
+            engine,
+        })
+    }
+
     fn slice(&self, view: &View) -> Result<Slice, JsError> {
         let inputs = &self.model().inputs;
         let axis = |(input, part): &(usize, Scale)| {
@@ -282,22 +292,4 @@ impl RuleSet {
         let cut = slice::cut(&self.mapped(view.output), x, axes.next(), view.held.clone());
         cut.map_err(|error| failure(error, None))
     }
-}
-
-fn of_profile(text: &str) -> Result<RuleSet, JsError> {
-    let loaded = loaded::from_text("the profile", text.to_owned(), None, |_| Err(()));
-    let loaded = loaded.map_err(|error| match error {
-        LoadError::Findings { findings, .. } => refused(findings),
-        LoadError::Unusable { message, help } => failure(message, help.as_deref()),
-        LoadError::Read(()) => failure("a rule set in a file cannot be read here", None),
-    })?;
-    let engine = loaded.estimator.engine().clone();
-    let profile = loaded.estimator.profile();
-    let output = engine.output(&profile.output).unwrap_or(0);
-    let filling = Filling::new(&engine, engine.model(), output, &profile.gap);
-    let filling = filling.map_err(|error| failure(error, None))?;
-    Ok(RuleSet {
-        profile: Some((output, filling, profile.gap.method.name())),
-        engine,
-    })
 }

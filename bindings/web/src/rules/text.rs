@@ -9,7 +9,7 @@ use fuzzy::{
 use serde::Serialize;
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 
-use super::json;
+use super::{json, set::RuleSet};
 use crate::failure::failure;
 
 /// Points of a curve.
@@ -45,6 +45,12 @@ impl RuleText {
     #[wasm_bindgen(getter, js_name = isProfile)]
     pub fn is_profile(&self) -> bool {
         self.document.is_profile()
+    }
+
+    /// The rule set, or the profile with its rule set, compiled.
+    #[wasm_bindgen(js_name = ruleSet)]
+    pub fn rule_set(&self) -> Result<RuleSet, JsError> {
+        RuleSet::of(&self.document)
     }
 
     /// What `flagred check` finds, as a JSON array.

@@ -83,7 +83,7 @@ struct Plan {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model, &arguments.points])?;
     let output = files.output(&arguments.output, Replace::Yes)?;
-    let (_, engine) = rule_set::load(&arguments.model)?;
+    let engine = rule_set::load(&arguments.model)?;
     let format = &arguments.format;
     let (header, reader) = table::open(&arguments.points, format.delimiter)?;
     let names: Vec<&str> = engine.input_names().collect();

@@ -75,11 +75,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let loaded = if arguments.lua || profile::is_shipped(&arguments.file) {
         profile::load(&arguments.file)?
     } else {
-        let text = profile::file_text(path)?;
-        if is_meant_as_rules(&text) && !flagred_authoring::is_profile(&text) {
-            return rules::export(arguments, &text);
+        let source = flagred_interchange::source(profile::file_text(path)?);
+        if is_meant_as_rules(source.text()) && !flagred_authoring::is_profile(&source) {
+            return rules::export(arguments, &source);
         }
-        profile::from_text(path, text)?
+        profile::from_source(path, source)?
     };
     if arguments.lossy {
         return Err(Failure::usage(
@@ -121,15 +121,15 @@ impl Arguments {
 fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
     let path = Path::new(&arguments.file);
     // The name of a built-in profile is that of its rule set, too.
-    let (document, text) = rule_set::read(path)?;
-    rule_set::compile(&document, &arguments.file, &text)?;
+    let source = rule_set::read(path)?;
+    let model = rule_set::engine(&source, &arguments.file)?.model();
     let output = Files::reading([path])?.output(&arguments.output, Replace::Yes)?;
     let losses = match arguments.lossy {
         true => Losses::Accept,
         false => Losses::Refuse,
     };
     let tell = |findings: &fuzzy::Findings| findings.to_string().lines().for_each(say);
-    match flagred_interchange::write(&document.model, format, losses) {
+    match flagred_interchange::write(model, format, losses) {
         Ok(written) => {
             tell(&written.findings);
             output.write(&written.text)?;

@@ -9,10 +9,14 @@ use flagred::{
     },
     plan,
 };
-use fuzzy::model::{Model, Variable};
+use fuzzy::{
+    Engine, Source,
+    model::{Model, Variable},
+};
 
 use super::{Arguments, bytes_of_rules, c, harmless, rust};
 use crate::{
+    diagnostics::refuse,
     failure::{Exit, Failure},
     output::{Files, Replace, say},
     rule_set,
@@ -22,10 +26,10 @@ use crate::{
 const MOST_STACK_BYTES: usize = 1 << 20;
 
 /// Writes a rule set in Rust or C.
-pub(super) fn export(arguments: &Arguments, text: &str) -> Result<Exit, Failure> {
+pub(super) fn export(arguments: &Arguments, source: &Source) -> Result<Exit, Failure> {
     let file = &arguments.file;
-    let mut document = rule_set::parse(file, text)?;
-    for output in &mut document.model.outputs {
+    let mut model = rule_set::engine(source, file)?.model().clone();
+    for output in &mut model.outputs {
         if let Some(sampling) = output.samples.take_if(|_| arguments.lossy) {
             say(&format!(
                 "warning: output `{}` is exact, and not of {} samples",
@@ -33,9 +37,9 @@ pub(super) fn export(arguments: &Arguments, text: &str) -> Result<Exit, Failure>
             ));
         }
     }
-    let engine = rule_set::compile(&document, file, text)?;
+    let engine = Engine::new(&model).map_err(|findings| refuse(&findings, file, source.text()))?;
+    let model = &model;
     let output = Files::reading([Path::new(file)])?.output(&arguments.output, Replace::Yes)?;
-    let model = &document.model;
     let rules = plan::rules(&engine).map_err(|refused| {
         let sampled = model.outputs.iter().any(|output| output.samples.is_some());
         let help = match sampled {

@@ -79,8 +79,8 @@ struct Outcome {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (_, output) = arguments.rows.files()?;
     let name = arguments.rows.rewrite.model.display().to_string();
-    let (document, text) = rule_set::read(&arguments.rows.rewrite.model)?;
-    let mut model = document.model;
+    let source = rule_set::read(&arguments.rows.rewrite.model)?;
+    let mut model = rule_set::document(&source, &name)?.model.clone();
     if !arguments.keep_rules {
         model.rules.clear();
     }
@@ -123,7 +123,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         learned,
         counterexamples,
     };
-    output.write(&report::rule_set(arguments, &outcome, &text)?)?;
+    output.write(&report::rule_set(arguments, &outcome, source.text())?)?;
     let mut out = Stdout::beside(&[&output]);
     if arguments.rows.rewrite.json {
         let document = report::Document::new(arguments, &outcome);

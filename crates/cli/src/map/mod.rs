@@ -12,7 +12,7 @@ use flagred::{
 };
 use flagred_authoring::slice::POINTS;
 use fuzzy::{
-    Engine, Model,
+    Engine,
     drawing::visible,
     drawing::{Colour, Slice, map_svg, map_text, rules_svg, rules_text, short, surface_svg},
     map::{DecisionMap, Grid},
@@ -148,7 +148,6 @@ fn fix(text: &str) -> Result<(String, f64), String> {
 
 /// A rule set, compiled, and what fills its gaps, with the name of the method.
 struct Evaluated {
-    model: Model,
     engine: Engine,
     output: usize,
     filling: Option<(Filling, &'static str)>,
@@ -168,7 +167,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model])?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let evaluated = evaluate(arguments)?;
-    let output = evaluated.model.outputs.get(evaluated.output);
+    let output = evaluated.engine.model().outputs.get(evaluated.output);
     if let Some(output) = output.filter(|output| output.keeps_previous()) {
         output::say(&format!(
             "note: `{}` keeps its previous value where no rule fires; a map has none before its cells",
@@ -177,7 +176,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let mut out = Stdout::text();
     let whole = arguments.fix.is_empty() && arguments.x.is_none() && arguments.y.is_none();
-    if arguments.csv && whole && evaluated.model.inputs.len() > 2 {
+    if arguments.csv && whole && evaluated.engine.model().inputs.len() > 2 {
         write_whole(&mut out, arguments, evaluated)?;
         out.finish()?;
         return Ok(Exit::Clean);
@@ -186,7 +185,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     for note in notes {
         output::say(&format!("note: {note}"));
     }
-    let model = &evaluated.model;
+    let model = &evaluated.engine.model();
     match &svg {
         _ if arguments.csv => write_slice(&mut out, &slice)?,
         None if arguments.activations => {
@@ -228,17 +227,15 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
         Some(known) => known.text.to_owned(),
         None => read_text(&arguments.model)?,
     };
-    let (model, engine, estimator) = if flagred_authoring::is_profile(&text) {
+    let source = flagred_interchange::source(text);
+    let (engine, estimator) = if flagred_authoring::is_profile(&source) {
         let Loaded { estimator, .. } = match built_in {
             Some(known) => profile::load(known.name)?,
-            None => profile::from_text(&arguments.model, text)?,
+            None => profile::from_source(&arguments.model, source)?,
         };
-        let engine = estimator.engine().clone();
-        (engine.model().clone(), engine, Some(estimator))
+        (estimator.engine().clone(), Some(estimator))
     } else {
-        let document = rule_set::parse(&file, &text)?;
-        let engine = rule_set::compile(&document, &file, &text)?;
-        (document.model, engine, None)
+        (rule_set::engine(&source, &file)?.clone(), None)
     };
     let profile = estimator.as_ref().map(Estimator::profile);
     let wanted = arguments.output.as_deref();
@@ -263,14 +260,13 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
         settings
     };
     let filling = method.map(|method| {
-        let filling = Filling::new(&engine, &model, output, &settings(method));
+        let filling = Filling::new(&engine, engine.model(), output, &settings(method));
         filling
             .map(|filling| (filling, method.name()))
             .map_err(|error| Failure::unreadable(format!("`{file}` cannot be mapped: {error}")))
     });
     Ok(Evaluated {
         filling: filling.transpose()?,
-        model,
         engine,
         output,
     })
@@ -284,7 +280,7 @@ fn write_whole(
 ) -> Result<(), Failure> {
     let points = match arguments.points {
         Some(points) => usize::from(points),
-        None => points_along(evaluated.model.inputs.len()),
+        None => points_along(evaluated.engine.model().inputs.len()),
     };
     let no_map = |error: &dyn std::fmt::Display| {
         Failure::unreadable(format!(

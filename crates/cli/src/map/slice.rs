@@ -11,7 +11,7 @@ pub(super) fn cut(
     arguments: &Arguments,
     evaluated: &Evaluated,
 ) -> Result<(Slice, Vec<String>), Failure> {
-    let model = &evaluated.model;
+    let model = evaluated.engine.model();
     let unknown = |name: &str| {
         let inputs = model.inputs.iter().map(|input| input.name.as_str());
         Failure::usage(format!("the rule set has no input `{name}`"))

@@ -144,11 +144,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let svg = files.optional(arguments.svg.as_ref())?;
     let checkpoint = files.optional(arguments.checkpoint.as_ref())?;
     let name = arguments.rows.rewrite.model.display().to_string();
-    let (document, text) = rule_set::read(&arguments.rows.rewrite.model)?;
-    rule_set::compile(&document, &name, &text)?;
-    let original = document.model;
-    let resumed = resumed(arguments, &original)?;
-    let begun = resumed.as_ref().unwrap_or(&original);
+    let source = rule_set::read(&arguments.rows.rewrite.model)?;
+    let original = rule_set::engine(&source, &name)?.model();
+    let resumed = resumed(arguments, original)?;
+    let begun = resumed.as_ref().unwrap_or(original);
     let (data, refused) = data(arguments, begun)?;
     let settings = settings(arguments);
     let failed = |error: TuneError| failure(&name, &error);
@@ -168,7 +167,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         true => None,
         false => {
             let mut told = |fold: u32, progress: &Progress<'_>| watch.step(progress, Some(fold));
-            cross_validate(&original, &data, &settings, arguments.folds, &mut told)
+            cross_validate(original, &data, &settings, arguments.folds, &mut told)
                 .map_err(failed)?
         }
     };
@@ -176,7 +175,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(worth) if arguments.learning_curve => {
             let mut told = |_: u32, _: &Progress<'_>| watch.more("learning curve");
             let folds = arguments.folds;
-            learning_curve(&original, &data, &settings, folds, worth, &mut told).map_err(failed)?
+            learning_curve(original, &data, &settings, folds, worth, &mut told).map_err(failed)?
         }
         _ => None,
     };
@@ -189,9 +188,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         curve,
         is_resumed: resumed.is_some(),
     };
-    let mut texts = vec![(&output, report::rule_set(arguments, &outcome, &text)?)];
+    let mut texts = vec![(
+        &output,
+        report::rule_set(arguments, &outcome, source.text())?,
+    )];
     if let Some(svg) = &svg {
-        texts.push((svg, moved_svg(&original, &outcome.tuned.model)));
+        texts.push((svg, moved_svg(original, &outcome.tuned.model)));
     }
     let written: Vec<&Output> = texts.iter().map(|(output, _)| *output).collect();
     let all_written = output::write_all(texts);
@@ -244,9 +246,10 @@ fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failur
     let Some(path) = arguments.checkpoint.as_ref().filter(|path| path.exists()) else {
         return Ok(None);
     };
-    let (document, _) = rule_set::read(path)?;
-    let resumed = flagred_tuning::with_numbers_of(model, &document.model);
-    let resumed = resumed.filter(|resumed| fingerprint(resumed) == fingerprint(&document.model));
+    let source = rule_set::read(path)?;
+    let saved = &rule_set::document(&source, &path.display().to_string())?.model;
+    let resumed = flagred_tuning::with_numbers_of(model, saved);
+    let resumed = resumed.filter(|resumed| fingerprint(resumed) == fingerprint(saved));
     if resumed.is_none() {
         let message = format!("`{}` is a checkpoint of another rule set", path.display());
         return Err(Failure::usage(message).help("name a new file, or remove this one"));
