@@ -293,7 +293,8 @@ impl Stage {
     ) {
         match &self.batch {
             Some(arrays) => self.dispatch::<false>(arrays, memory, columns, rows, results),
-            None if table::has_cells_alone(&self.arrays) => {
+            // Worth code of its own with wide vectors.
+            None if cfg!(feature = "simd") && table::has_cells_alone(&self.arrays) => {
                 self.dispatch::<true>(&self.arrays, memory, columns, rows, results);
             }
             None => self.dispatch::<false>(&self.arrays, memory, columns, rows, results),

@@ -162,6 +162,27 @@ pub(super) fn fire_row_into<A: Arrays>(
     fire_blocks(table, degrees, partial, stack, firing);
 }
 
+/// As [`fire_row_into`], with one copy of the code for all operators: it is for what is asked seldom.
+pub(super) fn fire_row_by_any<A: Arrays>(
+    table: &A,
+    mut finding: Finding<'_, 1>,
+    firing: &mut impl Act<1>,
+) {
+    finding.find_degrees(table);
+    if table.blocks().is_empty() {
+        let (and, or) = (table.and(), table.or());
+        let (and, or) = (|a, b| and.of(a, b), |a, b| or.of(a, b));
+        return fire_with::<A, 1, false>(table, and, or, finding, firing);
+    }
+    let Finding {
+        degrees,
+        partial,
+        stack,
+        ..
+    } = finding;
+    fire_blocks(table, degrees, partial, stack, firing);
+}
+
 /// Finds the rules that fire on the values where there are no blocks, and gives them to `firing`.
 #[inline(always)]
 fn fire_into<A: Arrays, const L: usize, const CELLS: bool>(

@@ -5,7 +5,7 @@ use core::ops::DerefMut;
 use super::acting::{Act, Strongest, fires};
 use super::closed::closed;
 use super::conjunctions::Partial;
-use super::firing::fire_row_into;
+use super::firing::fire_row_by_any;
 use super::{Action, Arrays, Buffers, ClosedForm, Output, Scratch, Table, clamp, value_in_row};
 
 impl Table<'_> {
@@ -39,7 +39,7 @@ pub(crate) fn raised_by<A, N, P, S>(
     scratch: &mut Buffers<N, P, S>,
     inputs: &[f64],
     (output, value): (usize, f64),
-    integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
+    mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
 ) -> Option<usize>
 where
     A: Arrays,
@@ -49,7 +49,7 @@ where
 {
     let middle = 0.5 * (table.outputs().get(output)?.low + value);
     let score = |alone: f64| alone - middle;
-    most(table, scratch, inputs, (output, score), integrate)
+    most(table, scratch, inputs, (output, &score), &mut integrate)
 }
 
 /// The index of the rule that says most that an output has a degree: of the rules that fire, the one with the largest
@@ -59,7 +59,7 @@ pub(crate) fn concluded_by<A, N, P, S>(
     scratch: &mut Buffers<N, P, S>,
     inputs: &[f64],
     (output, degree): (usize, impl Fn(f64) -> f64),
-    integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
+    mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
 ) -> Option<usize>
 where
     A: Arrays,
@@ -69,7 +69,7 @@ where
 {
     const NOT_AT_ALL: f64 = 1e-9;
     let score = |alone: f64| degree(alone).max(NOT_AT_ALL);
-    most(table, scratch, inputs, (output, score), integrate)
+    most(table, scratch, inputs, (output, &score), &mut integrate)
 }
 
 /// The index of the rule with the largest product of its firing strength and the score of `alone`.
@@ -77,8 +77,8 @@ fn most<A, N, P, S>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,
     inputs: &[f64],
-    (output, score): (usize, impl Fn(f64) -> f64),
-    mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
+    (output, score): (usize, &dyn Fn(f64) -> f64),
+    integrate: &mut dyn FnMut(usize, &[f64]) -> Option<f64>,
 ) -> Option<usize>
 where
     A: Arrays,
@@ -108,10 +108,10 @@ where
         } else if closed(table, of, strengths, &mut [], values, &mut value) {
             Some(value[0])
         } else {
-            value_in_row(table, output, of, strengths.as_flattened(), &mut integrate)
+            value_in_row(table, output, of, strengths.as_flattened(), &mut *integrate)
         };
         *strengths.get_mut(index)? = [0.0];
-        alone.filter(|value| !value.is_nan()).map(&score)
+        alone.filter(|value| !value.is_nan()).map(score)
     };
     let mut raising = Raising {
         least: table.least_strength(),
@@ -119,7 +119,7 @@ where
         score,
         most: None,
     };
-    fire_row_into(table, finding, &mut raising);
+    fire_row_by_any(table, finding, &mut raising);
     raising.most.map(|(_, rule)| rule as usize)
 }
 
