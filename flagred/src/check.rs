@@ -54,8 +54,7 @@ pub fn profile(
     let text = profile.text();
     let (tree, profile) = match (profile.tree(), Profile::from_source(profile)) {
         (Ok(tree), Ok(profile)) => (tree, profile),
-        (Err(findings), _) => return (findings.clone(), None),
-        (_, Err(findings)) => return (findings, None),
+        (Err(findings), _) | (_, Err(findings)) => return (findings, None),
     };
     let mut found = Vec::new();
     let at = Places(tree);
@@ -139,12 +138,9 @@ fn compile(
     at: &Places,
     found: &mut Vec<Diagnostic>,
 ) -> Option<Estimator> {
-    let engine = rules.engine();
-    let compiled = match engine {
-        Ok(engine) => Estimator::with_engine(profile, engine),
-        Err(findings) => Err(findings.clone().into()),
-    };
-    let error = match compiled {
+    let compiled = rules.engine().map_err(EstimatorError::from);
+    let engine = compiled.as_ref().ok().copied();
+    let error = match compiled.and_then(|engine| Estimator::with_engine(profile, engine)) {
         Ok(estimator) => return Some(estimator),
         Err(error) => error,
     };

@@ -192,7 +192,7 @@ fn compiled<E>(profile: &Profile, file: String, source: Source) -> Result<Source
         ))
         .help("a rule set has the keys `inputs`, `outputs` and `rules`"));
     }
-    match source.engine().err().cloned() {
+    match source.engine().err() {
         None => Ok(source),
         Some(findings) => Err(LoadError::Findings {
             file,

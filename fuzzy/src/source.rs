@@ -63,32 +63,39 @@ impl Source {
     /// # Errors
     /// As [`yaml::parse`], of the syntax alone.
     #[doc(hidden)] // For the packages of this repository.
-    pub fn tree(&self) -> Result<&Node, &Findings> {
-        self.tree.get_or_init(|| yaml::read(&self.text)).as_ref()
+    pub fn tree(&self) -> Result<&Node, Findings> {
+        kept(&self.tree, || yaml::read(&self.text))
     }
 
     /// The rule set with the span of each part.
     ///
     /// # Errors
     /// As [`yaml::parse`].
-    pub fn document(&self) -> Result<&Document, &Findings> {
-        let read = || yaml::document(self.tree().map_err(Clone::clone)?, &self.text);
-        self.document.get_or_init(read).as_ref()
+    pub fn document(&self) -> Result<&Document, Findings> {
+        kept(&self.document, || yaml::document(self.tree()?, &self.text))
     }
 
     /// The compiled rule set.
     ///
     /// # Errors
     /// As [`document`](Self::document); a rule set without rules, which can be read.
-    pub fn engine(&self) -> Result<&Engine, &Findings> {
+    pub fn engine(&self) -> Result<&Engine, Findings> {
         let compile = || {
-            let document = self.document().map_err(Clone::clone)?;
+            let document = self.document()?;
             // What was read here is valid but for lacking rules.
             match self.is_from_elsewhere || document.model.rules.is_empty() {
                 true => document.compile(&self.text),
                 false => Ok(Engine::compile(&document.model)),
             }
         };
-        self.engine.get_or_init(compile).as_ref()
+        kept(&self.engine, compile)
     }
+}
+
+/// What is kept, made now if it is not there yet.
+fn kept<T>(
+    place: &OnceLock<Result<T, Findings>>,
+    make: impl FnOnce() -> Result<T, Findings>,
+) -> Result<&T, Findings> {
+    place.get_or_init(make).as_ref().map_err(Findings::clone)
 }

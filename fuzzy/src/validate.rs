@@ -7,7 +7,6 @@ use alloc::{collections::BTreeMap, format, string::String, vec::Vec};
 use core::ops::Range;
 
 use crate::{
-    Engine,
     diagnostic::{Diagnostic, Findings, duplicate},
     model::{
         MembershipFunction, Model, Term, Variable,
@@ -50,15 +49,6 @@ impl Document {
             true => Ok(()),
             false => Err(Findings::locate(invalid, text)),
         }
-    }
-
-    /// Compiles its model; `text` is what it was read from.
-    ///
-    /// # Errors
-    /// As [`validate`](Self::validate).
-    pub fn compile(&self, text: &str) -> Result<Engine, Findings> {
-        self.validate(text)?;
-        Ok(Engine::compile(&self.model))
     }
 }
 

@@ -171,7 +171,7 @@ pub fn examine<'s>(
         (Ok(document), Ok(engine)) => (document, engine),
         (Err(findings), _) | (_, Err(findings)) => {
             return Ok(Examined {
-                findings: findings.clone(),
+                findings,
                 analysed: None,
             });
         }

@@ -26,7 +26,7 @@ pub(crate) fn read(path: &Path) -> Result<Source, Failure> {
 /// The rule set in a text that was read from a file. Its errors are drawn on standard error.
 pub(crate) fn document<'s>(source: &'s Source, file: &str) -> Result<&'s Document, Failure> {
     source.document().map_err(|findings| {
-        profile_instead(file, source).unwrap_or_else(|| refuse(findings, file, source.text()))
+        profile_instead(file, source).unwrap_or_else(|| refuse(&findings, file, source.text()))
     })
 }
 
@@ -39,7 +39,7 @@ pub(crate) fn load(path: &Path) -> Result<Engine, Failure> {
 pub(crate) fn engine<'s>(source: &'s Source, file: &str) -> Result<&'s Engine, Failure> {
     document(source, file)?;
     let engine = source.engine();
-    engine.map_err(|findings| refuse(findings, file, source.text()))
+    engine.map_err(|findings| refuse(&findings, file, source.text()))
 }
 
 /// What to say of a text that is no rule set because it is a profile: one thing, where its keys would be a page of

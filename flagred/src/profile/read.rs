@@ -50,7 +50,7 @@ impl Profile {
     /// As [`from_str`](Self::from_str).
     pub fn from_source(source: &Source) -> Result<Profile, Findings> {
         let mut found = Vec::new();
-        match read(source.tree().map_err(Clone::clone)?, &mut found) {
+        match read(source.tree()?, &mut found) {
             Some(profile) if found.is_empty() => Ok(profile),
             _ => Err(Findings::locate(found, source.text())),
         }

@@ -11,8 +11,9 @@ use super::{CompiledOutput, Engine, Input, NamedOutput, Stage};
 use crate::defuzzify::Method;
 use crate::diagnostic::Findings;
 use crate::model::{
-    Activation, MembershipFunction, Model, NoRuleFires, Output, Term, Variable, chain::stages,
-    document::Spans,
+    Activation, MembershipFunction, Model, NoRuleFires, Output, Term, Variable,
+    chain::stages,
+    document::{Document, Spans},
 };
 use crate::rule::{Condition, Hedge, Proposition};
 use crate::table::{Action, Op, Step};
@@ -74,6 +75,17 @@ impl Engine {
             }
         }
         engine
+    }
+}
+
+impl Document {
+    /// Compiles its model; `text` is what it was read from.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub fn compile(&self, text: &str) -> Result<Engine, Findings> {
+        self.validate(text)?;
+        Ok(Engine::compile(&self.model))
     }
 }
 

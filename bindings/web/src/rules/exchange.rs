@@ -28,9 +28,8 @@ pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
             notes: Vec::new(),
         });
     };
-    let read = flagred_interchange::read(text, format, losses(lossy))
-        .map_err(|findings| refused(&findings))?;
-    read.validate(text).map_err(|findings| refused(&findings))?;
+    let read = flagred_interchange::read(text, format, losses(lossy)).map_err(refused)?;
+    read.validate(text).map_err(refused)?;
     json(&Exchanged {
         text: fuzzy::yaml::to_string(&read.model),
         format: format.name(),
@@ -47,7 +46,7 @@ pub fn export(text: &str, format: &str, lossy: bool) -> Result<String, JsError> 
         let help = Format::ALL.map(Format::name).join(", ");
         failure(format!("`{format}` is not a format"), Some(&help))
     })?;
-    let document = flagred_interchange::document(text).map_err(|findings| refused(&findings))?;
+    let document = flagred_interchange::document(text).map_err(refused)?;
     match flagred_interchange::write(&document.model, known, losses(lossy)) {
         Ok(written) => json(&Exchanged {
             notes: notes(&written.findings),
@@ -75,6 +74,6 @@ fn notes(findings: &Findings) -> Vec<String> {
 }
 
 /// Findings that keep a text from being used.
-pub(super) fn refused(findings: &Findings) -> JsError {
+pub(super) fn refused(findings: Findings) -> JsError {
     failure(findings, None)
 }

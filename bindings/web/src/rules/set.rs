@@ -268,7 +268,7 @@ impl RuleSet {
             return Ok(RuleSet { engine, profile });
         }
         let estimator = document.estimator();
-        let estimator = estimator.ok_or_else(|| refused(document.findings()))?;
+        let estimator = estimator.ok_or_else(|| refused(document.findings().clone()))?;
         let engine = estimator.engine().clone();
         let profile = estimator.profile();
         let output = engine.output(&profile.output).unwrap_or(0);
