@@ -1,4 +1,4 @@
-// What docs/web.md shows, in Chromium: a worker that assesses a log, and a bundle.
+// What the README of the package shows, in Chromium: a worker that assesses a log, and a bundle.
 
 import assert from 'node:assert/strict';
 import { cp, readFile, writeFile } from 'node:fs/promises';
@@ -9,7 +9,7 @@ import { browser, serve, tab } from '../../../web/tests/page.mjs';
 import { install, repository } from './installed.mjs';
 
 const { folder } = await install();
-const document = await readFile(join(repository, 'docs/web.md'), 'utf8');
+const document = await readFile(join(repository, 'bindings/web/README.md'), 'utf8');
 for (const [, code, name] of document.matchAll(/^```js\n(\/\/ (\w+\.js).*?)^```$/gms)) await writeFile(join(folder, name), code);
 await cp(join(folder, 'node_modules/flagred'), join(folder, 'flagred'), { recursive: true });
 await cp(join(repository, 'rules/tipper.yaml'), join(folder, 'tipper.yaml'));

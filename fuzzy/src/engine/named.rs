@@ -5,7 +5,7 @@ use core::ops::Index;
 
 use smallvec::{SmallVec, smallvec};
 
-use super::{Engine, EvaluateError, NamedOutput, Outcome, Outcomes};
+use super::{Engine, EvaluateError, Explanation, NamedOutput, Outcome, Outcomes};
 #[cfg(feature = "serde")]
 use crate::fields::Fields;
 
@@ -92,6 +92,44 @@ impl Engine {
         &self,
         inputs: impl IntoIterator<Item = (&'a str, f64)>,
     ) -> Result<NamedOutcomes<'_>, EvaluateError> {
+        Ok(NamedOutcomes {
+            outputs: &self.outputs,
+            outcomes: self.evaluate(&self.values_of(inputs)?)?,
+        })
+    }
+
+    /// [`Engine::explain`], with values by the names of the inputs, in any order.
+    ///
+    /// # Errors
+    /// As [`Engine::evaluate_named`].
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::{Engine, Model};
+    ///
+    /// let model: Model = "
+    /// fuzzy: 1
+    /// name: fan
+    /// inputs: {heat: {range: [0, 40], partition: [low, high]}}
+    /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]
+    /// ".parse()?;
+    /// let explanation = Engine::new(&model)?.explain_named([("heat", 40.0)])?;
+    /// assert_eq!(explanation.rules[0].text, "IF heat IS high THEN speed IS fast");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn explain_named<'a>(
+        &self,
+        inputs: impl IntoIterator<Item = (&'a str, f64)>,
+    ) -> Result<Explanation, EvaluateError> {
+        self.explain(&self.values_of(inputs)?)
+    }
+
+    /// The values of all inputs, in their order.
+    fn values_of<'a>(
+        &self,
+        inputs: impl IntoIterator<Item = (&'a str, f64)>,
+    ) -> Result<SmallVec<[f64; 8]>, EvaluateError> {
         let mut values: SmallVec<[f64; 8]> = smallvec![f64::NAN; self.inputs.len()];
         let mut is_given: SmallVec<[bool; 8]> = smallvec![false; self.inputs.len()];
         for (name, value) in inputs {
@@ -109,10 +147,7 @@ impl Engine {
             let name = Arc::clone(&self.inputs[index].name);
             return Err(EvaluateError::MissingInput { name });
         }
-        Ok(NamedOutcomes {
-            outputs: &self.outputs,
-            outcomes: self.evaluate(&values)?,
-        })
+        Ok(values)
     }
 
     /// [`Engine::evaluate_named`] of a struct or map of numbers: fields are inputs.
