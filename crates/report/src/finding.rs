@@ -72,16 +72,16 @@ impl<'a> Teller<'a> {
         numbered(finding, self.motors).words(self.estimator)
     }
 
-    /// The findings of one cause: `3 times, worst 12.0 to 14.5 s: ...`. A finding beside the risk holds until landing and has no
-    /// span.
+    /// The findings of one cause: `3 times, worst 12.0 to 14.5 s: ...`. A finding beside the risk holds until landing, so it
+    /// has only a beginning.
     pub fn line(&self, line: &Line<'_>) -> String {
         let Line { worst, count } = line;
         let text = self.words(worst).text;
         match (*count, worst.is_of_risk()) {
             (1, true) => format!("{}: {text}", span(worst)),
             (count, true) => format!("{count} times, worst {}: {text}", span(worst)),
-            (1, false) => text,
-            (count, false) => format!("{count} times: {text}"),
+            (1, false) => format!("from {:.1} s: {text}", worst.raised_s),
+            (count, false) => format!("{count} times, worst from {:.1} s: {text}", worst.raised_s),
         }
     }
 
