@@ -10,7 +10,10 @@ use flagred::shipped::{PROFILES, RULE_SETS};
 #[test]
 fn the_package_has_the_files_of_rules() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let files = RULE_SETS.iter().chain(&PROFILES).map(|shipped| shipped.file);
+    let files = RULE_SETS
+        .iter()
+        .chain(&PROFILES)
+        .map(|shipped| shipped.file);
     for file in files.chain(["profile-schema.json"]) {
         let text = fs::read_to_string(root.join("rules").join(file)).unwrap();
         let copy = root.join("flagred/rules").join(file);
