@@ -20,6 +20,9 @@ pub struct Checked<'a> {
     #[serde(skip_serializing_if = "<[Step]>::is_empty")]
     provenance: &'a [Step],
     findings: &'a [Diagnostic],
+    /// The findings that the author accepts; absent where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    accepted: Vec<check::Accepted>,
     report: Option<&'a check::Report>,
     /// What each input of a profile reaches alone; absent of a rule set.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,6 +39,7 @@ impl<'a> Checked<'a> {
         Checked {
             model: model.map(|model| model.name.as_str()),
             provenance: model.map_or(&[], |model| &model.provenance),
+            accepted: examined.accepted(),
             report: examined.analysed.as_ref().map(|(_, report)| report),
             alone: None,
             ..Checked::profile(file, None, &examined.findings.0, &[])
@@ -56,6 +60,7 @@ impl<'a> Checked<'a> {
             profile: name,
             provenance: &[],
             findings,
+            accepted: Vec::new(),
             report: None,
             alone: Some(alone),
         }

@@ -140,6 +140,16 @@ pub struct Examined {
     pub analysed: Option<(format::Document, check::Report)>,
 }
 
+impl Examined {
+    /// The findings that the author accepts.
+    pub fn accepted(&self) -> Vec<check::Accepted> {
+        let of = |(document, report): &(format::Document, check::Report)| {
+            report.accepted(&document.model)
+        };
+        self.analysed.as_ref().map(of).unwrap_or_default()
+    }
+}
+
 /// Examines a rule set, in YAML or a format of another program.
 ///
 /// # Errors

@@ -115,6 +115,15 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                     let made = visible(&provenance::words(step)).to_string();
                     writeln!(out, "{}: made by {made}", visible(&file))?;
                 }
+                for one in examined.accepted() {
+                    let (code, because) = (visible(&one.finding), visible(&one.because));
+                    let count = one.count;
+                    writeln!(
+                        out,
+                        "{}: {count} x `{code}` accepted: {because}",
+                        visible(&file)
+                    )?;
+                }
                 if let Some((_, alone)) = &profile {
                     write_alone(&mut out, &file, alone)?;
                 }

@@ -9,7 +9,7 @@ use alloc::{
 use core::ops::Range;
 
 use super::{
-    TermSpans, VariableSpans, optional_text, shapes,
+    TermSpans, VariableSpans, optional_text, shapes, steps,
     words::{AGGREGATIONS, DEFUZZIFIERS},
 };
 use crate::{
@@ -21,12 +21,20 @@ use crate::{
     tree::{Entry, Fields, Node, Value},
 };
 
-pub(super) const INPUT_KEYS: [&str; 5] = ["description", "unit", "range", "partition", "terms"];
-pub(super) const OUTPUT_KEYS: [&str; 10] = [
+pub(super) const INPUT_KEYS: [&str; 6] = [
     "description",
     "unit",
     "range",
     "partition",
+    "steps",
+    "terms",
+];
+pub(super) const OUTPUT_KEYS: [&str; 11] = [
+    "description",
+    "unit",
+    "range",
+    "partition",
+    "steps",
     "terms",
     "defuzzifier",
     "samples",
@@ -193,19 +201,27 @@ fn variable(
         (variable.low, variable.high) = (low, high);
         (spans.range, spans.range_unread) = (node.span.clone(), false);
     }
-    match (fields.entry("partition"), fields.entry("terms")) {
-        (Some(entry), None) => partition(what, entry.value, &mut variable, &mut spans, findings),
-        (None, Some(entry)) => terms(what, entry.value, &mut variable, &mut spans, findings),
-        (Some(_), Some(terms)) => findings.push(
+    let forms = ["partition", "steps", "terms"].map(|key| fields.entry(key));
+    let mut forms = forms.into_iter().flatten();
+    match (forms.next(), forms.next()) {
+        (Some(first), Some(second)) => findings.push(
             Diagnostic::error(
                 "duplicate-key",
-                terms.key_span.clone(),
-                format!("{what} has both `partition` and `terms`"),
+                second.key_span.clone(),
+                format!("{what} has both `{}` and `{}`", first.key, second.key),
             )
             .help("keep one; all terms of a variable stand together"),
         ),
-        (None, None) if fields.misspells("partition") => {}
-        (None, None) => {
+        (Some(entry), None) => {
+            let read = match entry.key {
+                "partition" => partition,
+                "steps" => steps::read,
+                _ => terms,
+            };
+            read(what, entry.value, &mut variable, &mut spans, findings);
+        }
+        (None, _) if fields.misspells("partition") || fields.misspells("steps") => {}
+        (None, _) => {
             let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each";
             fields.require("terms", help, findings);
         }
@@ -386,7 +402,7 @@ fn rising(
 }
 
 /// A term whose membership function cannot be read: its name is known, so that rules that name it are not told off.
-fn unread(name: &str) -> Term {
+pub(super) fn unread(name: &str) -> Term {
     Term {
         name: String::from(name),
         membership_function: MembershipFunction::Constant { value: 1.0 },
