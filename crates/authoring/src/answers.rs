@@ -74,6 +74,12 @@ pub struct Explained<'a> {
     model: &'a str,
     #[serde(flatten)]
     explanation: &'a engine::Explanation,
+    /// The rules that do not fire.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    silent: Option<Vec<engine::SilentRule>>,
+    /// The nearest changes if one input changes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    changes: Option<Vec<engine::Change>>,
 }
 
 impl<'a> Explained<'a> {
@@ -83,6 +89,19 @@ impl<'a> Explained<'a> {
             schema: "flagred.explain/1",
             model,
             explanation,
+            silent: None,
+            changes: None,
         }
+    }
+
+    /// With the rules that do not fire and the nearest changes.
+    #[must_use]
+    pub fn with_reasons(
+        mut self,
+        silent: Vec<engine::SilentRule>,
+        changes: Vec<engine::Change>,
+    ) -> Explained<'a> {
+        (self.silent, self.changes) = (Some(silent), Some(changes));
+        self
     }
 }
