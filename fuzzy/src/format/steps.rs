@@ -163,6 +163,7 @@ fn check(
     let (low, high) = (variable.low, variable.high);
     for (entry, limit) in steps {
         if let Some(limit) = limit
+            && low < high
             && (*limit <= low || *limit > high)
         {
             let message = format!(

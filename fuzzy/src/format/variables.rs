@@ -284,6 +284,14 @@ fn partition(
                 let peak = format!("the peak of `{}` of {what}", entry.key);
                 let before = findings.len();
                 found.extend(entry.value.finite(&peak, findings));
+                // `{dry, wet}`
+                if entries.iter().all(|entry| entry.value.is_null())
+                    && let Some(finding) = findings.get_mut(before)
+                {
+                    let names: Vec<&str> = entries.iter().map(|entry| entry.key).collect();
+                    let names = names.join(", ");
+                    finding.help = Some(format!("for even spacing write a list: `[{names}]`"));
+                }
                 // `{warm: 20,5}` reads as a term `5` without a peak.
                 if entry.value.is_null()
                     && entry.key.bytes().all(|c| c.is_ascii_digit())
@@ -386,7 +394,9 @@ fn rising(
                     .help("give each term of a partition a peak of its own"),
             );
         }
-        if peak < variable.low || peak > variable.high {
+        // Where the range is the wrong way round, that is the finding.
+        let has_range = variable.low < variable.high;
+        if has_range && (peak < variable.low || peak > variable.high) {
             let (low, high) = (variable.low, variable.high);
             let message = format!(
                 "the peak {peak} of `{name}` lies outside the range [{low}, {high}] of {what}"
