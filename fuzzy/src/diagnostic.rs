@@ -354,6 +354,7 @@ pub(crate) fn duplicate(
             "duplicate-term",
             "the terms of a variable have different names; rename one of them",
         ),
+        "finding" => ("duplicate-key", "keep one, with both reasons"),
         "block" => (
             "duplicate-block",
             "rule blocks have different names; rename one of them",

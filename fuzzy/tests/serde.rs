@@ -311,3 +311,22 @@ fn mappings_that_were_sorted_are_read_as_before() {
     let told = text.parse::<Model>().unwrap_err().to_string();
     assert!(told.contains("have the same peak 1"), "{told}");
 }
+
+#[test]
+fn steps_survive_formats_without_a_word_for_nothing_and_with_sorted_keys() {
+    let text = "fuzzy: 1\nname: credit\n\
+                inputs: {dti: {range: [-10, 100], steps: {zero: 0, fine: 36, over: }}}\n\
+                outputs: {risk: {range: [0, 1], partition: [low, high]}}\n\
+                rules: [IF dti IS over THEN risk IS high]\n\
+                allow: [{finding: jump, because: limits of the regulation}]\n";
+    let model: Model = text.parse().unwrap();
+    assert_eq!(model.inputs[0].step_limits(), Some(vec![0.0, 36.0]));
+    let json = serde_json::to_string(&model).unwrap();
+    let steps = r#""steps":[{"name":"zero","below":0},{"name":"fine","below":36},{"name":"over"}]"#;
+    assert!(json.contains(steps), "{json}");
+    assert_eq!(serde_json::from_str::<Model>(&json).unwrap(), model);
+    // Sorted keys of a mapping find their order by the limits.
+    let sorted = text.replace("{zero: 0, fine: 36, over: }", "{fine: 36, over: , zero: 0}");
+    assert_eq!(sorted.parse::<Model>().unwrap(), model);
+    assert_eq!(yaml::to_string(&model).parse::<Model>().unwrap(), model);
+}

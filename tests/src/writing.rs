@@ -73,7 +73,7 @@ pub fn commands(folder: &Folder) -> Vec<Writing> {
             &["explain", RULES, values[0], values[1], "--svg", explained],
             &[explained],
         ),
-        writing(&["evaluate", "--rows", &table, "--svg", curves], &[curves]),
+        writing(&["validate", "--rows", &table, "--svg", curves], &[curves]),
         writing(
             &["learn", RULES, &rows, "-o", learned, "--force"],
             &[learned],

@@ -750,7 +750,7 @@ fn tables_are_bounded() {
     for arguments in [
         &["eval", &rules, "-"][..],
         &["learn", &rules, "-", "--output", &output],
-        &["evaluate", "-"],
+        &["validate", "-"],
     ] {
         for start in ["x0,y\n0.5,", "x0,y\n0.5,\"", "x0"] {
             let output = run(arguments, 600_000, |out| {

@@ -76,7 +76,7 @@ fn help_names_every_command() {
 #[test]
 fn completions_and_manual_name_every_command() {
     let commands = [
-        "assess", "check", "dataset", "evaluate", "learn", "map", "watch",
+        "assess", "check", "dataset", "validate", "learn", "map", "watch",
     ];
     let said = |arguments: &[&str]| {
         let output = flagred().args(arguments).output().unwrap();

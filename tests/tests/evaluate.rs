@@ -1,4 +1,4 @@
-//! `flagred evaluate` as its users meet it, and what the shipped rules are worth on the simulated flights.
+//! `flagred validate` as its users meet it, and what the shipped rules are worth on the simulated flights.
 
 use std::{fmt::Write as _, fs, process::Output};
 
@@ -36,7 +36,7 @@ fn flight(kind: &str, in_trouble: bool) -> String {
 
 fn evaluate(arguments: &[&str]) -> Output {
     let mut command = flagred();
-    command.arg("evaluate").args(arguments).output().unwrap()
+    command.arg("validate").args(arguments).output().unwrap()
 }
 
 fn json(output: &Output) -> Value {

@@ -66,7 +66,7 @@ fn no_output_replaces_an_input() {
             &rules,
         ),
         (vec!["learn", &rules, &rows, "-o", &rows, "--force"], &rows),
-        (vec!["evaluate", "--rows", &table, "--svg", &table], &table),
+        (vec!["validate", "--rows", &table, "--svg", &table], &table),
         (vec!["export", "--c", &profile, "-o", &profile], &profile),
         (
             vec!["assess", &log, "--profile", &profile, "--html", &profile],

@@ -80,14 +80,14 @@ fn every_short_text_fits_with_the_largest_numbers() {
     }
 }
 
-/// The counts of the shipped profiles are those of `flagred evaluate`.
+/// The counts of the shipped profiles are those of `flagred validate`.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_reliability_is_the_measured_one() {
     let counts = |folders: &[&str]| {
         let paths = folders.iter().map(|folder| reference_data().join(folder));
         let output = flagred()
-            .args(["evaluate", "--json", "--profile", "flagred"])
+            .args(["validate", "--json", "--profile", "flagred"])
             .args(paths)
             .output();
         let document = serde_json::from_slice::<serde_json::Value>(&output.unwrap().stdout);

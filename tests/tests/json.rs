@@ -66,7 +66,7 @@ fn assess() {
 fn evaluate() {
     let folder = Folder::new();
     let trouble = folder.file("trouble.csv", trouble());
-    let document = json(&["evaluate", "--json", STEADY, &trouble]);
+    let document = json(&["validate", "--json", STEADY, &trouble]);
     valid("evaluate", &document);
     assert!(document["estimators"][0]["auc"].is_number());
     assert!(document["records"][1]["critical"].as_u64() > Some(0));

@@ -440,6 +440,7 @@ fn directions_hold_or_are_refuted_with_the_place() {
                 &out,
                 "--monotone",
                 "margin:decreasing",
+                "--monotone",
                 "spread:increasing",
             ])
             .output()

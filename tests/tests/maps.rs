@@ -69,7 +69,7 @@ fn a_map_in_the_terminal_marks_what_was_filled() {
     let (code, text, _) = map(&[PROFILE]);
     assert_eq!(code, Some(0));
     insta::assert_snapshot!(text);
-    let (_, same, _) = map(&[PAPER, "--fill", "thin-plate"]);
+    let (_, same, _) = map(&[PAPER, "--fill", "thin_plate"]);
     assert_eq!(same, text);
 }
 
@@ -82,9 +82,9 @@ fn without_a_word_the_picture_shows_where_the_rules_to_fly_with_decide() {
 
     // What was asked for needs no note.
     let asked = [
-        "--fix=throttle_activity=0.008",
-        "--fix=swing_per_room=0.03",
-        "--fix=at_limit=0",
+        "--hold=throttle_activity=0.008",
+        "--hold=swing_per_room=0.03",
+        "--hold=at_limit=0",
     ];
     let axes = ["--x=unsteady_now:0..0.049", "--y=unsteady_lately:0..0.057"];
     let (_, same, notes) = map(&[&[FLAGRED, "--points", "26"][..], &asked, &axes].concat());
@@ -162,9 +162,9 @@ fn the_map_of_a_rule_set_is_what_eval_gives() {
 #[test]
 fn pictures_are_well_formed_and_complete() {
     let fixed = [
-        "--fix=throttle_activity=0",
-        "--fix=swing_per_room=0",
-        "--fix=at_limit=0",
+        "--hold=throttle_activity=0",
+        "--hold=swing_per_room=0",
+        "--hold=at_limit=0",
         "--x",
         "unsteady_now:0..0.08",
     ];
@@ -202,10 +202,10 @@ fn pictures_are_well_formed_and_complete() {
         (
             vec![
                 FLAGRED,
-                "--fix=throttle_activity=0",
-                "--fix=at_limit=0",
-                "--fix=swing_per_room=0",
-                "--fix=unsteady_now=0",
+                "--hold=throttle_activity=0",
+                "--hold=at_limit=0",
+                "--hold=swing_per_room=0",
+                "--hold=unsteady_now=0",
             ],
             vec!["unsteady_lately"],
         ),
@@ -236,9 +236,9 @@ fn pictures_are_well_formed_and_complete() {
 #[test]
 fn impossible_maps_are_refused() {
     for (arguments, expected) in [
-        (vec![PAPER, "--fix", "wind=3"], "has no input `wind`"),
+        (vec![PAPER, "--hold", "wind=3"], "has no input `wind`"),
         (
-            vec![PAPER, "--fix", "margin=3"],
+            vec![PAPER, "--hold", "margin=3"],
             "cannot be fixed at 3: its range is 0 to 0.5",
         ),
         (
@@ -246,14 +246,14 @@ fn impossible_maps_are_refused() {
             "the same input",
         ),
         (
-            vec![PAPER, "--fix", "margin=0.1", "--fix", "spread=0.1"],
+            vec![PAPER, "--hold", "margin=0.1", "--hold", "spread=0.1"],
             "none is left for an axis",
         ),
-        (vec![PAPER, "--output", "danger"], "has no output `danger`"),
+        (vec![PAPER, "--of", "danger"], "has no output `danger`"),
         (vec![PAPER, "--x", "margin:3..1"], "INPUT:LOW..HIGH"),
         (vec![PAPER, "--svg", "map.png"], "write `map.svg`"),
         (
-            vec![PAPER, "--fix", "margin=0.1", "--surface", "--svg", "-"],
+            vec![PAPER, "--hold", "margin=0.1", "--surface", "--svg", "-"],
             "needs two inputs",
         ),
     ] {
@@ -270,12 +270,16 @@ fn long_headings_stay_within_the_picture() {
     let inputs: String = (0..7)
         .map(|i| format!("  quantity_number_{i}: {{range: [0, 1], partition: [low, high]}}\n"))
         .collect();
+    let conditions: Vec<String> = (0..7)
+        .map(|i| format!("quantity_number_{i} IS low"))
+        .collect();
+    let condition = conditions.join(" AND ");
     let model = folder.file(
         "long.yaml",
         format!(
             "fuzzy: 1\nname: a-rule-set-with-a-name-that-is-longer-than-any-picture-of-it-is-wide\ninputs:\n{inputs}\
              outputs:\n  y: {{range: [0, 1], partition: [low, high]}}\n\
-             rules:\n  - IF quantity_number_0 IS low THEN y IS low\n"
+             rules:\n  - IF {condition} THEN y IS low\n"
         ),
     );
     let (code, text, _) = map(&[&model, "--svg", "-"]);
@@ -311,4 +315,99 @@ fn long_headings_stay_within_the_picture() {
         assert!(number(node, "y") >= view[1] + 12.0, "{words}");
     }
     assert_eq!(held, 5, "every held input is named");
+}
+
+/// A rule set of three inputs and a chain: the output that is read comes first.
+const CHAIN: &str = "fuzzy: 1
+name: fan
+inputs:
+  heat: {range: [0, 40], partition: [cool, warm, hot]}
+  damp: {range: [0, 1], partition: [dry, wet]}
+  noise: {range: [30, 60], steps: {quiet: 45, loud: }}
+  spare: {range: [0, 1], partition: [no, yes]}
+outputs:
+  strain: {range: [0, 1], terms: {low: {triangle: [-1, 0, 1]}, high: {triangle: [0, 1, 2]}}}
+  fan: {range: [0, 100], terms: {slow: {constant: 0}, fast: {constant: 100}}, defuzzifier: weighted_average}
+rules:
+  - IF heat IS cool OR damp IS dry THEN strain IS low
+  - IF heat IS hot AND damp IS wet THEN strain IS high
+  - IF strain IS low OR noise IS quiet THEN fan IS slow
+  - IF strain IS high AND noise IS loud THEN fan IS fast
+";
+
+#[test]
+fn values_are_tables_of_each_slice_of_what_the_last_output_reads() {
+    let folder = flagred_tests::Folder::new();
+    let model = folder.file("chain.yaml", CHAIN);
+    let (code, text, notes) = map(&[&model, "--values", "--points", "3"]);
+    assert_eq!((code, notes.as_str()), (Some(0), ""));
+    insta::assert_snapshot!(text);
+    let (_, _, notes) = map(&[&model, "--points", "3"]);
+    assert!(
+        notes.contains("`noise` is held") && !notes.contains("spare"),
+        "{notes}"
+    );
+    let (_, text, _) = map(&[PAPER, "--values", "--points", "26"]);
+    let model: fuzzy::Model = fs::read_to_string(PAPER).unwrap().parse().unwrap();
+    let engine = Engine::new(&model).unwrap();
+    let map = DecisionMap::new(&engine, Grid::new(&engine, 26).unwrap(), 0).unwrap();
+    let slice = drawing::Slice::new(&model, &map).unwrap();
+    let picture = drawing::map_text(&slice, |cell, _| cell.to_string());
+    assert_eq!(
+        text,
+        picture + &drawing::values_text(&slice),
+        "the library's text"
+    );
+}
+
+#[test]
+fn a_table_written_before_is_compared_with_the_outputs_now() {
+    let folder = flagred_tests::Folder::new();
+    let model = folder.file("chain.yaml", CHAIN);
+    let changed = folder.file(
+        "changed.yaml",
+        CHAIN.replace("{constant: 100}", "{constant: 99.99}"),
+    );
+    for written in [
+        vec!["--csv", "--points", "5"],
+        vec!["--csv", "--sample", "200"],
+        vec!["--csv", "--hold", "noise=50"],
+    ] {
+        let table = folder.file("map.csv", "");
+        let arguments = [vec![model.as_str()], written.clone(), vec!["-o", &table]].concat();
+        let (code, _, errors) = map(&arguments);
+        assert_eq!(code, Some(0), "{errors}");
+        let (code, told, _) = map(&[&model, "--check", &table]);
+        let (changed_code, change, errors) = map(&[&changed, "--check", &table]);
+        if written.contains(&"--hold") {
+            // Inputs that were held have no column.
+            assert_eq!(changed_code, Some(3), "{change}");
+            assert!(errors.contains("has no column `noise`"), "{errors}");
+            continue;
+        }
+        assert_eq!(code, Some(0), "{told}");
+        assert!(told.contains("`fan` is the same at"), "{told}");
+        assert_eq!(changed_code, Some(1), "{change}");
+        assert!(
+            change.contains("100 before, 99.99 now") || change.contains("`fan` differs at"),
+            "{change}"
+        );
+    }
+    let points = folder.file(
+        "points.csv",
+        "heat,damp,noise,spare\n40,1,60,0\n0,0,30,1\n40,NA,60,0\n",
+    );
+    let evaluated = flagred().args(["eval", &model, &points]).output().unwrap();
+    let table = folder.file("evaluated.csv", evaluated.stdout);
+    let (code, _, errors) = map(&[&model, "--check", &table]);
+    assert_eq!(code, Some(3), "an unknown input is no point: {errors}");
+    let known = fs::read_to_string(&table)
+        .unwrap()
+        .replace("40,NA,60,0,,\n", "");
+    let rows: Vec<&str> = known.lines().collect();
+    let (kept, _) = rows[1].rsplit_once(',').unwrap();
+    let table = folder.file("known.csv", format!("{}\n{kept},\n{}\n", rows[0], rows[2]));
+    let (code, told, _) = map(&[&model, "--check", &table]);
+    assert_eq!(code, Some(1), "{told}");
+    insta::assert_snapshot!(told.replace(folder.path().to_str().unwrap(), "FOLDER"));
 }

@@ -79,7 +79,7 @@ fn a_closed_pipe_changes_no_exit_code() {
         (vec!["eval", RULES, points], 0),
         (vec!["eval", RULES, bad], 1),
         (vec!["dataset", STEADY], 0),
-        (vec!["evaluate", STEADY], 0),
+        (vec!["validate", STEADY], 0),
         (vec!["export", "--c"], 0),
         (vec!["man"], 0),
         (vec!["completions", "bash"], 0),

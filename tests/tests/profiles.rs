@@ -39,7 +39,7 @@ fn run(arguments: &[&str]) -> (Option<i32>, String, String) {
 }
 
 fn template() -> String {
-    let (code, text, _) = run(&["new", "mine", "--profile", "--output", "-"]);
+    let (code, text, _) = run(&["new", "mine", "--profile", "flagred", "--output", "-"]);
     assert_eq!(code, Some(0));
     text
 }

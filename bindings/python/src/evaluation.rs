@@ -255,7 +255,7 @@ impl EvaluationData {
         self.notes.clone()
     }
 
-    /// All of it in JSON, as `flagred evaluate --json` prints it.
+    /// All of it in JSON, as `flagred validate --json` prints it.
     fn to_json(&self) -> PyResult<String> {
         let document = Document::new(&self.evaluation);
         serde_json::to_string(&document).map_err(|error| data_error(error, None))
@@ -319,7 +319,7 @@ impl EvaluationData {
         svg::draw(&self.evaluation)
     }
 
-    /// The evaluation in words, as `flagred evaluate` prints it.
+    /// The evaluation in words, as `flagred validate` prints it.
     fn __str__(&self) -> String {
         words::text(&self.evaluation)
     }

@@ -20,6 +20,9 @@ pub struct Checked<'a> {
     #[serde(skip_serializing_if = "<[Step]>::is_empty")]
     provenance: &'a [Step],
     findings: &'a [Diagnostic],
+    /// The findings that the author accepts; absent where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    accepted: Vec<check::Accepted>,
     report: Option<&'a check::Report>,
     /// What each input of a profile reaches alone; absent of a rule set.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,6 +39,7 @@ impl<'a> Checked<'a> {
         Checked {
             model: model.map(|model| model.name.as_str()),
             provenance: model.map_or(&[], |model| &model.provenance),
+            accepted: examined.accepted(),
             report: examined.analysed.as_ref().map(|(_, report)| report),
             alone: None,
             ..Checked::profile(file, None, &examined.findings.0, &[])
@@ -56,6 +60,7 @@ impl<'a> Checked<'a> {
             profile: name,
             provenance: &[],
             findings,
+            accepted: Vec::new(),
             report: None,
             alone: Some(alone),
         }
@@ -69,6 +74,12 @@ pub struct Explained<'a> {
     model: &'a str,
     #[serde(flatten)]
     explanation: &'a engine::Explanation,
+    /// The rules that do not fire.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    silent: Option<Vec<engine::SilentRule>>,
+    /// The nearest changes if one input changes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    changes: Option<Vec<engine::Change>>,
 }
 
 impl<'a> Explained<'a> {
@@ -78,6 +89,19 @@ impl<'a> Explained<'a> {
             schema: "flagred.explain/1",
             model,
             explanation,
+            silent: None,
+            changes: None,
         }
+    }
+
+    /// With the rules that do not fire and the nearest changes.
+    #[must_use]
+    pub fn with_reasons(
+        mut self,
+        silent: Vec<engine::SilentRule>,
+        changes: Vec<engine::Change>,
+    ) -> Explained<'a> {
+        (self.silent, self.changes) = (Some(silent), Some(changes));
+        self
     }
 }

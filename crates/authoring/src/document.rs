@@ -159,6 +159,16 @@ pub struct Examined<'s> {
     pub analysed: Option<(&'s format::Document, check::Report)>,
 }
 
+impl Examined<'_> {
+    /// The findings that the author accepts.
+    pub fn accepted(&self) -> Vec<check::Accepted> {
+        let of = |(document, report): &(&format::Document, check::Report)| {
+            report.accepted(&document.model)
+        };
+        self.analysed.as_ref().map(of).unwrap_or_default()
+    }
+}
+
 /// Examines a rule set.
 ///
 /// # Errors

@@ -53,6 +53,22 @@ pub(crate) fn of_terms(
         return Some(Vec::new());
     }
     let mut edits = Vec::new();
+    if !spans.steps.is_empty() {
+        let moved = Variable {
+            terms: terms.to_vec(),
+            ..variable.clone()
+        };
+        let limits = variable
+            .step_limits()?
+            .into_iter()
+            .zip(moved.step_limits()?);
+        for ((before, after), spans) in limits.zip(&spans.terms) {
+            if before != after {
+                edits.push(changed(text, spans, 0, after)?);
+            }
+        }
+        return Some(edits);
+    }
     if spans.partition.is_empty() {
         for ((before, after), spans) in variable.terms.iter().zip(terms).zip(&spans.terms) {
             let [before, after] = [before, after].map(|term| numbers(&term.membership_function));

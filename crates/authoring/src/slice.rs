@@ -4,7 +4,7 @@ use flagred::gap::Filling;
 use fuzzy::{
     Engine, Model,
     drawing::{Axis, Cell, Scale, Slice},
-    engine::{EvaluateError, Outcome},
+    engine::{EvaluateError, Outcome, Scratch},
     model::Variable,
 };
 
@@ -30,6 +30,16 @@ const MOST_TRIED: usize = 1000;
 /// An input is held off its middle only where the output then varies more by this share of its range.
 const NOTICEABLE: f64 = 0.01;
 
+/// The output at a point.
+///
+/// # Errors
+/// The point is no point of the rule set's inputs.
+pub fn at(mapped: &Mapped<'_>, point: &[f64]) -> Result<Cell, EvaluateError> {
+    let mut outcomes = vec![Outcome::default(); mapped.engine.output_names().len()];
+    let mut scratch = mapped.engine.scratch();
+    evaluate(mapped, &mut scratch, point, &mut outcomes)
+}
+
 /// One output over the axes; `point` holds the other inputs.
 ///
 /// # Errors
@@ -43,8 +53,10 @@ pub fn cut(
     let model = mapped.model;
     let is_axis = |input: usize| input == x || y.as_ref().is_some_and(|(y, _)| *y == input);
     let held = model.inputs.iter().zip(&point).enumerate();
+    let output = model.outputs.get(mapped.output).map(|o| &o.variable);
+    let read = output.map_or(Vec::new(), |output| model.inputs_of(&output.name));
     let held: Vec<(String, f64)> = held
-        .filter(|(input, _)| !is_axis(*input))
+        .filter(|(input, (variable, _))| !is_axis(*input) && read.contains(&variable.name.as_str()))
         .map(|(_, (input, value))| (input.name.clone(), *value))
         .collect();
     let rows = y.as_ref().map_or(1, |(_, axis)| axis.points.len());
@@ -61,18 +73,9 @@ pub fn cut(
             {
                 *value = *y_value;
             }
-            match mapped
-                .engine
-                .evaluate_with(&mut scratch, &point, &mut outcomes)
-            {
-                Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
-                Err(error) => return Err(error),
-            }
-            let outcome = outcomes.get(mapped.output).copied().unwrap_or_default();
-            cells.push(cell(mapped, &outcome, &point));
+            cells.push(evaluate(mapped, &mut scratch, &point, &mut outcomes)?);
         }
     }
-    let output = model.outputs.get(mapped.output).map(|o| &o.variable);
     Ok(Slice {
         model: model.name.clone(),
         output: output.map(|o| o.name.clone()).unwrap_or_default(),
@@ -84,6 +87,20 @@ pub fn cut(
         filling: mapped.filling.map(|(_, method)| method.replace('_', " ")),
         cells,
     })
+}
+
+fn evaluate(
+    mapped: &Mapped<'_>,
+    scratch: &mut Scratch,
+    point: &[f64],
+    outcomes: &mut [Outcome],
+) -> Result<Cell, EvaluateError> {
+    match mapped.engine.evaluate_with(scratch, point, outcomes) {
+        Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
+        Err(error) => return Err(error),
+    }
+    let outcome = outcomes.get(mapped.output).copied().unwrap_or_default();
+    Ok(cell(mapped, &outcome, point))
 }
 
 fn cell(mapped: &Mapped<'_>, outcome: &Outcome, point: &[f64]) -> Cell {
@@ -168,7 +185,7 @@ pub fn held(
 }
 
 /// Every choice of one value from each list; the last list varies fastest.
-fn combinations(lists: &[Vec<f64>]) -> Vec<Vec<f64>> {
+pub fn combinations(lists: &[Vec<f64>]) -> Vec<Vec<f64>> {
     lists.iter().fold(vec![Vec::new()], |all, list| {
         let with = |so_far: Vec<f64>| {
             let longer = list

@@ -31,7 +31,7 @@ pub(crate) fn help_to_edit(path: &Path) -> Option<String> {
     let known = profile_at(path).filter(|_| !path.exists())?;
     let name = known.name;
     Some(format!(
-        "`{name}` is built in; `flagred new NAME --from {name}` writes a copy to edit, with `--profile` that of the profile"
+        "`{name}` is built in; `flagred new NAME --from {name}` writes a copy of the rule set to edit, `flagred new NAME --profile {name}` one of the profile"
     ))
 }
 
@@ -39,11 +39,7 @@ fn unknown(name: &str) -> Failure {
     Failure::usage(format!("there is no built-in `{name}`"))
 }
 
-/// The name of a built-in rule set or profile, for an argument; each rule set has a profile of its name.
-pub(crate) fn name(text: &str) -> Result<String, String> {
-    let names: Vec<&str> = PROFILES.iter().map(|known| known.name).collect();
-    match names.contains(&text) {
-        true => Ok(text.into()),
-        false => Err(format!("built in are `{}`", names.join("`, `"))),
-    }
+/// The names of built-in rule sets and profiles, for an argument; each rule set has a profile of its name.
+pub(crate) fn names() -> clap::builder::PossibleValuesParser {
+    clap::builder::PossibleValuesParser::new(PROFILES.iter().map(|known| known.name))
 }

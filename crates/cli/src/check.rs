@@ -40,8 +40,8 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "format")]
     json: bool,
     /// Check that the output never falls (INPUT:increasing) or never rises (INPUT:decreasing) when an input rises;
-    /// with several outputs, INPUT:increasing:OUTPUT
-    #[arg(long, value_name = "CLAIM", num_args = 1..)]
+    /// with several outputs, INPUT:increasing:OUTPUT. May be repeated
+    #[arg(long, value_name = "CLAIM")]
     monotone: Vec<check::Monotone>,
     /// Warn where no rule fires with at least this strength
     #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = degree)]
@@ -116,6 +116,15 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                 for step in steps {
                     let made = visible(&provenance::words(step)).to_string();
                     writeln!(out, "{}: made by {made}", visible(&file))?;
+                }
+                for one in examined.accepted() {
+                    let (code, because) = (visible(&one.finding), visible(&one.because));
+                    let count = one.count;
+                    writeln!(
+                        out,
+                        "{}: {count} x `{code}` accepted: {because}",
+                        visible(&file)
+                    )?;
                 }
                 if let Some((_, alone)) = &profile {
                     write_alone(&mut out, &file, alone)?;

@@ -1,18 +1,22 @@
-//! `flagred explain`: how the outputs of a rule set come about at one point.
+//! `flagred explain`: how the outputs of a rule set come about at one point, or at each row of a table.
 
-use std::{io::Write as _, path::PathBuf};
+mod table;
+
+use std::path::PathBuf;
 
 use flagred_authoring::answers::Explained;
 use fuzzy::{
     Model,
     diagnostic::suggest,
-    drawing::{explanation_svg, explanation_text},
+    drawing::{explanation_svg, explanation_text, short, silent_text, what_if_text},
+    model::Variable,
 };
 
 use crate::{
     failure::{Exit, Failure},
-    output::{self, Files, Stdout},
+    output::{self, Files, print},
     rule_set,
+    table::Format,
 };
 
 #[derive(clap::Args)]
@@ -21,44 +25,94 @@ pub(crate) struct Arguments {
     #[arg(value_name = "MODEL")]
     model: PathBuf,
     /// A value for each input: `margin=0.07`
-    #[arg(required = true, value_name = "INPUT=VALUE", value_parser = assignment)]
-    inputs: Vec<(String, f64)>,
+    #[arg(required_unless_present = "csv", value_name = "INPUT=VALUE")]
+    inputs: Vec<String>,
+    /// Explain each row of this table: it is printed with the value, the dominant rule and the shares of the rules for each output
+    #[arg(long, value_name = "POINTS.csv", conflicts_with_all = ["inputs", "json", "svg"])]
+    csv: Option<PathBuf>,
+    /// The file to write [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
     /// Print a JSON document instead of text
     #[arg(long)]
     json: bool,
     /// Write an SVG picture of terms, rules and results to this file instead; `-` is standard output
-    #[arg(long, value_name = "FILE", conflicts_with = "json", value_parser = output::svg_path)]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["json", "output"], value_parser = output::svg_path)]
     svg: Option<PathBuf>,
+    #[command(flatten)]
+    format: Format,
 }
 
-fn assignment(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
-    match value.trim().parse::<f64>() {
+/// A value of an input, as `INPUT=VALUE`.
+fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f64), Failure> {
+    let Some((name, value)) = text.split_once('=') else {
+        let inputs = model.inputs.iter();
+        let names = inputs.zip(given.iter().map(Some).chain(std::iter::repeat(None)));
+        let pairs = names.map(|(input, value)| {
+            let value = value.filter(|value| value.parse::<f64>().is_ok());
+            let value = value.map_or("VALUE", String::as_str);
+            format!("{}={value}", input.name)
+        });
+        let help = format!("write `{}`", pairs.collect::<Vec<_>>().join(" "));
+        return Err(Failure::usage(format!("`{text}` does not name an input")).help(help));
+    };
+    let value = value.trim();
+    match value.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok((name.trim().into(), number)),
-        _ => Err(format!("`{value}` is not a finite number")),
+        _ => {
+            let failure = Failure::usage(format!(
+                "`{value}` is not a finite number: the value of `{name}`"
+            ));
+            Err(failure.help_if(number_advice(value)))
+        }
     }
 }
 
+/// What to write for a number with a decimal comma or a unit.
+fn number_advice(text: &str) -> Option<String> {
+    let with_point = text.replacen(',', ".", 1);
+    if with_point.parse::<f64>().is_ok() {
+        return Some(format!("the decimal mark is a point: `{with_point}`"));
+    }
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)));
+    let number = text.get(..end?)?;
+    let is_number = number.parse::<f64>().is_ok();
+    is_number.then(|| format!("write the number without its unit: `{number}`"))
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut files = Files::reading([&arguments.model])?;
+    let mut files = Files::reading([&arguments.model].into_iter().chain(&arguments.csv))?;
     let svg = files.optional(arguments.svg.as_ref())?;
+    let output = files.optional(arguments.output.as_ref())?;
     let engine = rule_set::load(&arguments.model)?;
     let model = engine.model();
-    let values = values(model, &arguments.inputs)?;
+    if let Some(points) = &arguments.csv {
+        print(
+            output.as_ref(),
+            &table::explained(&engine, points, &arguments.format)?,
+        )?;
+        return Ok(Exit::Clean);
+    }
+    let given = arguments.inputs.iter();
+    let given = given.map(|text| assignment(model, &arguments.inputs, text));
+    let given: Vec<(String, f64)> = given.collect::<Result<_, _>>()?;
+    let values = values(model, &given)?;
     let explanation = engine.explain(&values).map_err(Failure::usage)?;
     if let Some(svg) = svg {
         svg.write(&explanation_svg(model, &explanation))?;
         return Ok(Exit::Clean);
     }
-    let mut out = Stdout::text();
-    if arguments.json {
-        let json = Explained::new(&model.name, &explanation);
-        serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
-        writeln!(out)?;
+    let silent = engine.silent(&explanation).map_err(Failure::usage)?;
+    let changes = engine.what_if(&values).map_err(Failure::usage)?;
+    let text = if arguments.json {
+        let json = Explained::new(&model.name, &explanation).with_reasons(silent, changes);
+        let text = serde_json::to_string_pretty(&json).map_err(std::io::Error::from)?;
+        text + "\n"
     } else {
-        write!(out, "{}", explanation_text(model, &explanation))?;
-    }
-    out.finish()?;
+        let reasons = silent_text(&silent) + &what_if_text(model, &changes);
+        explanation_text(model, &explanation) + &reasons
+    };
+    print(output.as_ref(), &text)?;
     Ok(Exit::Clean)
 }
 
@@ -74,11 +128,14 @@ fn values(model: &Model, given: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
             return Err(Failure::usage(format!("`{name}` is given twice")));
         }
     }
-    let value = |name: &str| {
+    let value = |input: &Variable| {
+        let name = &input.name;
         let found = given.iter().find(|(known, _)| known == name);
         found.map(|(_, value)| *value).ok_or_else(|| {
-            Failure::usage(format!("input `{name}` has no value")).help(format!("add `{name}=0.5`"))
+            let middle = short((input.low + input.high) / 2.0);
+            let help = format!("add `{name}={middle}`, the middle of its range");
+            Failure::usage(format!("input `{name}` has no value")).help(help)
         })
     };
-    names().map(value).collect()
+    model.inputs.iter().map(value).collect()
 }

@@ -52,8 +52,7 @@ Examples:
   flagred dataset *.bin --profile flagred        a row for each flight
   flagred dataset *.bin --window 10              a row for every 10 seconds
   flagred dataset *.bin --profile flagred --ahead 5 --every 0.25
-
-The table goes to standard output: flagred dataset *.bin > rows.csv";
+  flagred dataset *.bin --output rows.csv";
 
 pub(crate) const EVAL: &str = "\
 Examples:
@@ -64,18 +63,19 @@ Examples:
 
 Exit code 1: a row has no value. Empty cells, NA and NaN are unknown values.";
 
-pub(crate) const EVALUATE: &str = "\
+pub(crate) const VALIDATE: &str = "\
 Examples:
-  flagred evaluate flights/*.bin
-  flagred evaluate flights/*.bin --profile my-profile.yaml --svg curves.svg
-  flagred evaluate --rows rows.csv
-  flagred evaluate --json flights/*.bin";
+  flagred validate flights/*.bin
+  flagred validate flights/*.bin --profile my-profile.yaml --svg curves.svg
+  flagred validate --rows rows.csv
+  flagred validate --json flights/*.bin";
 
 pub(crate) const EXPLAIN: &str = "\
 Examples:
   flagred explain my-rules.yaml temperature=24 humidity=70
   flagred explain my-rules.yaml temperature=24 humidity=70 --svg explanation.svg
-  flagred explain --json my-rules.yaml temperature=24 humidity=70";
+  flagred explain --json my-rules.yaml temperature=24 humidity=70
+  flagred explain my-rules.yaml --csv points.csv -o reasons.csv     the dominant rule and the shares, for each row";
 
 pub(crate) const EXPORT: &str = "\
 Examples:
@@ -152,9 +152,13 @@ Examples:
   flagred map my-rules.yaml --svg map.svg
   flagred map my-rules.yaml --surface --svg surface.svg
   flagred map my-rules.yaml --activations        the dominant rule of each cell
-  flagred map my-rules.yaml --fix battery=20 --x margin:0..0.3 --y spread
+  flagred map my-rules.yaml --hold battery=20 --x margin:0..0.3 --y spread
   flagred map my-profile.yaml                    interpolated as the profile says
-  flagred map my-rules.yaml --csv";
+  flagred map my-rules.yaml --values             numbers, a table for each slice
+  flagred map my-rules.yaml --csv -o my-rules.map.csv
+  flagred map my-rules.yaml --check my-rules.map.csv     in a test: 1 where an output differs
+
+docs/ci.md shows how to use the last two in CI.";
 
 pub(crate) const PLOT: &str = "\
 Examples:
@@ -164,8 +168,8 @@ Examples:
 pub(crate) const NEW: &str = "\
 Examples:
   flagred new my-rules
-  flagred new my-profile --profile                       the default profile, to change its thresholds
-  flagred new my-profile --profile --from flagred-paper
+  flagred new my-profile --profile flagred               the default profile, to change its thresholds
+  flagred new my-profile --profile flagred-paper
   flagred new --output - my-rules";
 
 pub(crate) const SHOW: &str = "\

@@ -1,11 +1,11 @@
 //! `flagred import`: a rule set of another program, in YAML.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use flagred_interchange::{Format, Losses};
 
 use crate::{
-    diagnostics::{read_text, refuse, show},
+    diagnostics::{is_meant_as_rules, read_text, refuse, show},
     failure::{Exit, Failure},
     output::{Files, Replace},
 };
@@ -18,6 +18,9 @@ pub(crate) struct Arguments {
     /// The file to write; `-` is standard output
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
     /// The function block to read of an FCL that has several
     #[arg(long, value_name = "NAME")]
     block: Option<String>,
@@ -27,12 +30,13 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let output = Files::reading([&arguments.file])?.output(&arguments.output, Replace::Yes)?;
+    let replace = Replace::forced(arguments.force);
+    let output = Files::reading([&arguments.file])?.output(&arguments.output, replace)?;
     let text = read_text(&arguments.file)?;
     let file = arguments.file.display().to_string();
     let Some(format) = Format::of(&text) else {
         let failure = Failure::unreadable(format!("`{file}` is not a FIS, FLL, FCL or FML file"));
-        return Err(failure.help("a rule set in YAML needs no import"));
+        return Err(failure.help_if(advice(&arguments.file, &text)));
     };
     let losses = match arguments.lossy {
         true => Losses::Accept,
@@ -52,4 +56,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     validated.map_err(|findings| refuse(&findings, &file, &text))?;
     output.write(&fuzzy::yaml::to_string(&document.model))?;
     Ok(Exit::Clean)
+}
+
+/// What to do with a file that is not of another program's format.
+fn advice(path: &Path, text: &str) -> Option<&'static str> {
+    let is = |ending: &str| {
+        path.extension()
+            .is_some_and(|found| found.eq_ignore_ascii_case(ending))
+    };
+    if is_meant_as_rules(text) {
+        return Some("a rule set in YAML needs no import");
+    }
+    if is("m") || is("mat") {
+        return Some("in MATLAB, `writeFIS(fis, \"name\")` writes `name.fis`; import that file");
+    }
+    is("py").then_some(
+        "docs/from-scikit-fuzzy.md shows how to write a model of scikit-fuzzy as a rule set",
+    )
 }

@@ -10,7 +10,6 @@ mod convert;
 mod dataset;
 mod diagnostics;
 mod eval;
-mod evaluate;
 mod explain;
 mod export;
 mod failure;
@@ -42,9 +41,10 @@ mod simplify;
 mod studio;
 mod table;
 mod tune;
+mod validate;
 mod watch;
 
-use std::process::ExitCode;
+use std::{ffi::OsString, process::ExitCode};
 
 use clap::{Parser, Subcommand};
 use failure::{Exit, Failure};
@@ -83,7 +83,7 @@ enum Command {
     /// Find errors, gaps and conflicts in a rule set, and whether a profile fits its rule set
     #[command(after_help = help::CHECK)]
     Check(check::Arguments),
-    /// Explain the outputs of a rule set at one point: degrees, rules, result
+    /// Explain the outputs of a rule set at a point: degrees, rules, result, what would change it
     #[command(after_help = help::EXPLAIN)]
     Explain(explain::Arguments),
     /// Evaluate a rule set at the points of a CSV file
@@ -98,7 +98,7 @@ enum Command {
     /// Open the page in the browser: look into flights, edit a rule set and see its map change
     #[command(after_help = help::STUDIO)]
     Studio(studio::Arguments),
-    /// Draw the output of a rule set over its inputs
+    /// Draw or tabulate the output of a rule set over its inputs, or compare it with a table
     #[command(after_help = help::MAP)]
     Map(map::Arguments),
     /// Draw the terms of every variable of a rule set
@@ -116,12 +116,15 @@ enum Command {
     /// Move membership functions, consequents and weights of a rule set to fit a table of inputs and outputs
     #[command(after_help = help::TUNE)]
     Tune(tune::Arguments),
-    /// Say the same with fewer rules, shorter ones and fewer inputs
+    /// Simplify a rule set: fewer rules and inputs, nearly the same outputs
     #[command(after_help = help::SIMPLIFY)]
     Simplify(simplify::Arguments),
     /// Measure how well profiles predict attitude errors, compared with simple baselines
-    #[command(after_help = help::EVALUATE)]
-    Evaluate(evaluate::Arguments),
+    #[command(after_help = help::VALIDATE)]
+    Validate(validate::Arguments),
+    /// The earlier name of `validate`
+    #[command(after_help = help::VALIDATE, hide = true)]
+    Evaluate(validate::Arguments),
     /// Read a rule set of another program (FIS, FLL, FCL, FML) and write it in YAML
     #[command(after_help = help::IMPORT)]
     Import(import::Arguments),
@@ -161,7 +164,13 @@ impl Command {
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Tune(arguments) => tune::run(&arguments),
             Command::Simplify(arguments) => simplify::run(&arguments),
-            Command::Evaluate(arguments) => evaluate::run(&arguments),
+            Command::Validate(arguments) => validate::run(&arguments),
+            Command::Evaluate(arguments) => {
+                output::say(
+                    "note: `evaluate` is called `validate` now; this name goes with the next release",
+                );
+                validate::run(&arguments)
+            }
             Command::Import(arguments) => import::run(&arguments),
             Command::Export(arguments) => export::run(&arguments),
             Command::Schema(arguments) => schema::run(&arguments),
@@ -171,9 +180,21 @@ impl Command {
     }
 }
 
+/// `flagred help --help` is `flagred help help`.
+fn help_of_help(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut arguments: Vec<OsString> = arguments.collect();
+    if let [_, command, option, ..] = arguments.as_mut_slice()
+        && command == "help"
+        && (option == "--help" || option == "-h")
+    {
+        *option = "help".into();
+    }
+    arguments
+}
+
 /// Runs the command that the process was given.
 pub fn main() -> ExitCode {
-    let ran = match Arguments::try_parse() {
+    let ran = match Arguments::try_parse_from(help_of_help(std::env::args_os())) {
         Ok(arguments) => arguments.command.run(),
         Err(error) => match failure::command_forgotten(&error) {
             Some(failure) => Err(failure),

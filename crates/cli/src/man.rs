@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     flagred.build();
     let commands = || {
         let commands = flagred.get_subcommands();
-        commands.filter(|command| command.get_name() != "help")
+        commands.filter(|command| command.get_name() != "help" && !command.is_hide_set())
     };
     if let Some(folder) = &arguments.all {
         fs::create_dir_all(folder).map_err(|error| {

@@ -9,7 +9,6 @@ use crate::{
     built_in,
     failure::{Exit, Failure},
     output::{Files, Replace, Stdout},
-    profile,
 };
 
 #[derive(clap::Args)]
@@ -20,11 +19,11 @@ pub(crate) struct Arguments {
     /// The file to write [default: NAME.yaml]; `-` is standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Write a profile instead of a rule set: a copy of the default profile with its comments
-    #[arg(long)]
-    profile: bool,
-    /// Copy this built-in rule set or profile: `flagred`, `flagred-battery` or `flagred-paper`
-    #[arg(long, value_name = "BUILT-IN", value_parser = built_in::name)]
+    /// Write a profile: a copy of this built-in one with its comments
+    #[arg(long, value_name = "BUILT-IN", value_parser = built_in::names(), conflicts_with = "from")]
+    profile: Option<String>,
+    /// Write a copy of this built-in rule set
+    #[arg(long, value_name = "BUILT-IN", value_parser = built_in::names())]
     from: Option<String>,
     /// Replace the file if it exists
     #[arg(long)]
@@ -32,23 +31,27 @@ pub(crate) struct Arguments {
 }
 
 fn name(text: &str) -> Result<String, String> {
-    match starter::is_name(text) {
-        true => Ok(text.into()),
-        false => Err("a name is a letter followed by letters, digits, `-` and `_`".into()),
+    if starter::is_name(text) {
+        return Ok(text.into());
     }
+    let path = std::path::Path::new(text);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = stem.to_lowercase().replace(' ', "-");
+    let help = match starter::is_name(&name) {
+        true if path.components().count() > 1 => format!("; write `{name} -o {}`", path.display()),
+        true => format!("; write `{name}`"),
+        false => String::new(),
+    };
+    Err(format!(
+        "a name is a letter followed by letters, digits, `-` and `_`{help}"
+    ))
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let from = arguments.from.as_deref();
-    let text = match arguments.profile {
-        true => {
-            let from = built_in::profile(from.unwrap_or(profile::DEFAULT))?;
-            starter::profile(&arguments.name, from)
-        }
-        false => match from {
-            Some(from) => starter::renamed(&arguments.name, built_in::rule_set(from)?),
-            None => starter::rules(&arguments.name),
-        },
+    let text = match (&arguments.profile, &arguments.from) {
+        (Some(profile), _) => starter::profile(&arguments.name, built_in::profile(profile)?),
+        (None, Some(from)) => starter::renamed(&arguments.name, built_in::rule_set(from)?),
+        (None, None) => starter::rules(&arguments.name),
     };
     let path = match &arguments.output {
         Some(path) => path.clone(),
@@ -63,10 +66,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let mut out = Stdout::text();
         writeln!(out, "wrote {shown}; edit it, then try:")?;
         writeln!(out, "  flagred check {shown}")?;
-        match arguments.profile {
-            true => writeln!(out, "  flagred assess --profile {shown} flight.bin")?,
-            false if from.is_some() => writeln!(out, "  flagred map {shown}")?,
-            false => writeln!(out, "  flagred explain {shown} temperature=24 humidity=70")?,
+        match (&arguments.profile, &arguments.from) {
+            (Some(_), _) => writeln!(out, "  flagred assess --profile {shown} flight.bin")?,
+            (None, Some(_)) => writeln!(out, "  flagred map {shown}")?,
+            (None, None) => writeln!(out, "  flagred explain {shown} temperature=24 humidity=70")?,
         }
         out.finish()?;
     }

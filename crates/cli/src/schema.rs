@@ -23,8 +23,9 @@ enum Format {
     Assess,
     /// What `flagred check --json` prints
     Check,
-    /// What `flagred evaluate --json` prints
-    Evaluate,
+    /// What `flagred validate --json` prints
+    #[value(alias = "evaluate")]
+    Validate,
     /// What `flagred explain --json` prints
     Explain,
     /// What `flagred identify --json` prints
@@ -54,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Format::Profile => flagred::profile::SCHEMA,
         Format::Assess => include_str!("../schemas/assess.json"),
         Format::Check => include_str!("../schemas/check.json"),
-        Format::Evaluate => include_str!("../schemas/evaluate.json"),
+        Format::Validate => include_str!("../schemas/evaluate.json"),
         Format::Explain => include_str!("../schemas/explain.json"),
         Format::Identify => include_str!("../schemas/identify.json"),
         Format::Inspect => include_str!("../schemas/inspect.json"),

@@ -10,8 +10,8 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// `flagred`, `flagred-battery` or `flagred-paper`
-    #[arg(value_name = "NAME", value_parser = built_in::name)]
+    /// A built-in profile
+    #[arg(value_name = "NAME", value_parser = built_in::names())]
     name: String,
     /// Print the rule set of the profile instead
     #[arg(long)]

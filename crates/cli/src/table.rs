@@ -192,6 +192,10 @@ impl Header {
                     "its cells seem to be separated by another character: `--delimiter {other}`"
                 ));
             }
+            if self.names.iter().all(|name| name.parse::<f64>().is_ok()) {
+                return failure
+                    .help("the first line holds numbers; it must hold the names of the columns");
+            }
             let columns = self.names.iter().map(String::as_str);
             let columns = columns.filter(|name| !name.is_empty());
             let meant = fuzzy::diagnostic::suggest(name, columns).unwrap_or_default();
@@ -313,7 +317,7 @@ impl Table {
         if records.is_empty() {
             return Err(
                 Failure::unreadable(format!("`{file}` has a header, but no rows"))
-                    .help("`flagred dataset` makes rows from flight logs"),
+                    .help("the lines below the header hold the rows"),
             );
         }
         Ok(Table { header, records })

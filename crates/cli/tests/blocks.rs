@@ -48,7 +48,7 @@ fn what_has_no_row_before_says_so() {
     ] {
         assert!(text.contains(told), "{text}");
     }
-    let (code, _, errors) = flagred(folder.path(), &["map", "fan.yaml", "--output", "speed"]);
+    let (code, _, errors) = flagred(folder.path(), &["map", "fan.yaml", "--of", "speed"]);
     assert_eq!(code, Some(0), "{errors}");
     let note = "note: `speed` keeps its previous value where no rule fires; a map has none before its cells";
     assert!(errors.contains(note), "{errors}");

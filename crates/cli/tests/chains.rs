@@ -59,7 +59,7 @@ fn explain_shows_the_chain_and_why_it_ends() {
 fn a_map_has_the_values_of_eval() {
     let folder = folder(&[("fan.yaml", FAN), ("points.csv", "heat\n0\n10\n20\n")]);
     let mut map = vec!["map", "fan.yaml", "--csv", "--points", "5"];
-    map.extend(["--output", "fan", "--fill", "none"]);
+    map.extend(["--of", "fan", "--fill", "none"]);
     let (code, map, errors) = flagred(folder.path(), &map);
     assert_eq!(code, Some(0), "{errors}");
     let (_, eval, _) = flagred(folder.path(), &["eval", "fan.yaml", "points.csv"]);

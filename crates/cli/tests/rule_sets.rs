@@ -48,6 +48,7 @@ fn check_holds_outputs_against_what_their_author_says() {
         "--json",
         "--monotone",
         "spread:increasing",
+        "--monotone",
         "margin:decreasing",
     ];
     let (output, text) = flagred(&claims, "");
@@ -236,7 +237,7 @@ fn explain_asks_for_what_is_missing() {
             &["margin=much", "spread=0"],
             "`much` is not a finite number",
         ),
-        (&["margin"], "write NAME=VALUE"),
+        (&["margin"], "write `margin=VALUE spread=VALUE`"),
     ] {
         let all: Vec<&str> = ["explain", "flagred-paper.yaml"]
             .iter()
@@ -437,7 +438,10 @@ fn new_writes_a_rule_set_that_passes_check() {
 
 #[test]
 fn a_new_profile_is_the_default_one_under_another_name() {
-    let (output, profile) = flagred(&["new", "mine", "--profile", "--output", "-"], "");
+    let (output, profile) = flagred(
+        &["new", "mine", "--profile", "flagred", "--output", "-"],
+        "",
+    );
     assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
     let (_, shipped) = flagred(&["show", "flagred"], "");
     assert!(profile.contains("name: mine\n") && profile.contains("rules: flagred "));
@@ -458,15 +462,7 @@ fn a_new_profile_is_the_default_one_under_another_name() {
     };
     assert_eq!(risks(&by(path.to_str().unwrap())), risks(&by("flagred")));
 
-    let from = [
-        "new",
-        "mine",
-        "--profile",
-        "--from",
-        "flagred-paper",
-        "--output",
-        "-",
-    ];
+    let from = ["new", "mine", "--profile", "flagred-paper", "--output", "-"];
     let (_, paper) = flagred(&from, "");
     assert!(paper.contains("rules: flagred-paper "));
     let (_, rules) = flagred(&["new", "mine", "--from", "flagred", "--output", "-"], "");
@@ -474,7 +470,7 @@ fn a_new_profile_is_the_default_one_under_another_name() {
     assert_eq!(rules, shown.replace("\nname: flagred\n", "\nname: mine\n"));
     let (output, _) = flagred(&["new", "mine", "--from", "paper"], "");
     assert_eq!(output.status.code(), Some(2));
-    assert!(errors(&output).contains("`flagred-paper`"));
+    assert!(errors(&output).contains("flagred-paper"));
 }
 
 #[test]
@@ -551,7 +547,9 @@ fn commands_that_change_files_say_how_to_copy_what_is_built_in() {
         let told = errors(&output);
         assert_eq!(output.status.code(), Some(3), "{told}");
         assert!(
-            told.contains("`flagred new NAME --from flagred` writes a copy to edit"),
+            told.contains(
+                "`flagred new NAME --from flagred` writes a copy of the rule set to edit"
+            ),
             "{told}"
         );
     }

@@ -89,6 +89,15 @@ impl ReadError {
             Self::NotALog { what, .. } if what == TEXT => Some(
                 "a flight CSV begins with the names of its columns, commas between them: `t_s`, and `pwm1` or `motor1` and so on; a text log of ArduPilot begins with `FMT` lines",
             ),
+            Self::NotALog { what, .. } if what == RULES => {
+                Some("`flagred check` examines a rule set")
+            }
+            Self::NotALog { what, .. } if what == PROFILE => {
+                Some("`flagred assess --profile PROFILE FLIGHT` assesses a flight by it")
+            }
+            Self::NotALog { what, .. } if what == SEMICOLONS => {
+                Some("a flight CSV has commas between its cells, and points as decimal marks")
+            }
             Self::NotALog { .. } => Some(
                 "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",
             ),
@@ -123,6 +132,15 @@ pub(crate) const SDLOG2: &str = "an sdlog2 log (.px4log) of PX4 before ULog";
 
 /// Description of a text file that is not a log.
 pub(crate) const TEXT: &str = "a text file";
+
+/// Description of a rule set.
+pub(crate) const RULES: &str = "a rule set";
+
+/// Description of a profile.
+pub(crate) const PROFILE: &str = "a profile";
+
+/// Description of a table with other marks than commas.
+pub(crate) const SEMICOLONS: &str = "a table with `;` between its cells";
 
 /// The path in an error until the caller sets it.
 pub(crate) const UNNAMED: &str = "the log";

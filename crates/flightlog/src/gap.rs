@@ -113,7 +113,9 @@ impl Gap {
                 Tlog => {
                     "let the ground station load all parameters while it records, or use the log on the vehicle"
                 }
-                Csv => "name the columns of the motors pwm1.. (us) or motor1.. (0 to 1)",
+                Csv => {
+                    "name the columns of the motors pwm1.. (us) or motor1.. (0 to 1), in small letters"
+                }
             },
             Self::NoCommands {
                 format,

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::error::{self, TEXT, UNNAMED, io_error};
+use crate::error::{self, PROFILE, RULES, SEMICOLONS, TEXT, UNNAMED, io_error};
 use crate::input::Input;
 use crate::{Commands, Flight, PulseRange, Range, ReadError, csv, dataflash, geometry, tlog, ulog};
 
@@ -221,6 +221,22 @@ fn sniff(start: &[u8]) -> Content {
     }
     match std::str::from_utf8(&start[..start.len().min(1024)]) {
         Err(error) if error.error_len().is_some() => Content::Other("an unknown binary file"),
-        _ => Content::Other(TEXT),
+        Ok(text) => Content::Other(text_of(text)),
+        Err(_) => Content::Other(TEXT),
+    }
+}
+
+/// What a text that is not a log is.
+fn text_of(text: &str) -> &'static str {
+    let starts = |key: &str| text.lines().any(|line| line.starts_with(key));
+    let header = text.lines().find(|line| !line.starts_with('#'));
+    if starts("fuzzy:") {
+        RULES
+    } else if starts("flagred:") {
+        PROFILE
+    } else if header.is_some_and(|header| header.contains(';') && !header.contains(',')) {
+        SEMICOLONS
+    } else {
+        TEXT
     }
 }

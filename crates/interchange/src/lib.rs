@@ -36,6 +36,7 @@ use fuzzy::{Diagnostic, Findings, Model, Source, format::Document};
 mod blocks;
 mod comments;
 mod conditions;
+mod crisp;
 mod draft;
 mod fcl;
 mod fis;
@@ -128,12 +129,13 @@ impl Format {
 ///
 /// All that keeps the text from being read, and what the model cannot carry where losses are refused.
 pub fn read(text: &str, format: Format, losses: Losses) -> Result<Document, Findings> {
-    match format {
+    let document = match format {
         Format::Fis => fis::read(text, losses),
         Format::Fll => fll::read(text, losses),
         Format::Fcl => fcl::read(text, None, losses),
         Format::Fml => fml::read(text, losses),
-    }
+    }?;
+    Ok(crisp::read(document, text))
 }
 
 /// Reads one function block of an FCL that has several, by its name.
@@ -142,7 +144,8 @@ pub fn read(text: &str, format: Format, losses: Losses) -> Result<Document, Find
 ///
 /// As [`read`]; and no function block has that name.
 pub fn read_block(text: &str, name: &str, losses: Losses) -> Result<Document, Findings> {
-    fcl::read(text, Some(name), losses)
+    let document = fcl::read(text, Some(name), losses)?;
+    Ok(crisp::read(document, text))
 }
 
 /// Reads a rule set in whatever format it is: one of these, or YAML.
@@ -192,12 +195,13 @@ pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, F
     if !invalid.is_empty() {
         return Err(Findings(invalid));
     }
-    let written = match format {
+    let mut written = match format {
         Format::Fis => fis::write(model, losses),
         Format::Fll => fll::write(model, losses),
         Format::Fcl => fcl::write(model, losses),
         Format::Fml => fml::write(model, losses),
     }?;
+    written.findings.0.extend(crisp::written(model));
     let again = read(&written.text, format, losses);
     match again.and_then(|document| document.validate(&written.text)) {
         Ok(()) => Ok(written),

@@ -12,7 +12,7 @@ use flagred_interchange::{Format, Losses};
 use fuzzy::{Engine, Model};
 
 /// Rule sets of this repository that formats can say.
-const SETS: [(&str, &str); 4] = [
+const SETS: [(&str, &str); 5] = [
     ("flagred", include_str!("../../../rules/flagred.yaml")),
     (
         "flagred-paper",
@@ -20,6 +20,7 @@ const SETS: [(&str, &str); 4] = [
     ),
     ("takagi-sugeno", TAKAGI_SUGENO),
     ("curves", CURVES),
+    ("steps", STEPS),
 ];
 
 const TAKAGI_SUGENO: &str = "
@@ -37,6 +38,20 @@ operators: {and: product, or: probabilistic_sum}
 rules:
   - IF service IS poor AND food IS bad THEN tip IS low
   - IF service IS NOT poor OR food IS fine THEN tip IS high WITH 0.5
+";
+
+const STEPS: &str = "
+fuzzy: 1
+name: credit
+inputs:
+  dti: {range: [0, 100], steps: {fine: 36, stretched: 43, over: }}
+  score: {range: [-1, 1], steps: {poor: 0, good: }}
+outputs:
+  risk: {range: [0, 1], defuzzifier: weighted_average, terms: {low: {constant: 0}, medium: {constant: 0.5}, high: {constant: 1}}}
+rules:
+  - IF dti IS over OR score IS poor THEN risk IS high
+  - IF dti IS fine AND score IS good THEN risk IS low
+  - IF dti IS stretched AND score IS good THEN risk IS medium
 ";
 
 const CURVES: &str = "
@@ -123,6 +138,35 @@ fn what_is_written_is_read_again_and_gives_the_same_values() {
         }
     }
     insta::assert_snapshot!(refused);
+}
+
+#[test]
+fn steps_are_rectangles_elsewhere_and_steps_again() {
+    let model: Model = STEPS.parse().unwrap();
+    for format in Format::ALL {
+        let written = flagred_interchange::write(&model, format, Losses::Refuse).unwrap();
+        let told = written.findings.to_string();
+        assert!(told.contains("note[steps]: the steps of `dti`"), "{told}");
+        let again = flagred_interchange::read(&written.text, format, Losses::Refuse).unwrap();
+        let limits = again
+            .model
+            .inputs
+            .iter()
+            .map(fuzzy::model::Variable::step_limits);
+        assert_eq!(
+            limits.collect::<Vec<_>>(),
+            [Some(vec![36.0, 43.0]), Some(vec![0.0])]
+        );
+        // Another program's rectangles share their limits.
+        let shared = written.text.replace("35.99999999999999", "36");
+        let again = flagred_interchange::read(&shared, format, Losses::Refuse).unwrap();
+        assert_eq!(again.model.inputs[0].step_limits(), None, "{shared}");
+        let told = again.warnings.to_string();
+        assert!(
+            told.contains("`fine` and `stretched` of `dti` both contain 36"),
+            "{told}"
+        );
+    }
 }
 
 /// A rule set of one rule for each term of the output.

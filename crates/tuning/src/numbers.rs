@@ -67,7 +67,7 @@ pub fn moved_although_fixed(before: &Model, after: &Model, settings: &Settings) 
         .find(|moved| is_fixed(&moved.of))
 }
 
-/// The numbers of a model, in the order in which it has them.
+/// The numbers of a model, in the order in which it has them. The limits of `steps` are not among them.
 pub fn numbers(model: &Model) -> Vec<Number> {
     let mut numbers = Vec::new();
     change(&mut model.clone(), &mut |number, _| {
@@ -124,6 +124,8 @@ fn change(model: &mut Model, value: &mut Change<'_>) {
     for variable in model.inputs.iter_mut().chain(outputs) {
         match variable.partition_peaks() {
             Some(peaks) => partition(variable, &peaks, value),
+            // Limits are given from outside.
+            None if variable.step_limits().is_some() => {}
             None => {
                 let width = variable.high - variable.low;
                 for term in &mut variable.terms {

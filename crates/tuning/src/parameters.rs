@@ -287,7 +287,12 @@ fn terms(variable: &Variable, settings: &Settings, moves: &dyn Fn(&Term) -> bool
         return Movable::Partition(ordered);
     }
     let mut anchored: Vec<(f64, bool, Hung)> = Vec::new();
-    for (index, term) in variable.terms.iter().enumerate() {
+    // Limits are given from outside.
+    let free_terms = match variable.step_limits() {
+        Some(_) => &[],
+        None => variable.terms.as_slice(),
+    };
+    for (index, term) in free_terms.iter().enumerate() {
         let parameters = term.membership_function.parameters();
         let is_constant = matches!(
             term.membership_function,

@@ -27,7 +27,7 @@ use crate::{
 /// The most boxes that are listed; the others are counted.
 const MOST_BOXES_TOLD: usize = 10;
 
-/// The diagnostics of a report, with the spans of the model's parts.
+/// The diagnostics of a report, with the spans of the model's parts, whether the author accepts them or not.
 pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let at = At { model, spans };
     let mut found = Vec::new();

@@ -16,6 +16,7 @@ use crate::{
     },
 };
 
+mod accepted;
 mod axis;
 mod coverage;
 mod extent;
@@ -33,6 +34,7 @@ mod terms;
 mod tests;
 mod trend;
 
+pub use accepted::Accepted;
 pub use coverage::{Antecedent, Side, Uncovered};
 pub use extent::extent;
 pub use jumps::Jump;
@@ -324,10 +326,20 @@ fn known(model: &Model, claim: &Monotone) -> Result<(), alloc::boxed::Box<Diagno
 }
 
 impl Report {
-    /// Converts the report to located diagnostics.
+    /// Converts the report to located diagnostics. Those that the author accepts are left out; an accepted finding that does not
+    /// occur is a finding itself.
     #[must_use]
     pub fn findings(&self, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
-        findings::of(self, model, spans)
+        let mut found = findings::of(self, model, spans);
+        found.retain(|finding| accepted::by(model, finding).is_none());
+        found.extend(accepted::unneeded(self, model, spans));
+        found
+    }
+
+    /// The entries of [`Model::allow`], each with the number of findings that it accepts.
+    #[must_use]
+    pub fn accepted(&self, model: &Model) -> Vec<Accepted> {
+        accepted::counted(self, model)
     }
 }
 

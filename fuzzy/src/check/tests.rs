@@ -563,3 +563,43 @@ fn an_outer_term_is_never_reached_for_what_it_is() {
     let told = outputs.map(|output| format!("# {output}\n{}\n", reach_of(output).join("\n")));
     insta::assert_snapshot!(told.join("\n"));
 }
+
+#[test]
+fn findings_that_the_author_accepts_are_left_out_and_reported_where_they_do_not_occur() {
+    let text = "fuzzy: 1
+name: credit
+inputs: {dti: {range: [0, 100], steps: {fine: 36, stretched: 43, over: }}}
+outputs: {risk: {range: [0, 1], terms: {low: {constant: 0}, high: {constant: 1}}, defuzzifier: weighted_average}}
+rules: [IF dti IS over THEN risk IS high, IF dti IS NOT over THEN risk IS low]
+allow: [{finding: jump, because: limits of the regulation}, {finding: hole, because: none}]";
+    let (report, findings) = report_of(text, &Options::default());
+    let codes: Vec<&str> = findings.iter().map(|finding| finding.code).collect();
+    assert_eq!(codes, ["unused", "unused", "unneeded-allow"]);
+    let unneeded = findings.last().unwrap();
+    assert_eq!(
+        unneeded.message,
+        "`allow` accepts `hole`, which does not occur"
+    );
+    assert_eq!(
+        &text[unneeded.span.clone()],
+        "{finding: hole, because: none}"
+    );
+    let accepted = report.accepted(&text.parse().unwrap());
+    let counts: Vec<usize> = accepted.iter().map(|one| one.count).collect();
+    assert_eq!(counts, [1, 0]);
+}
+
+#[test]
+fn steps_leave_no_hole_and_no_region_without_a_rule() {
+    let text = "fuzzy: 1
+name: credit
+inputs: {dti: {range: [0, 100], steps: {fine: 36, stretched: 43, over: 100, all: }}}
+outputs: {risk: {range: [0, 3], terms: {a: {constant: 0}, b: {constant: 1}, c: {constant: 2}, d: {constant: 3}}, defuzzifier: weighted_average}}
+rules: [IF dti IS fine THEN risk IS a, IF dti IS stretched THEN risk IS b, IF dti IS over THEN risk IS c, IF dti IS all THEN risk IS d]
+allow: [{finding: jump, because: limits of the regulation}]";
+    assert_eq!(report_of(text, &Options::default()).1, []);
+    let missing = text.replace("IF dti IS stretched THEN risk IS b, ", "");
+    let told: Vec<_> = report_of(&missing, &Options::default()).1;
+    let told: Vec<String> = told.iter().map(|one| one.to_string()).collect();
+    insta::assert_snapshot!(told.join("\n"));
+}

@@ -101,7 +101,7 @@ pub fn rules_text(
     text
 }
 
-/// The values of a slice to 2 decimals at a few points of its axes, and how many cells have a coverage below 0.5.
+/// The values of a slice at a few points of its axes, with the decimals of about a ten-thousandth of the output's range, and how many cells have a coverage below 0.5.
 ///
 /// Below [`map_text`] it makes a snapshot in which a small change shows too.
 ///
@@ -140,13 +140,14 @@ pub fn values_text(slice: &Slice) -> String {
     };
     let xs = columns.iter().map(|&x| label(&slice.x.points, x));
     let xs: String = xs.map(|x| format!("{x:>8}")).collect();
+    let decimals = decimals(slice.range.high - slice.range.low);
     let mut text = String::from("\n");
     line(&mut text, format_args!("{:>8} |{xs}", ""));
     for &row in rows.iter().rev() {
         let y = slice.y.as_ref().map(|y| label(&y.points, row));
         let values = columns.iter().map(|&column| slice.cell(column, row).value);
         let values: String = values
-            .map(|value| value.map_or_else(|| "none".into(), |value| format!("{value:.2}")))
+            .map(|value| value.map_or_else(|| "none".into(), |value| format!("{value:.decimals$}")))
             .map(|value| format!("{value:>8}"))
             .collect();
         line(
@@ -164,6 +165,13 @@ pub fn values_text(slice: &Slice) -> String {
         format_args!("coverage below {COVERED}: {bare} of {cells} cells"),
     );
     text
+}
+
+/// 2 decimals for a range from 0 to 100, 4 for one from 0 to 1.
+fn decimals(width: f64) -> usize {
+    /// More do not fit the columns.
+    const MOST: f64 = 5.0;
+    (4.0 - libm::floor(libm::log10(width))).clamp(0.0, MOST) as usize
 }
 
 fn heading(slice: &Slice, more: &str) -> String {

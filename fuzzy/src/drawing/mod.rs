@@ -8,6 +8,7 @@
 //! | the terms of all variables | [`variables_svg`] | [`variables_text`] |
 //! | terms that moved, as they were and as they are | [`moved_svg`] | |
 //! | an evaluation with its reasons | [`explanation_svg`] | [`explanation_text`] |
+//! | rules that do not fire, and what changes next | | [`silent_text`], [`what_if_text`] |
 //! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`], [`values_text`] |
 //! | the rule that dominates each part of a map | [`rules_svg`] | [`rules_text`] |
 //! | lines over a number ([`Plot`]) | [`plots_svg`] | |
@@ -32,6 +33,7 @@ mod explanation_text;
 mod heat;
 mod map_text;
 mod plot;
+mod reasons_text;
 mod regions;
 mod scale;
 mod sheet;
@@ -46,6 +48,7 @@ pub use explanation_text::explanation_text;
 pub use heat::{map_svg, runs};
 pub use map_text::{map_text, rules_text, values_text};
 pub use plot::{Plot, Series, plots_svg};
+pub use reasons_text::{silent_text, what_if_text};
 pub use regions::rules_svg;
 pub use scale::Scale;
 pub use sheet::{Anchor, Frame, Sheet};

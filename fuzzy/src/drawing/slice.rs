@@ -2,7 +2,7 @@
 
 use super::{
     scale::Scale,
-    text::{short, titled},
+    text::{short, titled, visible},
 };
 use crate::{
     map::DecisionMap,
@@ -179,6 +179,12 @@ impl Slice {
     /// The position of a value in the output's range, in [0, 1].
     pub(super) fn share(&self, value: f64) -> f64 {
         self.range.share(value).clamp(0.0, 1.0)
+    }
+
+    /// A line with the names of the rule set and the output, and the values of the inputs that are held.
+    pub fn heading(&self) -> String {
+        let heading = format!("{} {}", self.title(), self.held_text());
+        visible(heading.trim_end()).into_owned()
     }
 
     /// `rule set: output [unit]`.

@@ -64,20 +64,29 @@ pub enum EvaluateError {
     },
 }
 
+/// `1 input`, `2 inputs`.
+fn counted(count: usize, word: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {word}{plural}")
+}
+
 impl fmt::Display for EvaluateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             EvaluateError::WrongNumberOfInputs { expected, got } => {
+                let (inputs, values) = (counted(*expected, "input"), counted(*got, "value"));
                 write!(
                     f,
-                    "the model has {expected} inputs, but {got} values were given"
+                    "the model has {inputs}, but {values} given",
+                    values = match got {
+                        1 => format!("{values} was"),
+                        _ => format!("{values} were"),
+                    }
                 )
             }
             EvaluateError::WrongNumberOfOutputs { expected, got } => {
-                write!(
-                    f,
-                    "the model has {expected} outputs, but there is room for {got} outcomes"
-                )
+                let (outputs, room) = (counted(*expected, "output"), counted(*got, "outcome"));
+                write!(f, "the model has {outputs}, but there is room for {room}")
             }
             EvaluateError::ColumnsOfDifferentLengths { first, other } => {
                 write!(f, "a column has {other} values where the first has {first}")

@@ -103,15 +103,15 @@ fn degrees(terms: &[Term], value: f64) -> Vec<Degree> {
 }
 
 /// The values that conditions read.
-struct Known<'a> {
-    model: &'a Model,
-    inputs: &'a [ExplainedInput],
-    outcomes: &'a [Outcome],
+pub(super) struct Known<'a> {
+    pub(super) model: &'a Model,
+    pub(super) inputs: &'a [ExplainedInput],
+    pub(super) outcomes: &'a [Outcome],
 }
 
 impl<'a> Known<'a> {
     /// An input or output by its name, and its value.
-    fn variable(&self, name: &str) -> Option<(&'a Variable, Option<f64>)> {
+    pub(super) fn variable(&self, name: &str) -> Option<(&'a Variable, Option<f64>)> {
         let inputs = self.model.inputs.iter().zip(self.inputs);
         let inputs = inputs.map(|(variable, input)| (variable, Some(input.value)));
         let outputs = self.model.outputs.iter().zip(self.outcomes);
@@ -126,7 +126,7 @@ impl<'a> Known<'a> {
     }
 
     /// Whether all outputs that an output reads have values. Otherwise none of its rules is evaluated.
-    fn is_evaluated(&self, output: &str) -> bool {
+    pub(super) fn is_evaluated(&self, output: &str) -> bool {
         let mut reads = self.model.reads(output).into_iter();
         reads.all(|read| {
             self.variable(read)
@@ -183,7 +183,7 @@ fn fired(known: &Known<'_>) -> Vec<FiredRule> {
 }
 
 /// The degree of a condition, read from its tree.
-fn holds(condition: &Condition, operators: Operators, known: &Known<'_>) -> f64 {
+pub(super) fn holds(condition: &Condition, operators: Operators, known: &Known<'_>) -> f64 {
     let degree = |part: &Condition| holds(part, operators, known);
     match condition {
         Condition::Is(proposition) => proposition_holds(proposition, known),

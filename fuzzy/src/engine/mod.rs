@@ -38,9 +38,11 @@ mod named;
 mod raising;
 mod rules;
 mod sequence;
+mod silent;
 mod strategy;
 #[cfg(feature = "simd")]
 mod vectors;
+mod what_if;
 
 pub(crate) use crate::table::operators;
 pub use crate::table::{Outcome, State};
@@ -49,6 +51,8 @@ pub use explanation::{Degree, ExplainedInput, ExplainedOutput, Explanation, Fire
 pub use named::NamedOutcomes;
 pub use raising::Said;
 pub use sequence::Sequence;
+pub use silent::{Silence, SilentRule};
+pub use what_if::{Change, Effect};
 
 /// A compiled model: immutable, and shared by any number of threads.
 ///

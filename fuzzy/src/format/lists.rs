@@ -11,6 +11,8 @@ use crate::{
 };
 
 const NAME: &str = "name";
+/// The keys of a variable that have an entry for each term.
+const TERMS: [&str; 2] = ["terms", "steps"];
 
 /// Replaces the lists of named entries by mappings, which the reader knows. An entry without a name is a finding and left out.
 pub(super) fn to_mappings<'t>(tree: &'t Node, findings: &mut Vec<Diagnostic>) -> Cow<'t, Node> {
@@ -34,8 +36,11 @@ pub(super) fn from_mappings(tree: Node) -> Node {
         if let Value::Mapping(entries) = &part.value {
             let items = entries.iter().map(|(name, entry)| {
                 let mut fields = Vec::from([(Node::text(NAME), name.clone())]);
-                if let Value::Mapping(own) = &entry.value {
-                    fields.extend(own.iter().cloned());
+                match &entry.value {
+                    Value::Mapping(own) => fields.extend(own.iter().cloned()),
+                    // Of `steps`: the last one has no limit, and not every format has a word for nothing.
+                    _ if entry.is_null() => {}
+                    _ => fields.push((Node::text("below"), entry.clone())),
                 }
                 with(entry, Value::Mapping(fields))
             });
@@ -49,7 +54,10 @@ fn has_list(key: &str, part: &Node) -> bool {
     match &part.value {
         Value::List(_) => true,
         Value::Mapping(entries) if key != "blocks" => entries.iter().any(|(_, variable)| {
-            child(variable, "terms").is_some_and(|terms| matches!(terms.value, Value::List(_)))
+            let terms = TERMS.into_iter().filter_map(|key| child(variable, key));
+            terms
+                .into_iter()
+                .any(|terms| matches!(terms.value, Value::List(_)))
         }),
         _ => false,
     }
@@ -82,7 +90,7 @@ fn changed(mut tree: Node, change: &mut impl FnMut(&str, &mut Node)) -> Node {
             };
             for (what, variable) in variables {
                 for (key, terms) in entries_mut(variable) {
-                    if key == Some("terms") {
+                    if key.is_some_and(|key| TERMS.contains(&key)) {
                         change(&what, terms);
                     }
                 }

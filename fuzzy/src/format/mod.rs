@@ -12,6 +12,7 @@ use crate::{
     validate::validate,
 };
 
+mod allow;
 mod blocks;
 mod lists;
 mod provenance;
@@ -19,6 +20,7 @@ mod rules;
 #[cfg(feature = "serde")]
 mod schema;
 mod shapes;
+mod steps;
 #[cfg(test)]
 mod tests;
 mod variables;
@@ -122,7 +124,7 @@ pub fn read_partly(tree: &Node) -> Option<Partial> {
 
 /// The model as far as it can be read. A part that cannot be read is a finding, and in the model only its name.
 fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Option<Model> {
-    const KEYS: [&str; 11] = [
+    const KEYS: [&str; 12] = [
         "fuzzy",
         "name",
         "description",
@@ -133,6 +135,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         "least_strength",
         "rules",
         "blocks",
+        "allow",
         "provenance",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
@@ -201,8 +204,12 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         least_strength: least_strength.unwrap_or(LEAST_STRENGTH),
         blocks: Vec::new(),
         rules: Vec::new(),
+        allow: Vec::new(),
         provenance: Vec::new(),
     };
+    if let Some(node) = fields.get("allow") {
+        model.allow = allow::read(node, &mut spans.allow, findings);
+    }
     if let Some(entry) = fields.entry("provenance") {
         spans.provenance = entry.key_span.clone();
         model.provenance = provenance::read(entry.value, findings);

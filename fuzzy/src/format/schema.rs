@@ -8,7 +8,7 @@ mod nodes;
 use alloc::{format, vec::Vec};
 
 use super::{
-    VERSION,
+    VERSION, allow,
     blocks::{self, COMPARISONS, METHODS},
     provenance, rules,
     variables::{INPUT_KEYS, OUTPUT_KEYS},
@@ -77,6 +77,14 @@ pub fn schema() -> Node {
             ),
         ),
         (
+            "allow",
+            list(
+                "The findings of `flagred check` that the author accepts, each with a reason",
+                reference("allowed"),
+                None,
+            ),
+        ),
+        (
             "provenance",
             list(
                 "The commands that made the rule set, the last one last",
@@ -106,7 +114,7 @@ fn definitions() -> Node {
     let of = |keys: &[&'static str], description| {
         let properties = keys.iter().map(|key| (*key, variable_key(key)));
         let mut entries = object(description, properties, &["range"]);
-        entries.push(one_of(["partition", "terms"]));
+        entries.push(one_of(["partition", "steps", "terms"]));
         Node::mapping(entries)
     };
     Node::mapping([
@@ -121,6 +129,7 @@ fn definitions() -> Node {
         ("term", term()),
         ("rule", rule()),
         ("block", block()),
+        ("allowed", allowed()),
         ("step", step()),
     ])
 }
@@ -151,6 +160,20 @@ fn variable_key(key: &str) -> Node {
                     ],
                 ),
             ]),
+        ),
+        "steps" => about(
+            "Terms that divide the range: the limit below which each one ends, and none for the last",
+            [
+                ("type", Node::text("object")),
+                (
+                    "additionalProperties",
+                    Node::mapping([(
+                        "type",
+                        Node::list(["number", "null"].map(Node::text).into()),
+                    )]),
+                ),
+                ("minProperties", Node::number(2.0)),
+            ],
         ),
         "terms" => named("Terms, each with a shape of its own", "term"),
         "defuzzifier" => words("How the fuzzy result becomes a number", &DEFUZZIFIERS),
@@ -203,6 +226,19 @@ fn variable_key(key: &str) -> Node {
         // Every key that is read has its line above; a new one is at least allowed.
         _ => Node::mapping(Entries::new()),
     }
+}
+
+fn allowed() -> Node {
+    let codes = allow::CODES.map(|code| (code, ()));
+    let properties = [
+        ("finding", words("The code of the finding", &codes)),
+        ("because", text("Why it is accepted")),
+    ];
+    Node::mapping(object(
+        "A finding that the author accepts",
+        properties,
+        &allow::KEYS,
+    ))
 }
 
 fn step() -> Node {

@@ -9,7 +9,7 @@ use alloc::{
 use core::ops::Range;
 
 use super::{
-    TermSpans, VariableSpans, optional_text, shapes,
+    TermSpans, VariableSpans, optional_text, shapes, steps,
     words::{AGGREGATIONS, DEFUZZIFIERS},
 };
 use crate::{
@@ -21,12 +21,20 @@ use crate::{
     tree::{Entry, Fields, Node, Value},
 };
 
-pub(super) const INPUT_KEYS: [&str; 5] = ["description", "unit", "range", "partition", "terms"];
-pub(super) const OUTPUT_KEYS: [&str; 10] = [
+pub(super) const INPUT_KEYS: [&str; 6] = [
     "description",
     "unit",
     "range",
     "partition",
+    "steps",
+    "terms",
+];
+pub(super) const OUTPUT_KEYS: [&str; 11] = [
+    "description",
+    "unit",
+    "range",
+    "partition",
+    "steps",
     "terms",
     "defuzzifier",
     "samples",
@@ -193,19 +201,27 @@ fn variable(
         (variable.low, variable.high) = (low, high);
         (spans.range, spans.range_unread) = (node.span.clone(), false);
     }
-    match (fields.entry("partition"), fields.entry("terms")) {
-        (Some(entry), None) => partition(what, entry.value, &mut variable, &mut spans, findings),
-        (None, Some(entry)) => terms(what, entry.value, &mut variable, &mut spans, findings),
-        (Some(_), Some(terms)) => findings.push(
+    let forms = ["partition", "steps", "terms"].map(|key| fields.entry(key));
+    let mut forms = forms.into_iter().flatten();
+    match (forms.next(), forms.next()) {
+        (Some(first), Some(second)) => findings.push(
             Diagnostic::error(
                 "duplicate-key",
-                terms.key_span.clone(),
-                format!("{what} has both `partition` and `terms`"),
+                second.key_span.clone(),
+                format!("{what} has both `{}` and `{}`", first.key, second.key),
             )
             .help("keep one; all terms of a variable stand together"),
         ),
-        (None, None) if fields.misspells("partition") => {}
-        (None, None) => {
+        (Some(entry), None) => {
+            let read = match entry.key {
+                "partition" => partition,
+                "steps" => steps::read,
+                _ => terms,
+            };
+            read(what, entry.value, &mut variable, &mut spans, findings);
+        }
+        (None, _) if fields.misspells("partition") || fields.misspells("steps") => {}
+        (None, _) => {
             let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each";
             fields.require("terms", help, findings);
         }
@@ -268,6 +284,14 @@ fn partition(
                 let peak = format!("the peak of `{}` of {what}", entry.key);
                 let before = findings.len();
                 found.extend(entry.value.finite(&peak, findings));
+                // `{dry, wet}`
+                if entries.iter().all(|entry| entry.value.is_null())
+                    && let Some(finding) = findings.get_mut(before)
+                {
+                    let names: Vec<&str> = entries.iter().map(|entry| entry.key).collect();
+                    let names = names.join(", ");
+                    finding.help = Some(format!("for even spacing write a list: `[{names}]`"));
+                }
                 // `{warm: 20,5}` reads as a term `5` without a peak.
                 if entry.value.is_null()
                     && entry.key.bytes().all(|c| c.is_ascii_digit())
@@ -370,7 +394,9 @@ fn rising(
                     .help("give each term of a partition a peak of its own"),
             );
         }
-        if peak < variable.low || peak > variable.high {
+        // Where the range is the wrong way round, that is the finding.
+        let has_range = variable.low < variable.high;
+        if has_range && (peak < variable.low || peak > variable.high) {
             let (low, high) = (variable.low, variable.high);
             let message = format!(
                 "the peak {peak} of `{name}` lies outside the range [{low}, {high}] of {what}"
@@ -386,7 +412,7 @@ fn rising(
 }
 
 /// A term whose membership function cannot be read: its name is known, so that rules that name it are not told off.
-fn unread(name: &str) -> Term {
+pub(super) fn unread(name: &str) -> Term {
     Term {
         name: String::from(name),
         membership_function: MembershipFunction::Constant { value: 1.0 },

@@ -1,9 +1,9 @@
 //! A model as a tree, in the short forms where they mean the same.
 
-use alloc::vec::Vec;
+use alloc::{string::String, vec::Vec};
 
 use super::{
-    VERSION, blocks, provenance, rules, shapes,
+    VERSION, allow, blocks, provenance, rules, shapes,
     words::{self, AGGREGATIONS, DEFUZZIFIERS, word_of},
 };
 use crate::{
@@ -40,6 +40,7 @@ pub(super) fn model(model: &Model) -> Node {
     } else {
         entries.push(("blocks", blocks::write(model)));
     }
+    entries.extend(allow::write(&model.allow).map(|allowed| ("allow", allowed)));
     entries.extend(provenance::write(&model.provenance).map(|steps| ("provenance", steps)));
     Node::mapping(entries)
 }
@@ -88,10 +89,15 @@ fn output(output: &Output) -> Node {
     Node::mapping(entries)
 }
 
-/// The terms, as a partition where they are one.
+/// The terms, as a partition or as steps where they are.
 fn terms(variable: &Variable) -> (&'static str, Node) {
     let terms = &variable.terms;
     let names = || terms.iter().map(|term| term.name.as_str());
+    if let Some(limits) = variable.step_limits() {
+        let limits = limits.into_iter().map(Node::number);
+        let limits = limits.chain([Node::scalar(String::new(), false)]);
+        return ("steps", Node::mapping(names().zip(limits)));
+    }
     let Some(peaks) = variable.partition_peaks() else {
         let terms = terms.iter().map(|term| {
             let (shape, parameters) = shapes::write(&term.membership_function);

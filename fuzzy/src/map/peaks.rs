@@ -24,7 +24,14 @@ pub fn peaks(variable: &Variable) -> Vec<f64> {
     peaks.sort_by(f64::total_cmp);
     // Nobody means a thousandth of a range; the ends stay.
     let apart = 1e-3 * (high - low);
-    peaks.dedup_by(|next, last| *next - *last < apart);
+    peaks.dedup_by(|next, last| {
+        let is_near = *next - *last < apart;
+        // At a limit of steps the term above it holds.
+        if is_near && *next == last.next_up() {
+            *last = *next;
+        }
+        is_near
+    });
     if let Some(last) = peaks.last_mut().filter(|last| high - **last < apart) {
         *last = high;
     }

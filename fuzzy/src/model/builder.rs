@@ -50,6 +50,7 @@ impl Model {
                 least_strength: LEAST_STRENGTH,
                 blocks: Vec::new(),
                 rules: Vec::new(),
+                allow: Vec::new(),
                 provenance: Vec::new(),
             },
         }

@@ -348,6 +348,7 @@ fn stage(model: &Model, reads: Vec<usize>, outputs: Vec<usize>) -> Stage<'_> {
             activation: model.activation,
             least_strength: model.least_strength,
             blocks: model.blocks.clone(),
+            allow: Vec::new(),
             provenance: Vec::new(),
         }),
         reads,

@@ -64,6 +64,8 @@ pub struct Spans {
     pub least_strength: Range<usize>,
     /// The rule blocks.
     pub blocks: Vec<BlockSpans>,
+    /// The entries of `allow`.
+    pub allow: Vec<Range<usize>>,
     /// The key `provenance`.
     pub provenance: Range<usize>,
     /// Some rule could not be read, and is not in the model; a finding says why.
@@ -90,6 +92,8 @@ pub struct VariableSpans {
     pub range: Range<usize>,
     /// The value of `partition`: a list of names, or a mapping of names to peaks. Empty where terms are spelt out.
     pub partition: Range<usize>,
+    /// The value of `steps`: a mapping of names to limits. Empty where terms are given otherwise.
+    pub steps: Range<usize>,
     /// Its terms.
     pub terms: Vec<TermSpans>,
     /// Of an output, the number of samples.
@@ -107,10 +111,10 @@ pub struct VariableSpans {
 pub struct TermSpans {
     /// Its name.
     pub name: Range<usize>,
-    /// The parameters of its membership function: empty in a partition.
+    /// The parameters of its membership function: empty in a partition and in `steps`.
     pub parameters: Vec<Range<usize>>,
     /// The numbers of its membership function, one by one: x and degree of each point of a piecewise one, the peak in a partition
-    /// that gives it, the coefficients of a linear function and then its constant (`0..0` where it is left out). Empty for a
+    /// that gives it, the limit in `steps`, the coefficients of a linear function and then its constant (`0..0` where it is left out). Empty for a
     /// formula and in an even partition.
     pub numbers: Vec<Range<usize>>,
     /// The variables that a formula or a linear function names, at each place.

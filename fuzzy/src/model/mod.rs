@@ -4,6 +4,7 @@ use alloc::{string::String, vec::Vec};
 
 use crate::rule;
 
+mod allowed;
 mod blocks;
 mod builder;
 pub(crate) mod chain;
@@ -12,17 +13,20 @@ mod partition;
 #[cfg(any(feature = "check", feature = "learn"))]
 mod plateau;
 mod provenance;
+mod steps;
 pub use crate::formula::Formula;
 pub(crate) use crate::shape::{Form, Parts};
 pub use crate::shape::{MembershipError, MembershipFunction, Role};
 pub use crate::table::{
     Activation, Aggregation, Comparison, Conjunction, Disjunction, Implication, LEAST_STRENGTH,
 };
+pub use allowed::Allowed;
 pub use blocks::Block;
 pub(crate) use blocks::concludes;
 pub use builder::ModelBuilder;
 pub(crate) use partition::{between_peaks, even_peaks};
 pub use provenance::{DataFile, LossChange, Step};
+pub(crate) use steps::between_limits;
 
 /// A rule set: inputs, outputs, operators and rules.
 ///
@@ -58,6 +62,8 @@ pub struct Model {
     pub blocks: Vec<Block>,
     /// The rules; with blocks, in the order of the blocks.
     pub rules: Vec<Rule>,
+    /// The findings of the analysis that the author accepts.
+    pub allow: Vec<Allowed>,
     /// The commands that made it, the last one last.
     pub provenance: Vec<Step>,
 }

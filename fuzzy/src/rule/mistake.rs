@@ -92,6 +92,10 @@ impl Mistake<'_> {
             }
             Wrong::Joint => {
                 let help = match nearest(found, JOINTS) {
+                    _ if found.eq_ignore_ascii_case("XOR") => Some(
+                        "there is no `XOR`: write `(a AND NOT b) OR (NOT a AND b)` with the conditions a and b"
+                            .into(),
+                    ),
                     Some(word) => Some(format!("did you mean `{word}`?")),
                     None => sign(rest).or_else(|| joint(rest)),
                 };
@@ -129,7 +133,7 @@ impl Mistake<'_> {
                     .help("write the name of a variable or a term between the quotes")
             }
             Wrong::Number => syntax(format!("expected a weight after `WITH`, found {shown}"))
-                .help("a weight is a number from 0 to 1: `WITH 0.8`"),
+                .help(weight_advice(rest)),
             Wrong::Weight(weight) => Diagnostic::error(
                 "weight-outside-range",
                 span,
@@ -150,6 +154,28 @@ impl Mistake<'_> {
 
 /// `vrey hot`: the first word is a misspelt hedge, or both are one name.
 fn two_words(span: core::ops::Range<usize>, first: &str, second: &str) -> Diagnostic {
+    let is = |word: &str, known: &[&str]| known.iter().any(|one| word.eq_ignore_ascii_case(one));
+    let phrase = if is(second, &["BUT", "PLUS", "WHILE"]) {
+        Some(format!("write `AND` in place of `{second}`"))
+    } else if is(first, &["EITHER"]) {
+        Some("write `(x IS a OR x IS b)` with the input x".to_owned())
+    } else if is(first, &["NEITHER"]) {
+        Some("write `x IS NOT a AND x IS NOT b` with the input x".to_owned())
+    } else if is(
+        first,
+        &[
+            "between", "below", "above", "under", "over", "at", "less", "more",
+        ],
+    ) || is(first, &["greater", "smaller", "higher", "lower"])
+    {
+        Some("a condition names a term: join the terms that are meant, `(x IS a OR x IS b)`, or give the input a term for these values".to_owned())
+    } else {
+        None
+    };
+    if let Some(help) = phrase {
+        let message = format!("expected a term after `IS`, found `{first} {second}`");
+        return Diagnostic::error("rule-syntax", span, message).help(help);
+    }
     if second.parse::<f64>().is_ok() {
         let message = format!("expected a term after `IS`, found `{first} {second}`");
         return Diagnostic::error("rule-syntax", span, message)
@@ -195,7 +221,11 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
             None => format!("write `{name} IS` and a term"),
         });
     }
-    if found.starts_with(['<', '>', '≤', '≥']) {
+    let is = |word: &str| found.eq_ignore_ascii_case(word);
+    if let Some(help) = spoken(name, rest, text.get(..start).unwrap_or("")) {
+        return Some(help);
+    }
+    if found.starts_with(['<', '>', '≤', '≥', '-', '+', '*', '/']) || is("BETWEEN") {
         return Some(format!(
             "a condition names a term, not a number: give `{name}` a term for these values and write `{name} IS term`"
         ));
@@ -216,9 +246,18 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
         ));
     }
     let behind = rest.get(found.len()..).unwrap_or("");
+    if Hedge::ALL.iter().any(|hedge| is(hedge.word())) {
+        let next = found_here(behind.trim_start());
+        return Some(format!("write `{name} IS {found} {next}`"));
+    }
     if is_plain_name(found) && keyword(behind, "IS").is_none() {
+        let next = found_here(behind.trim_start());
+        // `fan BECOMES fast`, `temperature WAS hot`
+        let is_verb = is_plain_name(next) && !Rule::is_keyword(next);
         return Some(match nearest(found, ["IS"]) {
             Some(word) => format!("did you mean `{word}`?"),
+            None if name.eq_ignore_ascii_case("SET") => format!("write `{found} IS` and a term"),
+            None if is_verb => format!("write `{name} IS {next}`"),
             None => format!("write `{name} IS {found}`"),
         });
     }
@@ -230,10 +269,45 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
     sign(rest)
 }
 
+/// What to write for a phrase of another language behind the name of a variable: `IN (mild, hot)`, `NOT IS hot`, and
+/// `IS more or less hot`, where `less` was taken for a name.
+fn spoken(name: &str, rest: &str, before: &str) -> Option<String> {
+    let found = found_here(rest);
+    let behind = rest.get(found.len()..).unwrap_or("").trim_start();
+    if found.eq_ignore_ascii_case("IN") {
+        let list = behind.strip_prefix(['(', '[', '{'])?;
+        let terms = list
+            .split([')', ']', '}'])
+            .next()?
+            .split(',')
+            .map(str::trim);
+        let terms = terms.filter(|term| is_plain_name(term));
+        let parts: Vec<String> = terms.map(|term| format!("{name} IS {term}")).collect();
+        return (!parts.is_empty()).then(|| format!("write `({})`", parts.join(" OR ")));
+    }
+    if found.eq_ignore_ascii_case("NOT")
+        && let Some(behind) = keyword(behind, "IS")
+    {
+        let term = found_here(behind.trim_start());
+        return Some(format!("write `{name} IS NOT {term}`"));
+    }
+    let mut words = before.split_whitespace().rev();
+    let is_more_or = words
+        .next()
+        .is_some_and(|word| word.eq_ignore_ascii_case("or"))
+        && words
+            .next()
+            .is_some_and(|word| word.eq_ignore_ascii_case("more"));
+    (is_more_or && name.eq_ignore_ascii_case("less")).then(|| format!("write `somewhat {found}`"))
+}
+
 /// What to write where a name should stand and a word of the rule language or the end does.
 fn name_is_missing(what: &str, found: &str) -> Option<String> {
     let is = |word: &str| found.eq_ignore_ascii_case(word);
     let input = what.contains("input");
+    if input && is("IS") {
+        return Some("name the input again: `AND input IS term`".into());
+    }
     if input && is("IF") {
         return Some("write `IF` once".into());
     }
@@ -256,8 +330,34 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
     })
 }
 
+/// What to write for a weight such as `50%` or `weight 0.5`.
+fn weight_advice(rest: &str) -> String {
+    let mut words = rest.split_whitespace();
+    let first = words.next().unwrap_or("");
+    let percent = first
+        .strip_suffix('%')
+        .and_then(|number| number.parse::<f64>().ok());
+    let named = words
+        .next()
+        .filter(|_| first.eq_ignore_ascii_case("weight"));
+    match (
+        percent,
+        named.filter(|number| number.parse::<f64>().is_ok()),
+    ) {
+        (Some(percent), _) => format!("write `WITH {}`", percent / 100.0),
+        (_, Some(number)) => format!("write `WITH {number}`"),
+        _ => "a weight is a number from 0 to 1: `WITH 0.8`".into(),
+    }
+}
+
 /// What to write where a rule does not begin with IF.
 fn at_start(rest: &str) -> String {
+    if ["WHEN", "WHENEVER"]
+        .iter()
+        .any(|word| found_here(rest).eq_ignore_ascii_case(word))
+    {
+        return format!("write `IF` in place of `{}`", found_here(rest));
+    }
     let numbered = rest
         .split_whitespace()
         .take(4)
@@ -305,6 +405,12 @@ fn behind_conclusion(rest: &str, weighted: bool) -> Option<String> {
     }
     if is("or") {
         return Some("conclusions are joined by `AND`; for `OR` write two rules".into());
+    }
+    if is("unless") || is("except") {
+        return Some("there is no `UNLESS`: write `AND NOT (condition)` before `THEN`".into());
+    }
+    if is("weight") || is("weighted") || is("weights") {
+        return Some("a weight stands behind `WITH`: `WITH 0.5`".into());
     }
     if let Some(number) = rest.strip_prefix(',')
         && number.starts_with(|c: char| c.is_ascii_digit())

@@ -361,6 +361,13 @@ impl Node {
                 text.replacen(',', ".", 1)
             ));
         }
+        if text.contains(['*', '/', '+'])
+            && let Ok(formula) = text.parse::<crate::formula::Formula>()
+            && let value = formula.evaluate(|_| f64::NAN)
+            && value.is_finite()
+        {
+            return Some(format!("write the number, not a calculation: `{value}`"));
+        }
         let number: String = text
             .chars()
             .take_while(|c| c.is_ascii_digit() || matches!(c, '.' | '-' | '+'))

@@ -171,6 +171,10 @@ impl<'m> Validator<'m> {
         let mut finding = Diagnostic::error("unknown-term", term.span.clone(), message);
         let known = variable.terms.iter().map(|t| t.name.as_str());
         finding.help = suggest(&term.text, known).or_else(|| Some("add terms to it".into()));
+        if term.text.parse::<f64>().is_ok() {
+            let help = finding.help.unwrap_or_default();
+            finding.help = Some(format!("a rule names a term, not a number; {help}"));
+        }
         self.findings.push(finding);
     }
 }

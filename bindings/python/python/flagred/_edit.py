@@ -220,14 +220,15 @@ class Variable:
     unit: Any = _key("unit", "The unit of its values, for people.")
     description: Any = _key("description", "What it means.")
     partition: Any = _key("partition", "Terms side by side: a list, or a dict of their peaks. In place of ``terms``.")
+    steps: Any = _key("steps", "Terms that divide the range: a dict of their limits, None for the last. In place of ``terms``.")
     terms: Any = _key("terms", "The terms: a membership function for each name. In place of ``partition``.")
 
     def _set(self, key: str, value: Any) -> None:
         def change(document: Document) -> None:
             variable = document[self._kind][self.name]
-            if key in ("partition", "terms"):
-                variable.pop("partition", None)
-                variable.pop("terms", None)
+            if key in ("partition", "steps", "terms"):
+                for form in ("partition", "steps", "terms"):
+                    variable.pop(form, None)
             variable[key] = plain(value)
             if value is None:
                 del variable[key]

@@ -16,6 +16,7 @@ __all__ = ["Model", "load", "loads"]
 
 
 Partition = Sequence[str] | Mapping[str, float]
+Steps = Mapping[str, float | None]
 Terms = Mapping[str, Mapping[str, Any]]
 
 _EMPTY = "fuzzy: 1\nname: model\ninputs: {}\noutputs: {}\nrules: []\n"
@@ -76,6 +77,7 @@ class Model(RuleSet):
         *,
         range: Sequence[float],
         partition: Partition | None = None,
+        steps: Steps | None = None,
         terms: Terms | None = None,
         unit: str | None = None,
         description: str | None = None,
@@ -92,6 +94,8 @@ class Model(RuleSet):
             Terms side by side: their names, evenly spaced over the range, or the peak of each.
         terms
             In place of a partition, a membership function for each term: ``{"hot": {"right_shoulder": [20, 30]}}``.
+        steps
+            In place of a partition, the limit below which each term ends, and ``None`` for the last: ``{"low": 36, "high": None}``.
         unit
             The unit of its values, for people.
         description
@@ -110,6 +114,7 @@ class Model(RuleSet):
         *,
         range: Sequence[float],
         partition: Partition | None = None,
+        steps: Steps | None = None,
         terms: Terms | None = None,
         unit: str | None = None,
         description: str | None = None,

@@ -300,7 +300,7 @@ def _said(data: dict[str, Any]) -> Said:
 
 
 class Evaluation(EvaluationData):
-    """What came of many flights; made by :func:`evaluate`. ``str()`` is what ``flagred evaluate`` prints."""
+    """What came of many flights; made by :func:`evaluate`. ``str()`` is what ``flagred validate`` prints."""
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Evaluation:
         raise TypeError("an evaluation is made by `flagred.evaluate`")
@@ -372,7 +372,7 @@ class Evaluation(EvaluationData):
         return self._roc(names.index(estimator))
 
     def to_dict(self) -> dict[str, Any]:
-        """All of it, as ``flagred evaluate --json`` prints it."""
+        """All of it, as ``flagred validate --json`` prints it."""
         found: dict[str, Any] = json.loads(self.to_json())
         return found
 
@@ -393,7 +393,7 @@ def evaluate(
     skip_bad_logs: bool = False,
     threads: int | None = None,
 ) -> Evaluation:
-    """Evaluates the risks of profiles on many flights, beside predictors without rules. ``flagred evaluate`` does the same.
+    """Evaluates the risks of profiles on many flights, beside predictors without rules. ``flagred validate`` does the same.
 
     Parameters
     ----------

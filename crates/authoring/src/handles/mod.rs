@@ -34,6 +34,8 @@ pub struct Handle {
 enum Grip {
     /// The peak in a partition.
     Peak,
+    /// The limit of a term in `steps`.
+    Limit,
     /// The parameter of this index, which is a place.
     Place(usize),
     /// The parameter of this index: a width, so many times smaller than the handle's distance from a place.
@@ -128,6 +130,9 @@ impl<'d> Place<'d> {
         if self.is_partition() {
             return self.peak().into_iter().collect();
         }
+        if !self.spans.steps.is_empty() {
+            return self.limit().into_iter().collect();
+        }
         let shape = &self.term.membership_function;
         if let MembershipFunction::Piecewise { points } = shape {
             return (0..points.len())
@@ -162,6 +167,29 @@ impl<'d> Place<'d> {
                 low: left.map_or(self.variable.low, |left| {
                     rounded(left + step, decimals).min(x)
                 }),
+                high: right.map_or(self.variable.high, |right| {
+                    rounded(right - step, decimals).max(x)
+                }),
+                moves_degree: false,
+            },
+        ))
+    }
+
+    /// The handle of a term that ends at a limit, between the neighbours' limits; the last term has none.
+    fn limit(&self) -> Option<(Grip, Handle)> {
+        let limits = self.variable.step_limits()?;
+        let at = self.index_of_term;
+        let (x, step, decimals) = (*limits.get(at)?, self.step(), self.decimals());
+        let left = at.checked_sub(1).and_then(|i| limits.get(i));
+        let left = left.copied().unwrap_or(self.variable.low);
+        let right = limits.get(at + 1);
+        Some((
+            Grip::Limit,
+            Handle {
+                name: "limit",
+                x,
+                degree: 1.0,
+                low: rounded(left + step, decimals).min(x),
                 high: right.map_or(self.variable.high, |right| {
                     rounded(right - step, decimals).max(x)
                 }),

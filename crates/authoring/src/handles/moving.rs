@@ -25,6 +25,16 @@ impl Place<'_> {
                 let empty = Variable::new("", self.variable.low, self.variable.high);
                 return Ok(empty.partition_at(peaks).terms);
             }
+            Grip::Limit => {
+                let mut limits = self.variable.step_limits().unwrap_or_default();
+                if let Some(limit) = limits.get_mut(self.index_of_term) {
+                    *limit = to;
+                }
+                let last = terms.last().map_or("", |term| term.name.as_str());
+                let names = terms.iter().map(|term| term.name.as_str());
+                let empty = Variable::new("", self.variable.low, self.variable.high);
+                return Ok(empty.steps(names.zip(limits), last).terms);
+            }
             Grip::Point(i) => {
                 let MembershipFunction::Piecewise { points } = shape else {
                     return Err("there is no such point".into());

@@ -3,7 +3,10 @@
 mod flight;
 pub(crate) mod summary;
 
-use std::path::{Path, PathBuf};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 use flagred::{
     profile::{CRITICAL_ERROR_DEG, Profile, ProfileInput},
@@ -41,6 +44,10 @@ pub(crate) struct Arguments {
     /// The attitude error of a risk of 100 %, in degrees
     #[arg(long, value_name = "DEG", value_parser = seconds, default_value_t = CRITICAL_ERROR_DEG)]
     critical: f64,
+
+    /// The file to write [default: standard output]
+    #[arg(short, long, value_name = "FILE", value_parser = output::csv_path)]
+    output: Option<PathBuf>,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -111,8 +118,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         critical_deg: arguments.critical,
     };
     let named = arguments.profile.iter();
-    Files::reading(named.chain(&arguments.logs).map(PathBuf::from))?;
-    let mut out = csv::Writer::from_writer(Stdout::data());
+    let mut files = Files::reading(named.chain(&arguments.logs).map(PathBuf::from))?;
+    let output = files.optional(arguments.output.as_ref())?;
+    let output = output.filter(|output| !output.is_stdout());
+    let mut table = Vec::new();
+    let sink: Box<dyn Write + '_> = match output {
+        Some(_) => Box::new(&mut table),
+        None => Box::new(Stdout::data()),
+    };
+    let mut out = csv::Writer::from_writer(sink);
     out.write_record(head(&plan))?;
 
     let mut exit = Exit::Clean;
@@ -149,6 +163,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     out.flush()?;
     if written == 0 && exit == Exit::Clean {
         return Err(Failure::unreadable("no row could be made of these flights"));
+    }
+    drop(out);
+    if let Some(output) = output {
+        output.write_with(|to| to.write_all(&table))?;
     }
     Ok(exit)
 }

@@ -83,6 +83,11 @@ struct Plan {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model, &arguments.points])?;
     let output = files.output(&arguments.output, Replace::Yes)?;
+    if is_table(&arguments.model) && !is_table(&arguments.points) {
+        let (model, points) = (arguments.model.display(), arguments.points.display());
+        let message = format!("`{model}` is a table, and the rule set comes first");
+        return Err(Failure::usage(message).help(format!("flagred eval {points} {model}")));
+    }
     let engine = rule_set::load(&arguments.model)?;
     let format = &arguments.format;
     let (header, reader) = table::open(&arguments.points, format.delimiter)?;
@@ -136,6 +141,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Exit::Clean
     } else {
         Exit::Findings
+    })
+}
+
+fn is_table(path: &Path) -> bool {
+    let extension = path.extension();
+    extension.is_some_and(|found| {
+        ["csv", "tsv"]
+            .iter()
+            .any(|known| found.eq_ignore_ascii_case(known))
     })
 }
 

@@ -1,8 +1,12 @@
 //! `flagred map`: the output of a rule set over its inputs, as a picture or a table.
 
+mod check;
+mod sample;
 mod slice;
+mod table;
+mod values;
 
-use std::{io::Write, path::PathBuf};
+use std::path::PathBuf;
 
 use anstyle::{RgbColor, Style};
 use clap::ValueEnum;
@@ -10,19 +14,18 @@ use flagred::{
     estimator::Estimator,
     gap::{Filling, GapMethod, GapSettings},
 };
-use flagred_authoring::slice::POINTS;
+use flagred_authoring::slice::{Mapped, POINTS};
 use fuzzy::{
-    Engine,
+    Engine, Model,
     drawing::visible,
-    drawing::{Colour, Slice, map_svg, map_text, rules_svg, rules_text, short, surface_svg},
-    map::{DecisionMap, Grid},
+    drawing::{Colour, map_svg, map_text, rules_svg, rules_text, surface_svg},
 };
 
 use crate::{
     built_in,
     diagnostics::read_text,
     failure::{Exit, Failure},
-    output::{self, Files, Stdout},
+    output::{self, Files, print},
     profile::{self, Loaded},
     rule_set,
 };
@@ -38,10 +41,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "POINTS", value_parser = clap::value_parser!(u16).range(2..=1001))]
     points: Option<u16>,
 
-    /// Hold an input at a value: `battery=0.8`. An input that is neither fixed nor an axis is held at the middle of its
+    /// Hold an input at a value: `battery=0.8`. An input that is neither held nor an axis is held at the middle of its
     /// range, or at the peak of a term where the output varies more
-    #[arg(long, value_name = "INPUT=VALUE", value_parser = fix)]
-    fix: Vec<(String, f64)>,
+    #[arg(long, value_name = "INPUT=VALUE", value_parser = hold)]
+    hold: Vec<(String, f64)>,
 
     /// The input along the horizontal axis, and the part of its range to show: `spread` or `spread:0..0.2` [default: the
     /// first that is not fixed, where its terms lie]
@@ -52,9 +55,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     y: Option<AxisChoice>,
 
-    /// The output to show [default: the first]
+    /// The output to show [default: the last that no other output reads; of a profile, its risk]
     #[arg(long, value_name = "OUTPUT")]
-    output: Option<String>,
+    of: Option<String>,
+
+    /// The file to write [default: standard output]
+    #[arg(short, long, value_name = "FILE", value_parser = text_path)]
+    output: Option<PathBuf>,
 
     /// How to interpolate cells where no rule applies [default: none; of a profile, as it says]
     #[arg(long, value_enum, value_name = "METHOD")]
@@ -66,7 +73,7 @@ pub(crate) struct Arguments {
     coverage_below: Option<f64>,
 
     /// Write an SVG picture to this file; `-` is standard output
-    #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
+    #[arg(long, value_name = "FILE", value_parser = output::svg_path, conflicts_with = "output")]
     svg: Option<PathBuf>,
 
     /// Draw a surface in three dimensions instead of a flat map, as SVG
@@ -77,9 +84,46 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "surface")]
     activations: bool,
 
+    /// Print values as numbers: a table below the picture; with more than two inputs, a table for each combination of the peaks
+    /// of the other inputs
+    #[arg(long, conflicts_with_all = ["svg", "activations", "csv"])]
+    values: bool,
+
     /// Print a table of all cells instead of a picture
     #[arg(long, conflicts_with_all = ["svg", "activations"])]
     csv: bool,
+
+    /// With `--csv`: this many points, spread over all inputs, instead of a grid
+    #[arg(
+        long,
+        value_name = "POINTS",
+        requires = "csv",
+        conflicts_with_all = ["points", "hold", "x", "y"],
+        value_parser = clap::value_parser!(u32).range(1..=1_000_000)
+    )]
+    sample: Option<u32>,
+
+    /// Compare the outputs with a table that `map --csv` or `eval` wrote before: exit code 1 where a value differs
+    #[arg(
+        long,
+        value_name = "TABLE.csv",
+        conflicts_with_all = ["points", "hold", "x", "y", "of", "output", "svg", "activations", "values", "csv"]
+    )]
+    check: Option<PathBuf>,
+}
+
+/// A file for a map as text.
+fn text_path(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_svg = path
+        .extension()
+        .is_some_and(|other| other.eq_ignore_ascii_case("svg"));
+    match is_svg {
+        true => Err(format!(
+            "this writes text; for a picture write `--svg {text}`"
+        )),
+        false => Ok(path),
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -89,8 +133,10 @@ enum Fill {
     /// The value of the nearest covered cell
     Nearest,
     /// The mean of the nearest covered cells, weighted by inverse distance
+    #[value(name = "inverse_distance")]
     InverseDistance,
     /// The thin-plate spline through the nearest covered cells
+    #[value(name = "thin_plate")]
     ThinPlate,
     /// Laplace's equation: smooth, without overshoot
     Harmonic,
@@ -138,7 +184,7 @@ fn axis(text: &str) -> Result<AxisChoice, String> {
     }
 }
 
-fn fix(text: &str) -> Result<(String, f64), String> {
+fn hold(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write `INPUT=VALUE`")?;
     match value.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok((name.trim().to_owned(), value)),
@@ -164,34 +210,45 @@ pub(crate) fn points_along(inputs: usize) -> usize {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut files = Files::reading([&arguments.model])?;
+    let read = [&arguments.model].into_iter().chain(&arguments.check);
+    let mut files = Files::reading(read)?;
     let svg = files.optional(arguments.svg.as_ref())?;
+    let output = files.optional(arguments.output.as_ref())?;
     let evaluated = evaluate(arguments)?;
-    let output = evaluated.engine.model().outputs.get(evaluated.output);
-    if let Some(output) = output.filter(|output| output.keeps_previous()) {
+    if let Some(table) = &arguments.check {
+        return check::against(table, &evaluated);
+    }
+    let shown = evaluated.engine.model().outputs.get(evaluated.output);
+    if let Some(shown) = shown.filter(|shown| shown.keeps_previous()) {
         output::say(&format!(
             "note: `{}` keeps its previous value where no rule fires; a map has none before its cells",
-            visible(&output.variable.name)
+            visible(&shown.variable.name)
         ));
     }
-    let mut out = Stdout::text();
-    let whole = arguments.fix.is_empty() && arguments.x.is_none() && arguments.y.is_none();
+    if let Some(points) = arguments.sample {
+        print(output.as_ref(), &sample::table(&evaluated, points)?)?;
+        return Ok(Exit::Clean);
+    }
+    let whole = arguments.hold.is_empty() && arguments.x.is_none() && arguments.y.is_none();
     if arguments.csv && whole && evaluated.engine.model().inputs.len() > 2 {
-        write_whole(&mut out, arguments, evaluated)?;
-        out.finish()?;
+        print(output.as_ref(), &table::whole(arguments, evaluated)?)?;
+        return Ok(Exit::Clean);
+    }
+    if arguments.values {
+        print(output.as_ref(), &values::text(arguments, &evaluated)?)?;
         return Ok(Exit::Clean);
     }
     let (slice, notes) = slice::cut(arguments, &evaluated)?;
     for note in notes {
         output::say(&format!("note: {note}"));
     }
-    let model = &evaluated.engine.model();
+    let model = evaluated.engine.model();
     match &svg {
-        _ if arguments.csv => write_slice(&mut out, &slice)?,
+        _ if arguments.csv => print(output.as_ref(), &table::of_slice(&slice)?)?,
         None if arguments.activations => {
-            write!(out, "{}", rules_text(&slice, model, painted))?;
+            print(output.as_ref(), &rules_text(&slice, model, painted))?
         }
-        None => write!(out, "{}", map_text(&slice, painted))?,
+        None => print(output.as_ref(), &map_text(&slice, painted))?,
         Some(svg) if arguments.surface => {
             let surface = surface_svg(&slice).ok_or_else(|| {
                 Failure::usage("`--surface` needs two inputs, and one is left")
@@ -202,7 +259,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(svg) if arguments.activations => svg.write(&rules_svg(&slice, model))?,
         Some(svg) => svg.write(&map_svg(&slice))?,
     }
-    out.finish()?;
     Ok(Exit::Clean)
 }
 
@@ -238,9 +294,9 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
         (rule_set::engine(&source, &file)?.clone(), None)
     };
     let profile = estimator.as_ref().map(Estimator::profile);
-    let wanted = arguments.output.as_deref();
+    let wanted = arguments.of.as_deref();
     let output = match wanted.or(profile.map(|profile| profile.output.as_str())) {
-        None => 0,
+        None => last(engine.model()),
         Some(wanted) => engine.output(wanted).ok_or_else(|| {
             let outputs = engine.output_names();
             let failure = Failure::usage(format!("`{file}` has no output `{wanted}`"));
@@ -272,99 +328,30 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
     })
 }
 
-/// Every cell of the map over all inputs.
-fn write_whole(
-    out: &mut impl Write,
-    arguments: &Arguments,
-    evaluated: Evaluated,
-) -> Result<(), Failure> {
-    let points = match arguments.points {
-        Some(points) => usize::from(points),
-        None => points_along(evaluated.engine.model().inputs.len()),
+/// The last output that no other one reads.
+fn last(model: &Model) -> usize {
+    let names = || {
+        model
+            .outputs
+            .iter()
+            .map(|output| output.variable.name.as_str())
     };
-    let no_map = |error: &dyn std::fmt::Display| {
-        Failure::unreadable(format!(
-            "`{}` cannot be mapped: {error}",
-            arguments.model.display()
-        ))
-    };
-    let grid = Grid::new(&evaluated.engine, points).map_err(|error| no_map(&error))?;
-    let map = DecisionMap::new(&evaluated.engine, grid, evaluated.output).map_err(|error| {
-        let help = "use fewer `--points`, or `flagred eval` at the points of a table";
-        no_map(&error).help(help)
-    })?;
-    let filling = evaluated.filling.map(|(filling, _)| filling);
-    let axes = map.grid().axes().iter().map(|axis| &*axis.name);
-    write_head(out, axes, map.output())?;
-    for cell in 0..map.grid().cells() {
-        let point = map.grid().point(cell);
-        for x in &point {
-            write!(out, "{},", short(*x))?;
-        }
-        let is_gap = |filling: &&Filling| filling.is_gap(map.coverage(cell));
-        let reading = filling.as_ref().filter(is_gap);
-        let reading = reading.and_then(|filling| filling.read(&point));
-        let (value, distance) = match reading {
-            Some(reading) => (Some(reading.value), Some(reading.distance)),
-            None => {
-                let value = map.value(cell);
-                (value, value.map(|_| 0.0))
-            }
-        };
-        writeln!(
-            out,
-            "{},{},{},{},{}",
-            value.map(short).unwrap_or_default(),
-            short(map.coverage(cell)),
-            rule_number(map.dominant(cell)),
-            u8::from(reading.is_some()),
-            distance.map(short).unwrap_or_default()
-        )?;
-    }
-    Ok(())
+    let read: Vec<&str> = names().flat_map(|name| model.reads(name)).collect();
+    let last = names()
+        .enumerate()
+        .filter(|(_, name)| !read.contains(name))
+        .last();
+    last.map_or(0, |(index, _)| index)
 }
 
-/// The names of the columns.
-fn write_head<'a>(
-    out: &mut impl Write,
-    axes: impl Iterator<Item = &'a str>,
-    output: &'a str,
-) -> Result<(), Failure> {
-    let mut head = csv::Writer::from_writer(out);
-    let names = axes
-        .chain([output])
-        .map(|name| output::cell(name).into_owned());
-    let more = ["coverage", "rule", "filled", "distance"].map(str::to_owned);
-    head.write_record(names.chain(more))?;
-    Ok(head.flush()?)
-}
-
-/// Every cell of a slice.
-fn write_slice(out: &mut impl Write, slice: &Slice) -> Result<(), Failure> {
-    let axes = std::iter::once(&slice.x).chain(&slice.y);
-    write_head(out, axes.map(|axis| axis.name.as_str()), &slice.output)?;
-    for (i, x) in slice.x.points.iter().enumerate() {
-        for j in 0..slice.rows() {
-            write!(out, "{},", short(*x))?;
-            if let Some(y) = slice.y.as_ref().and_then(|y| y.points.get(j)) {
-                write!(out, "{},", short(*y))?;
-            }
-            let cell = slice.cell(i, j);
-            writeln!(
-                out,
-                "{},{},{},{},{}",
-                cell.value.map(short).unwrap_or_default(),
-                short(cell.coverage),
-                rule_number(cell.rule),
-                u8::from(cell.filled_from.is_some()),
-                short(cell.filled_from.unwrap_or(0.0))
-            )?;
+impl Evaluated {
+    fn mapped(&self) -> Mapped<'_> {
+        let filling = self.filling.as_ref();
+        Mapped {
+            model: self.engine.model(),
+            engine: &self.engine,
+            output: self.output,
+            filling: filling.map(|(filling, method)| (filling, *method)),
         }
     }
-    Ok(())
-}
-
-/// The number of a rule, counted from 1; empty where no rule fired.
-fn rule_number(rule: Option<usize>) -> String {
-    rule.map(|rule| (rule + 1).to_string()).unwrap_or_default()
 }

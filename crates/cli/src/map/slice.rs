@@ -1,16 +1,23 @@
 //! The part of a map that a picture shows: two inputs are the axes, the others are held.
 
-use flagred_authoring::slice::{self, Mapped, POINTS};
+use flagred_authoring::slice::{self, POINTS};
 use fuzzy::drawing::{Axis, Scale, Slice, short};
 
 use super::{Arguments, AxisChoice, Evaluated};
 use crate::failure::Failure;
 
-/// The slice that the arguments ask for, and notes about what they leave open.
-pub(super) fn cut(
-    arguments: &Arguments,
-    evaluated: &Evaluated,
-) -> Result<(Slice, Vec<String>), Failure> {
+/// The axes that the arguments ask for, each with the index of its input.
+pub(super) struct Axes {
+    pub(super) x: (usize, Axis),
+    pub(super) y: Option<(usize, Axis)>,
+    /// The value of each input that is fixed.
+    pub(super) fixed: Vec<Option<f64>>,
+    /// A value for each input, at which those that are not axes are held.
+    pub(super) middle: Vec<f64>,
+}
+
+/// The axes that the arguments ask for.
+pub(super) fn axes(arguments: &Arguments, evaluated: &Evaluated) -> Result<Axes, Failure> {
     let model = evaluated.engine.model();
     let unknown = |name: &str| {
         let inputs = model.inputs.iter().map(|input| input.name.as_str());
@@ -22,7 +29,7 @@ pub(super) fn cut(
         found.ok_or_else(|| unknown(name))
     };
     let mut fixed: Vec<Option<f64>> = vec![None; model.inputs.len()];
-    for (name, value) in &arguments.fix {
+    for (name, value) in &arguments.hold {
         let input = index(name)?;
         let within = model.inputs.get(input).map(|i| (i.low, i.high));
         if let Some((low, high)) = within.filter(|(low, high)| value < low || value > high) {
@@ -42,7 +49,7 @@ pub(super) fn cut(
             && fixed.get(input).copied().flatten().is_some()
         {
             return Err(
-                Failure::usage(format!("`--{axis}` names an input that `--fix` holds"))
+                Failure::usage(format!("`--{axis}` names an input that `--hold` holds"))
                     .help("leave one of the two out"),
             );
         }
@@ -50,7 +57,16 @@ pub(super) fn cut(
     if asked_x.is_some() && asked_x == asked_y {
         return Err(Failure::usage("`--x` and `--y` name the same input"));
     }
-    let mut free = (0..model.inputs.len())
+    // First those that the output reads.
+    let output = model.outputs.get(evaluated.output);
+    let read = output.map_or(Vec::new(), |output| model.inputs_of(&output.variable.name));
+    let is_read = |input: &usize| {
+        let input = model.inputs.get(*input);
+        input.is_some_and(|input| read.contains(&input.name.as_str()))
+    };
+    let all = || 0..model.inputs.len();
+    let mut free = (all().filter(is_read))
+        .chain(all().filter(|input| !is_read(input) && read.is_empty()))
         .filter(|input| fixed.get(*input).copied().flatten().is_none())
         .filter(|input| Some(*input) != asked_x && Some(*input) != asked_y);
     let x = asked_x
@@ -68,25 +84,30 @@ pub(super) fn cut(
     let x_axis =
         axis(x, &arguments.x).ok_or_else(|| Failure::usage("the rule set has no inputs"))?;
     let y_axis = y.and_then(|y| axis(y, &arguments.y));
-    let mapped = Mapped {
-        model,
-        engine: &evaluated.engine,
-        output: evaluated.output,
-        filling: evaluated
-            .filling
-            .as_ref()
-            .map(|(filling, method)| (filling, *method)),
-    };
-    let point = slice::held(&mapped, &fixed, (x, y));
-    let held = model.inputs.iter().zip(&point).enumerate();
-    let held: Vec<(String, f64)> = held
-        .filter(|(input, _)| *input != x && Some(*input) != y)
-        .map(|(_, (input, value))| (input.name.clone(), *value))
-        .collect();
-    let axes = [("x", Some(x), Some(&x_axis)), ("y", y, y_axis.as_ref())];
-    let shown = axes
-        .into_iter()
-        .filter_map(|(flag, input, axis)| Some((flag, variable(input?)?, axis?)));
+    let middle = slice::held(&evaluated.mapped(), &fixed, (x, y));
+    Ok(Axes {
+        x: (x, x_axis),
+        y: y.zip(y_axis),
+        fixed,
+        middle,
+    })
+}
+
+/// The slice that the arguments ask for, and notes about what they leave open.
+pub(super) fn cut(
+    arguments: &Arguments,
+    evaluated: &Evaluated,
+) -> Result<(Slice, Vec<String>), Failure> {
+    let model = evaluated.engine.model();
+    let axes = axes(arguments, evaluated)?;
+    let mapped = evaluated.mapped();
+    let slice = slice::cut(&mapped, axes.x.clone(), axes.y.clone(), axes.middle)
+        .map_err(|error| Failure::unreadable(error.to_string()))?;
+    let axes = [("x", Some(&axes.x)), ("y", axes.y.as_ref())];
+    let shown = axes.into_iter().filter_map(|(flag, axis)| {
+        let (input, axis) = axis?;
+        Some((flag, model.inputs.get(*input)?, axis))
+    });
     let chosen = arguments.x.iter().chain(&arguments.y);
     let chosen: Vec<&str> = chosen
         .filter(|choice| choice.part.is_some())
@@ -104,18 +125,14 @@ pub(super) fn cut(
                  the whole range: `--{flag} {name}:{whole}`"
             )
         });
-    let named = |name: &str| arguments.fix.iter().any(|(fixed, _)| fixed == name);
-    let unnamed = held.iter().filter(|(name, _)| !named(name));
+    let named = |name: &str| arguments.hold.iter().any(|(fixed, _)| fixed == name);
+    let unnamed = slice.held.iter().filter(|(name, _)| !named(name));
     let held_at = unnamed.map(|(name, value)| {
         format!(
-            "`{name}` is held at {}; another value: `--fix {name}=VALUE`",
+            "`{name}` is held at {}; another value: `--hold {name}=VALUE`",
             short(*value)
         )
     });
     let notes: Vec<String> = held_at.chain(parts).collect();
-
-    let y_axis = y.zip(y_axis);
-    let slice = slice::cut(&mapped, (x, x_axis), y_axis, point)
-        .map_err(|error| Failure::unreadable(error.to_string()))?;
     Ok((slice, notes))
 }

@@ -17,6 +17,7 @@ pub(crate) use self::{
     file::{Files, Output, Replace, can_replace, new_file, write_all},
     stdout::Stdout,
 };
+use crate::failure::Failure;
 
 /// A file for an SVG picture: another extension would lie about what is in it.
 pub(crate) fn svg_path(text: &str) -> Result<PathBuf, String> {
@@ -53,6 +54,17 @@ fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<PathBuf, Strin
         )),
         _ => Ok(path),
     }
+}
+
+/// Writes a text to a file, or to standard output; on a terminal in its colours.
+pub(crate) fn print(output: Option<&Output>, text: &str) -> Result<(), Failure> {
+    if let Some(output) = output.filter(|output| !output.is_stdout()) {
+        return output.write(&anstream::adapter::strip_str(text).to_string());
+    }
+    let mut out = Stdout::text();
+    write!(out, "{text}")?;
+    out.finish()?;
+    Ok(())
 }
 
 /// A note on standard error, in one line.

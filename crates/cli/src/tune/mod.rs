@@ -150,7 +150,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let begun = resumed.as_ref().unwrap_or(original);
     let (data, refused) = data(arguments, begun)?;
     let settings = settings(arguments);
-    let failed = |error: TuneError| failure(&name, &error);
+    let failed = |error: TuneError| failure(&name, &original, &error);
 
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -276,7 +276,7 @@ fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failur
     Ok(resumed)
 }
 
-fn failure(name: &str, error: &TuneError) -> Failure {
+fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
     let help = match error {
         TuneError::Outputs { .. } => {
             "tune a rule set with this output alone; outputs that chain are tuned one by one"
@@ -297,7 +297,20 @@ fn failure(name: &str, error: &TuneError) -> Failure {
         _ => "`flagred check` shows what is wrong with the rule set",
     };
     match error {
-        TuneError::Unknown { .. } | TuneError::NothingMoves | TuneError::Claim { .. } => {
+        TuneError::Unknown { name: unknown } => {
+            let outputs = model.outputs.iter().map(|output| &output.variable);
+            let variables = model.inputs.iter().chain(outputs);
+            let names = variables.flat_map(|variable| {
+                let terms = variable.terms.iter();
+                let terms = terms.map(|term| format!("{}.{}", variable.name, term.name));
+                std::iter::once(variable.name.clone()).chain(terms)
+            });
+            let names: Vec<String> = names.collect();
+            let near = fuzzy::diagnostic::nearest(unknown, names.iter().map(String::as_str));
+            let help = near.map_or(help.to_owned(), |near| format!("did you mean `{near}`?"));
+            Failure::usage(format!("`{name}`: {error}")).help(help)
+        }
+        TuneError::NothingMoves | TuneError::Claim { .. } => {
             Failure::usage(format!("`{name}`: {error}")).help(help)
         }
         _ => Failure::unusable(format!("`{name}`"), error).help(help),

@@ -109,7 +109,7 @@ pub(super) fn named(description: &str, of: &str) -> Node {
 }
 
 /// That exactly one of two keys is there.
-pub(super) fn one_of(keys: [&str; 2]) -> (String, Node) {
+pub(super) fn one_of<const N: usize>(keys: [&str; N]) -> (String, Node) {
     let one = |key: &str| Node::mapping([("required", Node::list([Node::text(key)].into()))]);
     entry("oneOf", Node::list(keys.map(one).into()))
 }

@@ -98,6 +98,13 @@ fn any_variable() -> impl Strategy<Value = Variable> {
                         });
                     variable.terms = terms.collect();
                 }
+                None if names.len() > 2 && height == 1.0 => {
+                    let count = (names.len() - 1) as f64;
+                    let limit = |i| low + (high - low) * f64::from(i) / count;
+                    let below = names.iter().map(String::as_str).zip((1..).map(limit));
+                    let below: Vec<_> = below.take(names.len() - 1).collect();
+                    variable = variable.steps(below, names.last().unwrap());
+                }
                 None => variable = variable.partition(names.iter().map(String::as_str)),
             }
             Variable {
@@ -292,6 +299,13 @@ pub(super) fn any_model() -> impl Strategy<Value = Model> {
                 };
                 Model {
                     rules: rules.collect(),
+                    allow: match otherwise {
+                        1 => vec![Allowed {
+                            finding: "jump".into(),
+                            because: "limits: of 'the' regulation".into(),
+                        }],
+                        _ => Vec::new(),
+                    },
                     provenance: if otherwise == 0 {
                         Vec::from([step])
                     } else {

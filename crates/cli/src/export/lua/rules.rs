@@ -422,7 +422,7 @@ fn corners(variable: &Variable, term: usize) -> Result<Vec<String>, Refused> {
     let Some(term) = variable.terms.get(term) else {
         return Ok(Vec::new());
     };
-    let corners = term.membership_function.corners().ok_or_else(|| {
+    let mut corners = term.membership_function.corners().ok_or_else(|| {
         Refused::new(
             format!(
                 "term `{}` of input `{}` is curved, which the script does not have",
@@ -431,6 +431,13 @@ fn corners(variable: &Variable, term: usize) -> Result<Vec<String>, Refused> {
             "the script has terms made of straight lines; `piecewise` can come near to a curve",
         )
     })?;
+    // The script takes the degree behind a vertical side, but at the end of the range there is nothing behind it.
+    if let [.., (left, _), (right, _)] = *corners.as_slice()
+        && left == right
+        && right >= variable.high
+    {
+        corners.pop();
+    }
     let numbers = corners.iter().filter(|(x, _)| x.is_finite());
     Ok(numbers
         .flat_map(|(x, degree)| [number(*x), number(degree * term.height)])

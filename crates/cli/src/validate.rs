@@ -1,4 +1,4 @@
-//! `flagred evaluate`: how good are the risks of profiles, beside predictors that need no rules?
+//! `flagred validate`: how good are the risks of profiles, beside predictors that need no rules?
 
 use std::{
     io::Write,

@@ -1,0 +1,131 @@
+//! Outputs compared with a table that was written before.
+
+use std::{io::Write as _, path::Path};
+
+use flagred_authoring::slice::{Mapped, at};
+use fuzzy::drawing::{short, visible};
+
+use super::Evaluated;
+use crate::{
+    failure::{Exit, Failure},
+    output::Stdout,
+    table::{Cell, Table},
+};
+
+/// Values that differ by less, as a share of the output's range, are equal: the digits of another program.
+const NEGLIGIBLE: f64 = 1e-9;
+
+/// The largest difference of an output.
+struct Worst {
+    line: u64,
+    point: Vec<f64>,
+    before: Option<f64>,
+    now: Option<f64>,
+}
+
+/// Compares each output that the table has a column for.
+pub(super) fn against(path: &Path, evaluated: &Evaluated) -> Result<Exit, Failure> {
+    let table = Table::read(path, b',')?;
+    let names: Vec<&str> = evaluated.engine.input_names().collect();
+    let help = "`flagred map --csv` writes such a table";
+    let columns = names.iter().map(|name| table.header.require(name, help));
+    let columns: Vec<usize> = columns.collect::<Result<_, _>>()?;
+    let outputs = evaluated.engine.output_names().enumerate();
+    let outputs = outputs.filter_map(|(output, name)| {
+        let column = table.header.column(name)?;
+        Some((output, name, column))
+    });
+    let outputs: Vec<(usize, &str, usize)> = outputs.collect();
+    if outputs.is_empty() {
+        let outputs = evaluated.engine.output_names();
+        let message = format!("`{}` has no column of an output", table.header.file);
+        let known = fuzzy::diagnostic::suggest("", outputs).unwrap_or_default();
+        return Err(Failure::unreadable(message).help(format!("{known}; {help}")));
+    }
+    let mut out = Stdout::text();
+    let mut exit = Exit::Clean;
+    let file = visible(&table.header.file);
+    for (output, name, column) in outputs {
+        let mapped = Mapped {
+            output,
+            // The profile fills the gaps of its own output.
+            filling: evaluated
+                .mapped()
+                .filling
+                .filter(|_| output == evaluated.output),
+            ..evaluated.mapped()
+        };
+        let (differ, worst) = differences(&table, &mapped, &columns, column)?;
+        let (rows, name) = (table.len(), visible(name));
+        let Some(worst) = worst else {
+            writeln!(out, "{file}: `{name}` is the same at {rows} points")?;
+            continue;
+        };
+        exit = Exit::Findings;
+        let at = names.iter().zip(&worst.point);
+        let at: Vec<String> = at
+            .map(|(name, x)| format!("{} = {}", visible(name), short(*x)))
+            .collect();
+        let value = |value: Option<f64>| value.map_or_else(|| "no value".to_owned(), short);
+        writeln!(
+            out,
+            "{file}: `{name}` differs at {differ} of {rows} points, most in line {}, at {}: {} before, {} now",
+            worst.line,
+            at.join(", "),
+            value(worst.before),
+            value(worst.now)
+        )?;
+    }
+    out.finish()?;
+    Ok(exit)
+}
+
+/// How many rows differ, and the largest difference. A value and none differ more than any two values.
+fn differences(
+    table: &Table,
+    mapped: &Mapped<'_>,
+    inputs: &[usize],
+    column: usize,
+) -> Result<(usize, Option<Worst>), Failure> {
+    let bad = |row: usize, column: usize| {
+        let problem = Cell::problem(table.text(row, column).as_bytes());
+        let (file, line) = (&table.header.file, table.line(row));
+        let name = table.header.name(column);
+        Failure::unreadable(format!("`{file}`, line {line}, column `{name}`: {problem}"))
+    };
+    let range = mapped.model.outputs.get(mapped.output);
+    let range = range.map_or(1.0, |output| output.variable.high - output.variable.low);
+    let (mut differ, mut worst, mut most) = (0, None, 0.0);
+    for row in 0..table.len() {
+        let point = inputs.iter().map(|input| {
+            let number = table.number(row, *input);
+            number.map_err(|_| bad(row, *input))
+        });
+        let point: Vec<f64> = point.collect::<Result<_, _>>()?;
+        let before = match Cell::of(table.text(row, column).as_bytes()) {
+            Cell::Number(value) => Some(value),
+            Cell::Unknown => None,
+            Cell::Bad => return Err(bad(row, column)),
+        };
+        let now = at(mapped, &point).map_err(|error| Failure::unreadable(error.to_string()))?;
+        let difference = match (before, now.value) {
+            (Some(before), Some(now)) => (before - now).abs(),
+            (None, None) => 0.0,
+            _ => f64::INFINITY,
+        };
+        if difference <= NEGLIGIBLE * range {
+            continue;
+        }
+        differ += 1;
+        if difference > most {
+            most = difference;
+            worst = Some(Worst {
+                line: table.line(row),
+                point,
+                before,
+                now: now.value,
+            });
+        }
+    }
+    Ok((differ, worst))
+}

@@ -1,0 +1,47 @@
+//! Points spread over all inputs, where a grid would have too many.
+
+use flagred_authoring::slice::at;
+use fuzzy::model::Variable;
+
+use super::{Evaluated, table};
+use crate::failure::Failure;
+
+/// A table of the output at so many points.
+pub(super) fn table(evaluated: &Evaluated, points: u32) -> Result<String, Failure> {
+    let mapped = evaluated.mapped();
+    let inputs = &evaluated.engine.model().inputs;
+    let names = inputs.iter().map(|input| input.name.as_str());
+    let output = evaluated.engine.output_names().nth(evaluated.output);
+    let mut out = table::head(names, output.unwrap_or_default())?;
+    for index in 0..points {
+        let point = point(inputs, index);
+        let cell = at(&mapped, &point).map_err(|error| Failure::unreadable(error.to_string()))?;
+        table::row(&mut out, &point, &cell);
+    }
+    Ok(out)
+}
+
+/// A point of a sequence that fills the ranges evenly: the fractions of multiples of 1/g, 1/g^2, ..., where g is the root of
+/// g^(d + 1) = g + 1 for d inputs (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
+fn point(inputs: &[Variable], index: u32) -> Vec<f64> {
+    let dimensions = inputs.len() as f64;
+    let mut root = 2.0_f64;
+    for _ in 0..64 {
+        root = (1.0 + root).powf(1.0 / (dimensions + 1.0));
+    }
+    let mut step = 1.0;
+    let coordinate = |input: &Variable| {
+        step /= root;
+        let share = (0.5 + step * (f64::from(index) + 1.0)).fract();
+        rounded(input, input.low + (input.high - input.low) * share)
+    };
+    inputs.iter().map(coordinate).collect()
+}
+
+/// A value with about four digits of the range, so that a table is short.
+fn rounded(input: &Variable, value: f64) -> f64 {
+    let width = input.high - input.low;
+    let decimals = (3.0 - width.log10().floor()).clamp(0.0, 17.0) as usize;
+    let rounded = format!("{value:.decimals$}").parse().unwrap_or(value);
+    rounded.clamp(input.low, input.high) + 0.0
+}

@@ -1,0 +1,105 @@
+//! Rules that do not fire, and what changes next, as text.
+
+use std::fmt::Write as _;
+
+use super::{
+    explanation::digits,
+    text::{number, visible},
+};
+use crate::{
+    engine::{Change, Effect, SilentRule},
+    model::Model,
+};
+
+/// A change that is nearer, as a share of the range, is as near as the search finds one.
+const NEXT: f64 = 1e-9;
+
+/// The most rules that are listed.
+const MOST_RULES: usize = 20;
+
+/// The rules that do not fire as text, each with the reason in a line below it; empty where all fire.
+pub fn silent_text(silent: &[SilentRule]) -> String {
+    let mut text = String::new();
+    if silent.is_empty() {
+        return text;
+    }
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "\nrules that do not fire");
+    for rule in silent.iter().take(MOST_RULES) {
+        let (number, reason) = (rule.rule + 1, rule.silence.to_string());
+        let _ = writeln!(text, "  {number}: {}", visible(&rule.text));
+        let _ = writeln!(text, "     {}", visible(&reason));
+    }
+    if silent.len() > MOST_RULES {
+        let _ = writeln!(text, "  and {} more", silent.len() - MOST_RULES);
+    }
+    text
+}
+
+/// The nearest changes as text, a line for each; empty where nothing changes over the ranges of the inputs.
+pub fn what_if_text(model: &Model, changes: &[Change]) -> String {
+    let mut text = String::new();
+    let rows: Vec<[String; 3]> = changes.iter().map(|change| row(model, change)).collect();
+    let width = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        cells.max().unwrap_or(0)
+    };
+    let (first, second) = (width(0), width(1));
+    if !rows.is_empty() {
+        let _ = writeln!(
+            text,
+            "\nnext changes if one input changes and the others stay"
+        );
+    }
+    for [input, at, effect] in &rows {
+        let _ = writeln!(text, "  {input:<first$}  {at:<second$}  {effect}");
+    }
+    text
+}
+
+/// `temperature`, `from 25 up (+1)`, `` rule 3 dominates `fan`: 62.5 ``.
+fn row(model: &Model, change: &Change) -> [String; 3] {
+    let mut inputs = model.inputs.iter();
+    let input = inputs.find(|input| input.name == change.input);
+    let width = input.map_or(0.0, |input| input.high - input.low);
+    let (at, by) = (shown(change.at), shown(change.by));
+    let at = match (change.is_below, change.by.abs() < NEXT * width) {
+        (true, true) => format!("just below {at}"),
+        (false, true) => format!("just above {at}"),
+        (true, false) => format!("from {at} down ({by})"),
+        (false, false) => format!("from {at} up (+{by})"),
+    };
+    let effect = match &change.effect {
+        Effect::Term { term: Some(term) } => format!("`{term}` is the strongest term"),
+        Effect::Term { term: None } => "all terms are 0".to_owned(),
+        Effect::Rule {
+            output,
+            rule,
+            value,
+        } => {
+            let mut outputs = model.outputs.iter().map(|output| &output.variable);
+            let unit = outputs.find(|variable| variable.name == *output);
+            let unit = unit.and_then(|variable| variable.unit.as_deref());
+            let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+            let value = match value {
+                Some(value) => format!(": {}{unit}", digits(*value)),
+                None => ": no value".to_owned(),
+            };
+            match rule {
+                Some(rule) => format!("rule {} dominates `{output}`{value}", rule + 1),
+                None => format!("no rule for `{output}` fires{value}"),
+            }
+        }
+    };
+    [
+        visible(&change.input).into_owned(),
+        at,
+        visible(&effect).into_owned(),
+    ]
+}
+
+/// Six significant digits: further ones are of the search.
+fn shown(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    number(rounded, 12)
+}

@@ -1,0 +1,179 @@
+//! Why rules do not fire.
+
+use alloc::{
+    string::{String, ToString},
+    vec,
+    vec::Vec,
+};
+use core::fmt;
+
+use super::{
+    Engine, EvaluateError, Explanation,
+    explain::{Known, holds},
+};
+use crate::{
+    model::{Operators, Rule, concludes},
+    rule::Condition,
+    table::Outcome,
+};
+
+/// A rule that does not fire at a point, and why.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct SilentRule {
+    /// Its index in the model; serialised, rules count from 1.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
+    pub rule: usize,
+    /// The rule as it is written.
+    pub text: String,
+    /// Why it does not fire.
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub silence: Silence,
+}
+
+/// Why a rule does not fire.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(tag = "reason", rename_all = "snake_case"))]
+#[non_exhaustive]
+pub enum Silence {
+    /// This part of its condition, the first such one, has the degree 0.
+    Condition {
+        /// The part as it is written.
+        condition: String,
+    },
+    /// An output that it reads has no value.
+    NoValue {
+        /// The output.
+        output: String,
+    },
+    /// Its block is not enabled.
+    Disabled,
+    /// Its weight is 0.
+    Weight,
+    /// The activation method or the least strength leaves its strength out.
+    Activation {
+        /// The degree of its condition times its weight.
+        strength: f64,
+    },
+}
+
+impl fmt::Display for Silence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Silence::Condition { condition } => write!(f, "the degree of `{condition}` is 0"),
+            Silence::NoValue { output } => write!(f, "`{output}`, which it reads, has no value"),
+            Silence::Disabled => f.write_str("its block is not enabled"),
+            Silence::Weight => f.write_str("its weight is 0"),
+            Silence::Activation { strength } => {
+                let strength = libm::round(strength * 1e5) / 1e5;
+                write!(
+                    f,
+                    "its strength {strength} is left out by the activation method or the least strength"
+                )
+            }
+        }
+    }
+}
+
+impl Engine {
+    /// The rules that do not fire at the point of an explanation, each with the reason.
+    ///
+    /// # Errors
+    /// The explanation is of another model.
+    ///
+    /// # Example: the condition that is 0
+    /// ```
+    /// use fuzzy::{Engine, Model};
+    ///
+    /// let model: Model = "
+    /// fuzzy: 1
+    /// name: fan
+    /// inputs: {heat: {range: [0, 40], partition: [low, high]}, damp: {range: [0, 1], partition: [dry, wet]}}
+    /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// rules: [IF heat IS low THEN speed IS slow, IF damp IS wet AND heat IS high THEN speed IS fast]
+    /// ".parse()?;
+    /// let engine = Engine::new(&model)?;
+    /// let silent = engine.silent(&engine.explain(&[0.0, 0.5])?)?;
+    /// assert_eq!(silent[0].rule, 1);
+    /// assert_eq!(silent[0].silence.to_string(), "the degree of `heat IS high` is 0");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn silent(&self, explanation: &Explanation) -> Result<Vec<SilentRule>, EvaluateError> {
+        let model = self.model();
+        let inputs: Vec<f64> = explanation.inputs.iter().map(|input| input.given).collect();
+        if inputs.len() != self.inputs.len() {
+            return Err(EvaluateError::WrongNumberOfInputs {
+                expected: self.inputs.len(),
+                got: inputs.len(),
+            });
+        }
+        let mut outcomes = vec![Outcome::default(); self.outputs.len()];
+        self.outcomes(&mut self.scratch(), &inputs, &mut outcomes);
+        let known = Known {
+            model,
+            inputs: &explanation.inputs,
+            outcomes: &outcomes,
+        };
+        let fires = |index: usize| explanation.rules.iter().any(|rule| rule.rule == index);
+        let rules = model.rules.iter().enumerate();
+        let silent = rules.filter(|(index, _)| !fires(*index));
+        let silent = silent.map(|(index, rule)| SilentRule {
+            rule: index,
+            text: rule.rule.to_string(),
+            silence: silence(rule, &known),
+        });
+        Ok(silent.collect())
+    }
+}
+
+fn silence(rule: &Rule, known: &Known<'_>) -> Silence {
+    let model = known.model;
+    if !model.is_enabled(rule) {
+        return Silence::Disabled;
+    }
+    if rule.rule.weight == 0.0 {
+        return Silence::Weight;
+    }
+    let concluded = || {
+        model
+            .outputs
+            .iter()
+            .filter(|output| concludes(rule, output))
+    };
+    if !concluded().any(|output| known.is_evaluated(&output.variable.name)) {
+        let mut reads = concluded().flat_map(|output| model.reads(&output.variable.name));
+        let unknown = reads.find(|name| {
+            known
+                .variable(name)
+                .is_none_or(|(_, value)| value.is_none())
+        });
+        return Silence::NoValue {
+            output: unknown.unwrap_or_default().into(),
+        };
+    }
+    let operators = model.operators_of(rule);
+    let degree = holds(&rule.rule.condition, operators, known);
+    let strength = rule.rule.weight * degree;
+    if strength > 0.0 {
+        return Silence::Activation { strength };
+    }
+    let condition = zero(&rule.rule.condition, operators, known);
+    Silence::Condition {
+        condition: condition.to_string(),
+    }
+}
+
+/// The first part of a condition of degree 0 that makes all of it 0.
+fn zero<'c>(condition: &'c Condition, operators: Operators, known: &Known<'_>) -> &'c Condition {
+    let Condition::And(parts) = condition else {
+        return condition;
+    };
+    let mut parts = parts.iter();
+    let first = parts.find(|part| holds(part, operators, known) <= 0.0);
+    first.map_or(condition, |part| zero(part, operators, known))
+}

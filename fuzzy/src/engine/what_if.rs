@@ -1,0 +1,232 @@
+//! What changes next if one input changes.
+
+use alloc::{string::String, vec, vec::Vec};
+
+use super::{Engine, EvaluateError};
+use crate::{
+    model::Variable,
+    table::{Outcome, State},
+};
+
+/// Even steps over the range of an input; between them its terms' corners are examined too.
+const STEPS: usize = 200;
+
+/// The nearest change if one input changes and the others stay.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Change {
+    /// The input that changes.
+    pub input: String,
+    /// The value of the input from which on the change holds.
+    pub at: f64,
+    /// How far that is from its value now; negative below it.
+    pub by: f64,
+    /// Whether the input decreases. Not serialised.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub is_below: bool,
+    /// What changes.
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub effect: Effect,
+}
+
+/// What changes if an input changes.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(tag = "effect", rename_all = "snake_case"))]
+#[non_exhaustive]
+pub enum Effect {
+    /// Another term of the input has the largest degree; none where all are 0.
+    Term {
+        /// The term.
+        term: Option<String>,
+    },
+    /// Another rule is the dominant one of an output.
+    Rule {
+        /// The output.
+        output: String,
+        /// The index of the rule in the model, none where no rule fires; serialised, rules count from 1.
+        #[cfg_attr(feature = "serde", serde(serialize_with = "rule_number"))]
+        rule: Option<usize>,
+        /// The value of the output there.
+        value: Option<f64>,
+    },
+}
+
+#[cfg(feature = "serde")]
+fn rule_number<S: serde::Serializer>(rule: &Option<usize>, to: S) -> Result<S::Ok, S::Error> {
+    serde::Serialize::serialize(&rule.map(|index| index + 1), to)
+}
+
+impl Engine {
+    /// For each input, with the others as they are, the nearest values below and above it at which another term of it is the
+    /// strongest, and at which another rule is the dominant one of an output.
+    ///
+    /// A change that lies between two neighbouring steps of 200 over the range, and is undone between them, may be missed.
+    ///
+    /// # Errors
+    /// Not one finite value for each input.
+    ///
+    /// # Example: how much warmer until the fan is fast?
+    /// ```
+    /// use fuzzy::{Engine, Model, engine::Effect};
+    ///
+    /// let model: Model = "
+    /// fuzzy: 1
+    /// name: fan
+    /// inputs: {heat: {range: [0, 40], partition: [low, high]}}
+    /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]
+    /// ".parse()?;
+    /// let changes = Engine::new(&model)?.what_if(&[15.0])?;
+    /// let rule = changes.iter().find(|change| matches!(change.effect, Effect::Rule { rule: Some(1), .. })).unwrap();
+    /// assert!((rule.at - 20.0).abs() < 1e-9 && (rule.by - 5.0).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn what_if(&self, inputs: &[f64]) -> Result<Vec<Change>, EvaluateError> {
+        let now = self.at(inputs)?;
+        let mut found = Vec::new();
+        let model = self.model();
+        let outputs = model.outputs.iter().map(|output| &output.variable.name);
+        let read: Vec<&str> = outputs.flat_map(|output| model.inputs_of(output)).collect();
+        let variables = model.inputs.iter().enumerate();
+        let variables = variables.filter(|(_, variable)| read.contains(&variable.name.as_str()));
+        for (index, variable) in variables {
+            let Some(value) = inputs.get(index) else {
+                continue;
+            };
+            let value = value.clamp(variable.low, variable.high);
+            let (below, above): (Vec<f64>, Vec<f64>) = places(variable)
+                .into_iter()
+                .partition(|place| *place < value);
+            let below: Vec<f64> = below.into_iter().rev().collect();
+            for (places, is_below) in [(below, true), (above, false)] {
+                let walk = Walk {
+                    engine: self,
+                    inputs,
+                    index,
+                    variable,
+                    value,
+                    is_below,
+                    now: &now,
+                };
+                found.extend(walk.term(&places));
+                for output in 0..now.len() {
+                    found.extend(walk.rule(&places, output));
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    fn at(&self, inputs: &[f64]) -> Result<Vec<Outcome>, EvaluateError> {
+        if inputs.len() != self.inputs.len() {
+            return Err(EvaluateError::WrongNumberOfInputs {
+                expected: self.inputs.len(),
+                got: inputs.len(),
+            });
+        }
+        let mut outcomes = vec![Outcome::default(); self.outputs.len()];
+        self.outcomes(&mut self.scratch(), inputs, &mut outcomes);
+        match outcomes.first() {
+            Some(outcome) if outcome.state == State::InputNotFinite => {
+                Err(EvaluateError::InputNotFinite)
+            }
+            _ => Ok(outcomes),
+        }
+    }
+}
+
+/// Values of an input to look at, rising: even steps, and the places where its terms change their run, each with the numbers beside it.
+fn places(variable: &Variable) -> Vec<f64> {
+    let (low, high) = (variable.low, variable.high);
+    let even = (0..=STEPS).map(|i| {
+        let part = i as f64 / STEPS as f64;
+        low * (1.0 - part) + high * part
+    });
+    let terms = variable.terms.iter();
+    let cuts = terms.flat_map(|term| term.membership_function.cuts());
+    let cuts = cuts.flat_map(|x| [x.next_down(), x, x.next_up()]);
+    let mut places: Vec<f64> = even
+        .chain(cuts.filter(|x| (low..=high).contains(x)))
+        .collect();
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    places
+}
+
+/// A way from the value of an input towards an end of its range.
+struct Walk<'a> {
+    engine: &'a Engine,
+    inputs: &'a [f64],
+    index: usize,
+    variable: &'a Variable,
+    value: f64,
+    is_below: bool,
+    now: &'a [Outcome],
+}
+
+impl Walk<'_> {
+    fn term(&self, places: &[f64]) -> Option<Change> {
+        let strongest = |x: f64| {
+            let terms = self.variable.terms.iter();
+            let degrees = terms.map(|term| (term, term.membership(x)));
+            let degrees = degrees.filter(|(_, degree)| *degree > 0.0);
+            // Of equal degrees the first term.
+            let strongest = degrees.reduce(|a, b| if b.1 > a.1 { b } else { a });
+            strongest.map(|(term, _)| term.name.as_str())
+        };
+        let before = strongest(self.value);
+        let at = self.first(places, |x| strongest(x) == before)?;
+        let term = strongest(at).map(String::from);
+        Some(self.change(at, Effect::Term { term }))
+    }
+
+    fn rule(&self, places: &[f64], output: usize) -> Option<Change> {
+        let outcome = |x: f64| {
+            let mut inputs = self.inputs.to_vec();
+            *inputs.get_mut(self.index)? = x;
+            self.engine.at(&inputs).ok()?.get(output).copied()
+        };
+        let dominant = |x: f64| outcome(x).and_then(|outcome| outcome.dominant);
+        let before = self.now.get(output)?.dominant;
+        let at = self.first(places, |x| dominant(x) == before)?;
+        let there = outcome(at)?;
+        let output = self.engine.model().outputs.get(output)?;
+        let effect = Effect::Rule {
+            output: output.variable.name.clone(),
+            rule: there.dominant,
+            value: there.value(),
+        };
+        Some(self.change(at, effect))
+    }
+
+    /// The nearest value on the way where `same` no longer holds, by bisection between two places.
+    fn first(&self, places: &[f64], same: impl Fn(f64) -> bool) -> Option<f64> {
+        let changed = places.iter().position(|x| !same(*x))?;
+        let mut to = *places.get(changed)?;
+        let last = changed.checked_sub(1).and_then(|last| places.get(last));
+        let mut from = last.copied().unwrap_or(self.value);
+        loop {
+            let middle = 0.5 * (from + to);
+            if middle == from || middle == to {
+                return Some(to);
+            }
+            if same(middle) {
+                from = middle;
+            } else {
+                to = middle;
+            }
+        }
+    }
+
+    fn change(&self, at: f64, effect: Effect) -> Change {
+        Change {
+            input: self.variable.name.clone(),
+            at,
+            by: at - self.value,
+            is_below: self.is_below,
+            effect,
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Findings that an author accepts: `allow: [{finding: jump, because: limits of the regulation}]`.
+
+use alloc::{format, vec::Vec};
+use core::ops::Range;
+
+use super::optional_text;
+use crate::{
+    diagnostic::{Diagnostic, duplicate},
+    model::Allowed,
+    tree::Node,
+};
+
+pub(super) const KEYS: [&str; 2] = ["finding", "because"];
+
+/// The codes of findings that an author can accept: those of the analysis that depend on the rule set alone.
+pub(crate) const CODES: [&str; 14] = [
+    "uncovered",
+    "no-rule-fires",
+    "contradiction",
+    "duplicate-rule",
+    "subsumed-rule",
+    "never-fires",
+    "unused",
+    "term-outside-range",
+    "equal-terms",
+    "hole",
+    "narrow-reach",
+    "output-outside-range",
+    "against-trend",
+    "jump",
+];
+
+pub(super) fn read(
+    node: &Node,
+    spans: &mut Vec<Range<usize>>,
+    findings: &mut Vec<Diagnostic>,
+) -> Vec<Allowed> {
+    let items = node.items("`allow`", findings).unwrap_or_default();
+    let mut all: Vec<Allowed> = Vec::new();
+    for (i, item) in items.iter().enumerate() {
+        let Some(allowed) = entry(item, i + 1, findings) else {
+            continue;
+        };
+        let same = all.iter().position(|one| one.finding == allowed.finding);
+        if let Some(first) = same.and_then(|first| spans.get(first)) {
+            let (span, first) = (item.span.clone(), first.clone());
+            let finding = &allowed.finding;
+            findings.push(duplicate("finding", finding, "`allow`", span, first));
+            continue;
+        }
+        spans.push(item.span.clone());
+        all.push(allowed);
+    }
+    all
+}
+
+fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Allowed> {
+    let what = format!("entry {number} of `allow`");
+    let fields = node.fields(&what, &KEYS, findings)?;
+    let code = "name a finding of `flagred check`: `finding: jump`";
+    let reason = "write why it is accepted: `because: limits of the regulation`";
+    let code = fields.require("finding", code, findings).and_then(|node| {
+        let words = CODES.map(|code| (code, code));
+        node.choice(&format!("`finding` of {what}"), &words, findings)
+    });
+    let because = fields.require("because", reason, findings);
+    because?;
+    let because = optional_text(&fields, "because", findings)?;
+    Some(Allowed {
+        finding: code?.into(),
+        because,
+    })
+}
+
+/// The accepted findings as they stand in a file; `None` where there are none.
+pub(super) fn write(allow: &[Allowed]) -> Option<Node> {
+    let entries = allow.iter().map(|one| {
+        Node::mapping([
+            ("finding", Node::text(one.finding.as_str())),
+            ("because", Node::text(one.because.as_str())),
+        ])
+    });
+    (!allow.is_empty()).then(|| Node::list(entries.collect()))
+}

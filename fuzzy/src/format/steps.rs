@@ -1,0 +1,182 @@
+//! Terms by their limits: `steps: {fine: 36, stretched: 43, over: }`.
+
+use alloc::{format, vec::Vec};
+
+use super::{TermSpans, VariableSpans, variables::unread};
+use crate::{
+    diagnostic::{Diagnostic, Severity},
+    model::{Variable, between_limits},
+    tree::{Entry, Node, Value},
+};
+
+const HELP: &str =
+    "write the limit of each term, and none for the last: `steps: {low: 10, medium: 20, high: }`";
+
+/// Reads the terms of a variable by their limits.
+pub(super) fn read(
+    what: &str,
+    node: &Node,
+    variable: &mut Variable,
+    spans: &mut VariableSpans,
+    findings: &mut Vec<Diagnostic>,
+) {
+    spans.steps = node.span.clone();
+    let Value::Mapping(_) = &node.value else {
+        let finding = node.unexpected(&format!("terms with limits for the steps of {what}"));
+        findings.push(finding.help(HELP));
+        return;
+    };
+    let before = findings.len();
+    let entries = node.entries(what, "term", findings).unwrap_or_default();
+    let mut steps: Vec<(Entry<'_>, Option<f64>)> = Vec::with_capacity(entries.len());
+    for entry in entries {
+        let limit = limit(what, &entry, findings);
+        steps.push((entry, limit));
+    }
+    if findings.len() == before {
+        order(what, &steps, findings);
+        // Formats that sort keys do not keep the order in which the terms were written.
+        let by_limit = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
+        steps.sort_by(|(_, a), (_, b)| by_limit(*a).total_cmp(&by_limit(*b)));
+        check(what, node, &steps, variable, findings);
+    }
+    let has_errors = {
+        let mut found = findings.iter().skip(before);
+        found.any(|finding| finding.severity == Severity::Error)
+    };
+    let has_range = variable.low < variable.high;
+    for (entry, limit) in &steps {
+        spans.terms.push(TermSpans {
+            name: entry.key_span.clone(),
+            numbers: limit
+                .iter()
+                .map(|_| number(entry.value).span.clone())
+                .collect(),
+            unread: has_errors || !has_range,
+            ..TermSpans::default()
+        });
+    }
+    let names = steps.iter().map(|(entry, _)| entry.key);
+    variable.terms = match steps.split_last() {
+        Some(((last, _), below)) if !has_errors && has_range => {
+            let below = below.iter();
+            let below = below.filter_map(|(entry, limit)| Some((entry.key, (*limit)?)));
+            let below: Vec<(&str, f64)> = below.collect();
+            between_limits(variable.low, variable.high, &below, last.key)
+        }
+        _ => names.map(unread).collect(),
+    };
+    spans.terms_unread = variable.terms.is_empty();
+}
+
+/// The limit of a term: a number, nothing, or `{below: 36}` as the lists of serde have it.
+fn limit(what: &str, entry: &Entry<'_>, findings: &mut Vec<Diagnostic>) -> Option<f64> {
+    let limit = format!("the limit of `{}` of {what}", entry.key);
+    let number = match &entry.value.value {
+        Value::Mapping(_) => {
+            let fields = entry.value.fields(&limit, &["below"], findings)?;
+            fields.get("below")?
+        }
+        _ if entry.value.is_null() => return None,
+        _ => entry.value,
+    };
+    number.finite(&limit, findings)
+}
+
+/// Where the number of a limit stands.
+fn number(value: &Node) -> &Node {
+    match &value.value {
+        Value::Mapping(entries) => entries.first().map_or(value, |(_, number)| number),
+        _ => value,
+    }
+}
+
+/// Warns of limits that fall in the order in which they are written: one of them may be a mistake.
+fn order(what: &str, steps: &[(Entry<'_>, Option<f64>)], findings: &mut Vec<Diagnostic>) {
+    for pair in steps.windows(2) {
+        if let [(left, Some(high)), (right, Some(low))] = pair
+            && low < high
+        {
+            let message = format!(
+                "the limit {low} of `{}` of {what} is below the limit {high} of `{}`",
+                right.key, left.key
+            );
+            let span = right.value.span.clone();
+            findings.push(
+                Diagnostic::warning("inverted-parameters", span, message).help(
+                    "write the terms from left to right; they count in the order of their limits",
+                ),
+            );
+        }
+    }
+}
+
+/// Reports limits that do not divide the range into the terms; the steps are sorted.
+fn check(
+    what: &str,
+    node: &Node,
+    steps: &[(Entry<'_>, Option<f64>)],
+    variable: &Variable,
+    findings: &mut Vec<Diagnostic>,
+) {
+    let mut wrong = |span, code, message, help: &str| {
+        findings.push(Diagnostic::error(code, span, message).help(help));
+    };
+    if steps.len() < 2 {
+        let message = format!("the steps of {what} have fewer than two terms");
+        wrong(node.span.clone(), "wrong-parameter", message, HELP);
+        return;
+    }
+    if let Some((entry, Some(limit))) = steps.last() {
+        let name = entry.key;
+        let message = format!("the last term `{name}` of the steps of {what} has a limit, {limit}");
+        let help = format!(
+            "the last term reaches to the end of the range: write `{name}:` without a number, or add a term after it"
+        );
+        wrong(entry.value.span.clone(), "wrong-parameter", message, &help);
+    }
+    for pair in steps.windows(2) {
+        let [(left, below), (right, above)] = pair else {
+            continue;
+        };
+        let (name, other) = (right.key, left.key);
+        let span = right.value.span.clone();
+        match (below, above) {
+            (None, None) => {
+                let message = format!("the terms `{other}` and `{name}` of {what} have no limit");
+                wrong(right.key_span.clone(), "wrong-parameter", message, HELP);
+            }
+            (Some(below), Some(above)) if below == above => {
+                let message = format!(
+                    "the terms `{other}` and `{name}` of {what} have the same limit {above}"
+                );
+                wrong(
+                    span,
+                    "inverted-parameters",
+                    message,
+                    "give each term a limit of its own",
+                );
+            }
+            _ => {}
+        }
+    }
+    let (low, high) = (variable.low, variable.high);
+    for (entry, limit) in steps {
+        if let Some(limit) = limit
+            && low < high
+            && (*limit <= low || *limit > high)
+        {
+            let message = format!(
+                "the limit {limit} of `{}` does not divide the range [{low}, {high}] of {what}",
+                entry.key
+            );
+            let span = entry.value.span.clone();
+            wrong(
+                span,
+                "term-outside-range",
+                message,
+                "widen the range or move the limit",
+            );
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Findings of `check` that an author accepts.
+
+use alloc::string::String;
+
+/// A finding of the analysis that an author accepts, and why. It changes nothing of what the rules mean.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Allowed {
+    /// The code of the finding: `jump`.
+    pub finding: String,
+    /// The author's reason.
+    pub because: String,
+}
