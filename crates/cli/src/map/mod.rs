@@ -337,11 +337,7 @@ fn last(model: &Model) -> usize {
             .map(|output| output.variable.name.as_str())
     };
     let read: Vec<&str> = names().flat_map(|name| model.reads(name)).collect();
-    let last = names()
-        .enumerate()
-        .filter(|(_, name)| !read.contains(name))
-        .last();
-    last.map_or(0, |(index, _)| index)
+    names().rposition(|name| !read.contains(&name)).unwrap_or(0)
 }
 
 impl Evaluated {

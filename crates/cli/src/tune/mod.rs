@@ -150,7 +150,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let begun = resumed.as_ref().unwrap_or(original);
     let (data, refused) = data(arguments, begun)?;
     let settings = settings(arguments);
-    let failed = |error: TuneError| failure(&name, &original, &error);
+    let failed = |error: TuneError| failure(&name, original, &error);
 
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
