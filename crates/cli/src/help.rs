@@ -59,6 +59,7 @@ Examples:
   flagred eval my-rules.yaml points.csv
   flagred eval my-rules.yaml points.csv --output results.csv --with coverage,rule,clamped,error
   flagred eval my-rules.yaml points.csv --delimiter tab --column temperature=t_c --skip-bad-rows
+  flagred eval my-rules.yaml measured.csv --suffix _model --output compared.csv     with the errors
   flagred eval my-rules.yaml                     points from standard input
 
 Exit code 1: a row has no value. Empty cells, NA and NaN are unknown values.";

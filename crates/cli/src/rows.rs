@@ -7,11 +7,12 @@ use flagred_evaluation::learning::Row;
 use fuzzy::{
     Model,
     check::{Direction, Monotone},
+    model::Variable,
 };
 
 use crate::{
     failure::Failure,
-    output::{Files, Output, Replace},
+    output::{self, Files, Output, Replace},
     table::{Format, Table},
 };
 
@@ -67,6 +68,10 @@ pub(crate) struct FromRows {
     /// Skip cross-validation
     #[arg(long, conflicts_with = "group_by")]
     pub(crate) no_validation: bool,
+
+    /// Clamp values outside the range of their input or output to it, as `eval` does with inputs
+    #[arg(long)]
+    clamp: bool,
 }
 
 impl FromRows {
@@ -118,7 +123,38 @@ pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure>
     let names: Vec<&str> = inputs.chain(outputs).map(|v| v.name.as_str()).collect();
     let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
     let format = &arguments.rewrite.format;
-    columns(tables(&arguments.data, format), format, &names, optional)
+    let mut data = columns(tables(&arguments.data, format), format, &names, optional)?;
+    if arguments.clamp {
+        clamp(&mut data, model);
+    }
+    Ok(data)
+}
+
+/// Clamps the values of rows to the ranges of the variables, and reports how many were outside.
+fn clamp(data: &mut Data, model: &Model) {
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    let rows = data.rows.len();
+    for (column, variable) in model.inputs.iter().chain(outputs).enumerate() {
+        let Variable { low, high, .. } = *variable;
+        let mut first: Option<String> = None;
+        let mut count = 0;
+        for (row, place) in &mut data.rows {
+            let Some(value) = row.values.get_mut(column) else {
+                continue;
+            };
+            if *value < low || *value > high {
+                *value = value.clamp(low, high);
+                first.get_or_insert_with(|| place.clone());
+                count += 1;
+            }
+        }
+        if let Some(first) = first {
+            output::say(&format!(
+                "`{}` is outside its range from {low} to {high} in {count} of {rows} rows and clamped to it (first in {first})",
+                variable.name
+            ));
+        }
+    }
 }
 
 /// The tables, each read when it is asked for.
@@ -230,5 +266,5 @@ pub(crate) fn refuse(refused: &[String], purpose: &str) -> Failure {
         if count == 1 { "" } else { "s" }
     ))
     .details(shown)
-    .help("correct or remove these rows, or leave them out with --skip-bad-rows")
+    .help("correct or remove these rows, leave them out with `--skip-bad-rows`, or clamp values outside a range with `--clamp`")
 }

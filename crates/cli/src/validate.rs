@@ -28,8 +28,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
     rows: Option<PathBuf>,
 
-    /// A profile to compare with the built-in ones, a file; may be repeated
-    #[arg(long = "profile", value_name = "FILE")]
+    /// Another profile to compare: the name of a built-in one, or a file; may be repeated
+    #[arg(long = "profile", value_name = "NAME|FILE")]
     profiles: Vec<String>,
 
     /// How many seconds ahead the risk should predict

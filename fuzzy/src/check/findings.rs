@@ -504,7 +504,7 @@ impl At<'_> {
             coordinates(&one.at)
         );
         Diagnostic::warning("jump", self.name(&one.output), message).help(
-            "a vertical edge of a term, or a switch from one rule to another, causes it; let terms overlap",
+            "a vertical edge of a term, or a switch from one rule to another, causes it; let terms overlap, or accept intended jumps with `allow`",
         )
     }
 }

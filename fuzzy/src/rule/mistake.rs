@@ -92,6 +92,9 @@ impl Mistake<'_> {
             }
             Wrong::Joint => {
                 let help = match nearest(found, JOINTS) {
+                    _ if found.eq_ignore_ascii_case("WITH") => {
+                        Some("a weight ends the rule: `THEN output IS term WITH 0.5`".into())
+                    }
                     _ if found.eq_ignore_ascii_case("XOR") => Some(
                         "there is no `XOR`: write `(a AND NOT b) OR (NOT a AND b)` with the conditions a and b"
                             .into(),
@@ -261,6 +264,12 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
             None => format!("write `{name} IS {found}`"),
         });
     }
+    if ["ALL", "THE", "ANY", "EVERY"]
+        .iter()
+        .any(|word| name.eq_ignore_ascii_case(word))
+    {
+        return Some(format!("remove `{name}`"));
+    }
     if is_plain_name(found) {
         return Some(format!(
             "a name of several words stands in quotes: `\"{name} {found}\"`"
@@ -305,6 +314,9 @@ fn spoken(name: &str, rest: &str, before: &str) -> Option<String> {
 fn name_is_missing(what: &str, found: &str) -> Option<String> {
     let is = |word: &str| found.eq_ignore_ascii_case(word);
     let input = what.contains("input");
+    if input && found.starts_with('/') {
+        return Some("write `AND` or `OR`".into());
+    }
     if input && is("IS") {
         return Some("name the input again: `AND input IS term`".into());
     }
@@ -405,6 +417,9 @@ fn behind_conclusion(rest: &str, weighted: bool) -> Option<String> {
     }
     if is("or") {
         return Some("conclusions are joined by `AND`; for `OR` write two rules".into());
+    }
+    if is("if") || is("when") {
+        return Some("a rule has one `IF`: join conditions by `AND` before `THEN`".into());
     }
     if is("unless") || is("except") {
         return Some("there is no `UNLESS`: write `AND NOT (condition)` before `THEN`".into());

@@ -1,5 +1,6 @@
 //! `flagred eval`: a rule set at many points, from CSV to CSV.
 
+mod errors;
 mod pipeline;
 mod rows;
 mod tally;
@@ -34,6 +35,11 @@ pub(crate) struct Arguments {
     /// The file for the table with the outputs; `-` is standard output
     #[arg(short, long, value_name = "OUT.csv", default_value = "-", value_parser = output::table_path)]
     output: PathBuf,
+
+    /// Append this to the names of the outputs' columns: `_model`. Where the table has measured values in a column of an output's
+    /// name, the errors are printed: RMS, mean and the worst rows
+    #[arg(long, value_name = "SUFFIX", default_value = "")]
+    suffix: String,
 
     /// Add columns about how the outputs come about
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
@@ -76,6 +82,9 @@ struct Plan {
     /// The input that each column holds.
     input_of: Vec<Option<usize>>,
     with: Vec<With>,
+    suffix: String,
+    /// For each output, the column with its measured values.
+    measured: Vec<Option<usize>>,
     delimiter: u8,
     skip_bad_rows: bool,
 }
@@ -104,6 +113,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             .map(|column| inputs.iter().position(|input| *input == column))
             .collect(),
         inputs,
+        measured: match arguments.suffix.is_empty() {
+            true => vec![None; engine.output_names().len()],
+            false => engine
+                .output_names()
+                .map(|name| header.column(name))
+                .collect(),
+        },
+        suffix: arguments.suffix.clone(),
         engine,
         header,
         with,
@@ -164,7 +181,10 @@ impl Plan {
 
     /// The first row of what is written.
     fn head(&self) -> Result<Vec<u8>, Failure> {
-        let outputs: Vec<&str> = self.engine.output_names().collect();
+        let outputs = self.engine.output_names();
+        let outputs: Vec<String> = outputs
+            .map(|output| format!("{output}{}", self.suffix))
+            .collect();
         let of_outputs = |word: &str| match outputs.as_slice() {
             [_] => vec![word.to_owned()],
             several => several
@@ -172,7 +192,7 @@ impl Plan {
                 .map(|output| format!("{output}_{word}"))
                 .collect(),
         };
-        let mut added: Vec<String> = outputs.iter().map(|output| (*output).to_owned()).collect();
+        let mut added = outputs.clone();
         for with in &self.with {
             added.extend(match with {
                 With::Coverage | With::Rule => of_outputs(with.name()),
@@ -182,7 +202,7 @@ impl Plan {
         if let Some(name) = added.iter().find(|name| self.header.column(name).is_some()) {
             return Err(
                 Failure::usage(format!("the points have a column `{name}` already"))
-                    .help("the results go into a column of that name; rename yours"),
+                    .help("`--suffix _model` appends to the names of the outputs' columns, and compares them with measured values"),
             );
         }
         let copied = self.header.names.iter().map(|name| number_or_cell(name));

@@ -105,7 +105,7 @@ impl<'p> Evaluator<'p> {
                         continue;
                     }
                 }
-                None => self.count(&mut tally, row, outcomes, line),
+                None => self.count(&mut tally, (row, record), outcomes, line),
             }
             self.write(&mut writer, row, record, outcomes)?;
         }
@@ -151,13 +151,31 @@ impl<'p> Evaluator<'p> {
         Some(problems.join("; "))
     }
 
-    fn count(&self, tally: &mut Tally, row: usize, outcomes: &[Outcome], line: u64) {
+    fn count(
+        &self,
+        tally: &mut Tally,
+        (row, record): (usize, &ByteRecord),
+        outcomes: &[Outcome],
+        line: u64,
+    ) {
         if outcomes
             .first()
             .is_some_and(|outcome| outcome.state == State::InputNotFinite)
         {
             tally.unknown.add(line);
             return;
+        }
+        for ((outcome, column), errors) in outcomes
+            .iter()
+            .zip(&self.plan.measured)
+            .zip(&mut tally.errors)
+        {
+            let measured = column.and_then(|column| record.get(column));
+            if let (Some(computed), Some(Cell::Number(measured))) =
+                (outcome.value(), measured.map(Cell::of))
+            {
+                errors.add(line, computed, measured);
+            }
         }
         for (outcome, silent) in outcomes.iter().zip(&mut tally.silent) {
             if outcome.state == State::NoRuleFired {

@@ -1,6 +1,6 @@
 //! What is to be said of the rows, counted.
 
-use super::Plan;
+use super::{Plan, errors::Errors};
 use crate::output::say;
 
 /// Bad rows that are told one by one.
@@ -42,6 +42,8 @@ pub(super) struct Tally {
     pub(super) silent: Vec<Rows>,
     /// For each input: it is outside its range.
     pub(super) clamped: Vec<Rows>,
+    /// For each output: how far it is from measured values.
+    pub(super) errors: Vec<Errors>,
 }
 
 impl Tally {
@@ -53,6 +55,7 @@ impl Tally {
             unknown: Rows::default(),
             silent: vec![Rows::default(); plan.engine.output_names().len()],
             clamped: vec![Rows::default(); plan.engine.input_names().len()],
+            errors: vec![Errors::default(); plan.engine.output_names().len()],
         }
     }
 
@@ -75,6 +78,9 @@ impl Tally {
         }
         for (rows, later) in self.clamped.iter_mut().zip(later.clamped) {
             rows.merge(later);
+        }
+        for (errors, later) in self.errors.iter_mut().zip(later.errors) {
+            errors.merge(later);
         }
     }
 
@@ -117,6 +123,9 @@ impl Tally {
                     first(*rows)
                 ));
             }
+        }
+        for (output, errors) in plan.engine.output_names().zip(&self.errors) {
+            errors.say(output);
         }
         for (input, rows) in plan.engine.model().inputs.iter().zip(&self.clamped) {
             if rows.count > 0 {

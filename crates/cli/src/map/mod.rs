@@ -47,11 +47,11 @@ pub(crate) struct Arguments {
     hold: Vec<(String, f64)>,
 
     /// The input along the horizontal axis, and the part of its range to show: `spread` or `spread:0..0.2` [default: the
-    /// first that is not fixed, where its terms lie]
+    /// first that is not held, where its terms lie]
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     x: Option<AxisChoice>,
 
-    /// The input along the vertical axis, as `--x` [default: the next that is not fixed]
+    /// The input along the vertical axis, as `--x` [default: the next that is not held]
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     y: Option<AxisChoice>,
 

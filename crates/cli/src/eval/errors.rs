@@ -1,0 +1,69 @@
+//! How far outputs are from measured values.
+
+use fuzzy::drawing::short;
+
+use crate::output::say;
+
+/// The worst rows that are listed.
+const WORST: usize = 5;
+
+/// The errors of an output: computed less measured.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Errors {
+    rows: u64,
+    sum: f64,
+    sum_of_squares: f64,
+    /// Line, computed and measured value of the rows with the largest errors, the largest first.
+    worst: Vec<(u64, f64, f64)>,
+}
+
+impl Errors {
+    pub(super) fn add(&mut self, line: u64, computed: f64, measured: f64) {
+        let error = computed - measured;
+        self.merge(Errors {
+            rows: 1,
+            sum: error,
+            sum_of_squares: error * error,
+            worst: vec![(line, computed, measured)],
+        });
+    }
+
+    /// Adds the errors of later rows.
+    pub(super) fn merge(&mut self, later: Errors) {
+        self.rows += later.rows;
+        self.sum += later.sum;
+        self.sum_of_squares += later.sum_of_squares;
+        let size = |(_, computed, measured): &(u64, f64, f64)| (computed - measured).abs();
+        for row in later.worst {
+            // Of equal errors the earlier row comes first.
+            let place = self
+                .worst
+                .partition_point(|other| size(other) >= size(&row));
+            if place < WORST {
+                self.worst.insert(place, row);
+                self.worst.truncate(WORST);
+            }
+        }
+    }
+
+    /// Prints the errors on standard error, if there are any measured values.
+    pub(super) fn say(&self, output: &str) {
+        if self.rows == 0 {
+            return;
+        }
+        let rows = self.rows as f64;
+        let (rms, mean) = ((self.sum_of_squares / rows).sqrt(), self.sum / rows);
+        say(&format!(
+            "`{output}` against its measured values in {} rows: RMS error {}, mean error {} (computed less measured)",
+            self.rows,
+            short(rms),
+            short(mean)
+        ));
+        for (line, computed, measured) in &self.worst {
+            let (computed, measured) = (short(*computed), short(*measured));
+            say(&format!(
+                "  line {line}: {computed} computed, {measured} measured"
+            ));
+        }
+    }
+}
