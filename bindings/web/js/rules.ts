@@ -177,7 +177,7 @@ export interface Value {
   /** The largest firing strength. */
   coverage: number;
   /** The number of the rule that has it, from 1; `null` where none fires. */
-  rule: number | null;
+  dominantRule: number | null;
   /** Whether an input lay outside its range. */
   clamped: boolean;
 }
@@ -209,7 +209,7 @@ export interface Cells {
   /** The largest firing strength. */
   coverage: Float64Array;
   /** The number of the rule that has it, from 1; NaN where none fires. */
-  rules: Float64Array;
+  dominantRules: Float64Array;
   /** 1 where a profile filled a gap between rules. */
   filled: Float64Array;
 }
@@ -257,7 +257,7 @@ export class RuleSet {
     const all = viewed(view, (made) => this.#set.map(made));
     const cells = all.length / 4;
     const part = (i: number) => all.subarray(i * cells, (i + 1) * cells);
-    return { values: part(0), coverage: part(1), rules: part(2), filled: part(3) };
+    return { values: part(0), coverage: part(1), dominantRules: part(2), filled: part(3) };
   }
 
   /** The picture of `flagred map`: SVG. */

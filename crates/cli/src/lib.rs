@@ -44,6 +44,9 @@ mod table;
 mod tune;
 mod watch;
 
+#[doc(hidden)] // For the types of the npm package.
+pub use schema::npm_types;
+
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
