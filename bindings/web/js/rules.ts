@@ -1,8 +1,11 @@
 /** Rule sets: an open text under an author's hands, a compiled rule set to evaluate and draw, other programs' formats. */
 
+import type { Explanation } from './documents.js';
 import { beside, type Source } from './load.js';
 import { guard } from './panic.js';
 import * as wasm from './wasm/rules.js';
+
+export type { Explanation } from './documents.js';
 
 const guarded = guard(wasm.panicMessage);
 
@@ -180,15 +183,6 @@ export interface Value {
   dominantRule: number | null;
   /** Whether an input lay outside its range. */
   clamped: boolean;
-}
-
-/** The document of `flagred explain --json`; rules count from 1. */
-export interface Explanation {
-  schema: 'flagred.explain/1';
-  model: string;
-  inputs: { name: string; given: number; value: number; terms: { term: string; degree: number }[] }[];
-  rules: { rule: number; text: string; degree: number; strength: number }[];
-  outputs: { name: string; value: number | null; is_default: boolean; coverage: number }[];
 }
 
 /** What a map shows: one output over one or two inputs, the others held. */
