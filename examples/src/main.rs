@@ -15,7 +15,7 @@ fn main() -> Result<(), flagred_flightlog::ReadError> {
     for finding in &assessment.findings {
         println!(
             "{}: {:.1} to {:.1} s",
-            finding.level, finding.from_s, finding.to_s
+            finding.severity, finding.from_s, finding.to_s
         );
     }
     Ok(())

@@ -29,7 +29,7 @@ pub use words::Words;
 #[cfg(feature = "serde")]
 mod serialize;
 #[cfg(feature = "serde")]
-pub use serialize::Steps;
+pub use serialize::{NamedStep, Steps, VerdictWord};
 
 /// The least share of the time in the air in which the risk must be known for a verdict of GOOD.
 const KNOWN_SHARE: f64 = 0.5;
@@ -370,8 +370,11 @@ impl Flight {
     }
 
     fn keep_gravest(&mut self) {
-        let by_gravity =
-            |a: &Finding, b: &Finding| b.level.cmp(&a.level).then(a.from_s.total_cmp(&b.from_s));
+        let by_gravity = |a: &Finding, b: &Finding| {
+            b.severity
+                .cmp(&a.severity)
+                .then(a.from_s.total_cmp(&b.from_s))
+        };
         self.findings.sort_by(by_gravity);
         let left_out = self.findings.len().saturating_sub(MOST_FINDINGS);
         self.findings.truncate(MOST_FINDINGS);
@@ -442,7 +445,7 @@ impl Flight {
     fn verdict(&self, summary: &Summary, profile: &Profile) -> Verdict {
         let knows_enough =
             summary.assessed_s > 0.0 && summary.assessed_s >= KNOWN_SHARE * summary.in_air_s;
-        let gravest = self.findings.first().map(|finding| finding.level);
+        let gravest = self.findings.first().map(|finding| finding.severity);
         let lost = self
             .losses
             .reason(summary.in_air_s, profile.sampling.longest_gap_s);

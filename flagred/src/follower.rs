@@ -301,7 +301,7 @@ impl Follower {
 
     /// The level of the risk, and of the findings beside it. After an alarm it is WARN until the motors work as before.
     pub(crate) fn level(&self) -> Level {
-        let noticed = self.notices.open().map_or(Level::Good, |f| f.level);
+        let noticed = self.notices.open().map_or(Level::Good, |f| f.severity);
         let doubted = self.in_doubt_s.map_or(Level::Good, |_| Level::Warn);
         self.alert.level().max(noticed).max(doubted)
     }
@@ -403,7 +403,7 @@ impl Follower {
 
     /// What is known where the risk is not: an alarm that stands, and never that all is good.
     fn unknown(&self, t_s: f64, reason: Unknown, ended: Ended) -> Update {
-        let noticed = self.notices.open().map(|finding| finding.level);
+        let noticed = self.notices.open().map(|finding| finding.severity);
         let level = match self.last_known_s {
             Some(_) if self.in_air_since_s.is_some() => Some(self.level()),
             _ => noticed,

@@ -20,7 +20,7 @@ use crate::{
 /// let assessment = flagred::log::assess(&flight, &flagred::shipped::flagred(), None);
 /// assert_eq!(assessment.verdict.to_string(), "GOOD");
 /// for finding in &assessment.findings {
-///     println!("{} from {:.1} to {:.1} s", finding.level, finding.from_s, finding.to_s);
+///     println!("{} from {:.1} to {:.1} s", finding.severity, finding.from_s, finding.to_s);
 /// }
 /// # Ok::<(), flagred_flightlog::ReadError>(())
 /// ```

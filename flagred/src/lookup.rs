@@ -44,7 +44,7 @@ impl Lookup<'_> {
             risk_pct: risk_pct.clamp(0.0, 100.0),
             coverage: outcome.coverage,
             filled_from: reading.map(|reading| reading.distance),
-            dominant_rule: outcome.dominant,
+            dominant_rule: outcome.dominant_rule,
             clamped: outcome.clamped,
         })
     }

@@ -86,13 +86,13 @@ pub fn margin(effective: f64) -> f64 {
 /// The limit that a motor is nearer to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Side {
     /// Nearly stopped: it cannot give less.
-    #[cfg_attr(feature = "serde", serde(rename = "lower"))]
-    Low,
+    Lower,
     /// Nearly at full power: it cannot give more.
-    #[cfg_attr(feature = "serde", serde(rename = "upper"))]
-    High,
+    Upper,
 }
 
 impl Side {
@@ -102,13 +102,13 @@ impl Side {
     /// ```
     /// use flagred::margin::Side;
     ///
-    /// assert_eq!((Side::of(0.1), Side::of(0.9)), (Side::Low, Side::High));
+    /// assert_eq!((Side::of(0.1), Side::of(0.9)), (Side::Lower, Side::Upper));
     /// ```
     pub fn of(effective: f64) -> Side {
         if effective < 0.5 {
-            Side::Low
+            Side::Lower
         } else {
-            Side::High
+            Side::Upper
         }
     }
 }

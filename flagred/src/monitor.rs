@@ -268,18 +268,20 @@ impl Monitor {
 
     /// The finding behind the current level where it is one of another risk.
     pub fn open_elsewhere(&self) -> Option<OfRisk> {
-        let first = self.follower.open_finding().map(|found| found.level);
+        let first = self.follower.open_finding().map(|found| found.severity);
         let others = self.others.iter().enumerate();
         let open = others.filter_map(|(risk, other)| {
             let found = other.follower.open_finding()?;
             Some(OfRisk { risk, found })
         });
         // Of equal ones the first.
-        let worst = open.reduce(|worst, next| match next.found.level > worst.found.level {
-            true => next,
-            false => worst,
-        });
-        worst.filter(|worst| first.is_none_or(|first| worst.found.level > first))
+        let worst = open.reduce(
+            |worst, next| match next.found.severity > worst.found.severity {
+                true => next,
+                false => worst,
+            },
+        );
+        worst.filter(|worst| first.is_none_or(|first| worst.found.severity > first))
     }
 
     /// The findings of other risks that ended with the latest sample, or with [`Monitor::finish`].

@@ -52,8 +52,8 @@ pub struct Motor {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MotorRecord {
     pub(crate) samples: u32,
-    pub(crate) mean_margin: f64,
-    pub(crate) least_margin: f64,
+    pub(crate) margin_mean: f64,
+    pub(crate) margin_min: f64,
     pub(crate) side: Side,
 }
 
@@ -87,9 +87,9 @@ impl Motor {
         at_zero_s: 0.0,
         record: MotorRecord {
             samples: 0,
-            mean_margin: 0.0,
-            least_margin: 0.0,
-            side: Side::Low,
+            margin_mean: 0.0,
+            margin_min: 0.0,
+            side: Side::Lower,
         },
     };
 
@@ -122,9 +122,9 @@ impl Motor {
 impl MotorRecord {
     pub(crate) const NONE: MotorRecord = MotorRecord {
         samples: 0,
-        mean_margin: 0.0,
-        least_margin: f64::INFINITY,
-        side: Side::High,
+        margin_mean: 0.0,
+        margin_min: f64::INFINITY,
+        side: Side::Upper,
     };
 
     pub(crate) fn add(&mut self, e: f64) {
@@ -133,9 +133,9 @@ impl MotorRecord {
         }
         let margin = margin(e);
         self.samples += 1;
-        self.mean_margin += (margin - self.mean_margin) / f64::from(self.samples);
-        if margin < self.least_margin {
-            self.least_margin = margin;
+        self.margin_mean += (margin - self.margin_mean) / f64::from(self.samples);
+        if margin < self.margin_min {
+            self.margin_min = margin;
             self.side = Side::of(e);
         }
     }

@@ -26,6 +26,8 @@ impl Sample<'_> {
 
 /// What a monitor knows after a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(with = "UpdateFields"))]
 pub struct Update {
     /// The time of the sample in seconds.
     pub t_s: f64,
@@ -140,28 +142,59 @@ impl Default for Sampling {
 #[cfg(feature = "serde")]
 impl serde::Serialize for Update {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        use serde::ser::SerializeMap;
-        let mut fields = serializer.serialize_map(None)?;
-        fields.serialize_entry("t_s", &self.t_s)?;
-        serialize_risk(&mut fields, self.risk.ok(), self.elevated_risk_pct)?;
-        fields.serialize_entry("level", &self.level)?;
-        fields.serialize_entry("judged", &self.judged)?;
-        fields.end()
+        let fields = UpdateFields {
+            t_s: self.t_s,
+            risk: RiskFields::new(self.risk.ok(), self.elevated_risk_pct),
+            level: self.level,
+            judged: self.judged,
+        };
+        fields.serialize(serializer)
     }
 }
 
-/// A risk and what it rests on; `null` where it is unknown.
+/// An [`Update`] as serde data.
 #[cfg(feature = "serde")]
-pub(crate) fn serialize_risk<M: serde::ser::SerializeMap>(
-    fields: &mut M,
-    estimate: Option<Estimate>,
-    elevated_risk_pct: Option<f64>,
-) -> Result<(), M::Error> {
-    let is_filled = |e: Estimate| e.filled_from.is_some();
-    let dominant = estimate.and_then(|e| e.dominant_rule);
-    fields.serialize_entry("risk", &estimate.map(|e| e.risk_pct))?;
-    fields.serialize_entry("elevated_risk", &elevated_risk_pct)?;
-    fields.serialize_entry("coverage", &estimate.map(|e| e.coverage))?;
-    fields.serialize_entry("filled", &estimate.map(is_filled))?;
-    fields.serialize_entry("dominant_rule", &dominant.map(|rule| rule + 1))
+#[derive(serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+struct UpdateFields {
+    /// The time of the sample in seconds.
+    t_s: f64,
+    #[serde(flatten)]
+    risk: RiskFields,
+    /// The level. Where a risk of the profile is unknown it is an alarm that stands, or null: never GOOD.
+    level: Option<Level>,
+    /// Whether the risk counts for levels, findings and the summary of a flight.
+    judged: bool,
+}
+
+/// A risk and what it rests on, as serde data; null where it is unknown.
+#[cfg(feature = "serde")]
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(crate) struct RiskFields {
+    /// The risk in %.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 100)))]
+    risk: Option<f64>,
+    /// The elevated risk in %.
+    elevated_risk: Option<f64>,
+    /// The largest firing strength of a rule, in [0, 1].
+    coverage: Option<f64>,
+    /// Whether the risk is interpolated, since no rule applies.
+    filled: Option<bool>,
+    /// The number of the rule with the largest firing strength, from 1; null where none fires.
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
+    dominant_rule: Option<usize>,
+}
+
+#[cfg(feature = "serde")]
+impl RiskFields {
+    pub(crate) fn new(estimate: Option<Estimate>, elevated_risk: Option<f64>) -> RiskFields {
+        RiskFields {
+            risk: estimate.map(|estimate| estimate.risk_pct),
+            elevated_risk,
+            coverage: estimate.map(|estimate| estimate.coverage),
+            filled: estimate.map(|estimate| estimate.filled_from.is_some()),
+            dominant_rule: estimate.and_then(|estimate| Some(estimate.dominant_rule? + 1)),
+        }
+    }
 }

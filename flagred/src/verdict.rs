@@ -24,6 +24,7 @@ pub(crate) use notices::Notices;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "UPPERCASE"))]
 pub enum Level {
     /// Nothing to say.
@@ -50,6 +51,7 @@ impl core::fmt::Display for Level {
 /// The quantity that a threshold is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Measure {
     /// The risk of the moment.
@@ -103,6 +105,7 @@ impl core::fmt::Display for Measure {
 /// A limit on each quantity; reaching either is enough.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Threshold {
     /// On the risk, in %.
     pub risk_pct: Option<f64>,
@@ -133,6 +136,7 @@ impl Threshold {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LevelSettings {
     /// The level is raised when this is reached ...
     pub raise: Threshold,
@@ -155,6 +159,7 @@ pub struct LevelSettings {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct VerdictSettings {
     /// When to warn.
     pub warn: LevelSettings,
@@ -178,6 +183,7 @@ pub struct VerdictSettings {
 /// A limit that has to be passed for a while.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Limit {
     /// The limit, on the effective range.
     pub value: f64,
@@ -188,6 +194,7 @@ pub struct Limit {
 /// What is told beside the risk; `None` is not.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NoticeSettings {
     /// Noise of the commands above this: vibration, or gains too high.
     pub noise: Option<Limit>,
@@ -240,10 +247,10 @@ impl Default for VerdictSettings {
 /// A time of trouble: from when a level was first reached until it was last reached, with the worst level of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Finding {
-    /// The level.
-    #[cfg_attr(feature = "serde", serde(rename = "severity"))]
-    pub level: Level,
+    /// The worst level that was reached.
+    pub severity: Level,
     /// Since when the level was reached, in seconds.
     pub from_s: f64,
     /// When it was first raised: `after_s` of that level later.
@@ -257,8 +264,7 @@ pub struct Finding {
     /// The threshold of the level in %.
     pub threshold_pct: f64,
     /// The worst value of the measure in that time, in %.
-    #[cfg_attr(feature = "serde", serde(rename = "value_pct"))]
-    pub peak_pct: f64,
+    pub value_pct: f64,
     /// The motor that is the cause. Of a risk: where the cause is that motors are near a limit, the one with the least margin
     /// while the level was being raised. Of an imbalance: the one out of balance.
     pub motor: Option<MotorFinding>,
@@ -270,27 +276,20 @@ pub struct Finding {
 /// The motor behind a finding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MotorFinding {
-    /// Which one, counted from 0 in the order of the samples.
-    #[cfg_attr(
-        feature = "serde",
-        serde(rename = "number", serialize_with = "from_one")
-    )]
-    pub motor: usize,
-    /// The other one that it may be as well, where the commands do not tell which of the two.
-    #[cfg_attr(
-        feature = "serde",
-        serde(rename = "or_number", serialize_with = "optional_from_one")
-    )]
-    pub or: Option<usize>,
+    /// Its number, from 1: of a log or a vehicle that of the autopilot, else its place in the samples.
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
+    pub number: usize,
+    /// The number of the other motor that it may be as well, where the commands do not show which of the two.
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
+    pub or_number: Option<usize>,
     /// The limit it was nearest to. Out of balance: below or above its part.
     pub side: Side,
     /// Its mean margin.
-    #[cfg_attr(feature = "serde", serde(rename = "margin_mean"))]
-    pub mean_margin: f64,
+    pub margin_mean: f64,
     /// Its least margin.
-    #[cfg_attr(feature = "serde", serde(rename = "margin_min"))]
-    pub least_margin: f64,
+    pub margin_min: f64,
 }
 
 /// An index as a number that counts from 1.
@@ -302,24 +301,16 @@ pub(crate) fn from_one<S: serde::Serializer>(
     serde::Serialize::serialize(&(index + 1), serializer)
 }
 
-#[cfg(feature = "serde")]
-fn optional_from_one<S: serde::Serializer>(
-    index: &Option<usize>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serde::Serialize::serialize(&index.map(|index| index + 1), serializer)
-}
-
 impl Finding {
     pub(crate) const NONE: Finding = Finding {
-        level: Level::Good,
+        severity: Level::Good,
         from_s: 0.0,
         raised_s: 0.0,
         failed_s: None,
         to_s: 0.0,
         measure: Measure::Risk,
         threshold_pct: 0.0,
-        peak_pct: f64::NEG_INFINITY,
+        value_pct: f64::NEG_INFINITY,
         motor: None,
         cause: None,
     };

@@ -26,8 +26,8 @@ pub(crate) fn rule_numbers<S: Serializer>(
     serializer.collect_seq(indices.iter().map(|index| index + 1))
 }
 
-/// `{value, state, coverage, rule, clamped}`: `value` is null where there is none, `rule` is the number of the dominant
-/// rule.
+/// `{value, state, coverage, dominant_rule, clamped}`: `value` is null where there is none, and so is the
+/// number of the dominant rule.
 impl Serialize for Outcome {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let state = match self.state {
@@ -41,7 +41,7 @@ impl Serialize for Outcome {
         fields.serialize_field("value", &self.value())?;
         fields.serialize_field("state", state)?;
         fields.serialize_field("coverage", &self.coverage)?;
-        fields.serialize_field("rule", &self.dominant.map(|index| index + 1))?;
+        fields.serialize_field("dominant_rule", &self.dominant_rule.map(|index| index + 1))?;
         fields.serialize_field("clamped", &self.clamped)?;
         fields.end()
     }

@@ -64,7 +64,7 @@ fn outcomes_and_explanations_are_data() {
     let outcomes = engine.evaluate_named([("heat", 40.0)]).unwrap();
     let outcomes = serde_json::to_value(&outcomes).unwrap();
     assert_eq!(outcomes["speed"]["state"], "defined");
-    assert_eq!(outcomes["speed"]["rule"], 2, "rules count from 1");
+    assert_eq!(outcomes["speed"]["dominant_rule"], 2, "rules count from 1");
     assert_eq!(outcomes["speed"]["clamped"], false);
     let explanation = serde_json::to_value(engine.explain(&[40.0]).unwrap()).unwrap();
     assert_eq!(explanation["rules"][0]["rule"], 2);

@@ -264,37 +264,37 @@ pub fn findings(ended: &Ended) -> String {
         .flatten()
         .map(|finding| {
             let Finding {
-                level,
+                severity,
                 from_s,
                 raised_s,
                 failed_s,
                 to_s,
                 measure,
                 threshold_pct,
-                peak_pct,
+                value_pct,
                 motor,
                 cause,
             } = finding;
             let margin = |value: fn(&flagred::verdict::MotorFinding) -> f64| {
                 bits(motor.as_ref().map_or(f64::NAN, value))
             };
-            let high = motor.is_some_and(|motor| motor.side == flagred::margin::Side::High);
+            let high = motor.is_some_and(|motor| motor.side == flagred::margin::Side::Upper);
             let of_cause =
                 |value: fn(&Cause) -> usize| cause.as_ref().map_or(-1, |cause| value(cause) as i64);
             format!(
                 " [{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}]",
-                *level as i32,
+                *severity as i32,
                 bits(*from_s),
                 bits(*raised_s),
                 bits(failed_s.unwrap_or(f64::NAN)),
                 bits(*to_s),
                 *measure as i32,
                 bits(*threshold_pct),
-                bits(*peak_pct),
-                motor.map_or(-1, |motor| motor.motor as i64),
+                bits(*value_pct),
+                motor.map_or(-1, |motor| motor.number as i64 - 1),
                 i32::from(high),
-                margin(|motor| motor.mean_margin),
-                margin(|motor| motor.least_margin),
+                margin(|motor| motor.margin_mean),
+                margin(|motor| motor.margin_min),
                 of_cause(|cause| cause.proposition),
                 of_cause(|cause| cause.rule),
                 of_cause(|cause| cause.input),

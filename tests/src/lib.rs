@@ -9,6 +9,7 @@ pub mod reference;
 pub mod schema;
 pub mod simulated;
 pub mod tuning;
+pub mod typescript;
 pub mod vehicle;
 pub mod watch;
 pub mod wire;

@@ -1,4 +1,4 @@
-//! A check of JSON against the schemas in `crates/cli/schemas`.
+//! A check of JSON against the schemas that `flagred schema` prints.
 //!
 //! It knows the keywords that these use and fails on any other. A validator of all of JSON Schema costs some fifty packages.
 #![expect(
@@ -10,10 +10,30 @@
 
 use serde_json::Value;
 
-/// The schema of a document, as `flagred schema` prints it, references resolved.
-pub fn schema(name: &str) -> Value {
+/// The documents that have a schema.
+pub const DOCUMENTS: [&str; 11] = [
+    "assess",
+    "check",
+    "evaluate",
+    "explain",
+    "identify",
+    "inspect",
+    "learn",
+    "simplify",
+    "tune",
+    "watch",
+    "watch-all",
+];
+
+/// The schema of a document, as `flagred schema` prints it.
+pub fn printed(name: &str) -> Value {
     let output = crate::flagred().args(["schema", name]).output().unwrap();
-    let schema: Value = serde_json::from_slice(&output.stdout).unwrap();
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The same with its references resolved.
+pub fn schema(name: &str) -> Value {
+    let schema = printed(name);
     resolved(&schema, &schema)
 }
 
@@ -124,12 +144,13 @@ fn check(schema: &Value, value: &Value, path: &str, found: &mut Vec<String>) {
                 }
             }
             "const" | "enum" | "minimum" | "maximum" | "exclusiveMinimum" | "items"
-            | "properties" => {}
+            | "prefixItems" | "properties" => {}
             other => panic!("the keyword `{other}` is not checked"),
         }
     }
     for (i, item) in value.as_array().into_iter().flatten().enumerate() {
-        if let Some(items) = schema.get("items") {
+        let here = schema.get("prefixItems").and_then(|all| all.get(i));
+        if let Some(items) = here.or(schema.get("items")) {
             check(items, item, &format!("{path}[{i}]"), found);
         }
     }

@@ -165,8 +165,8 @@ impl Simulated {
     pub fn replay(&self, estimator: &Estimator, replay: Replay) -> Said {
         let flight = &self.flight;
         let (low, high) = (
-            flight.effective.low + replay.wrong_by.0,
-            flight.effective.high + replay.wrong_by.1,
+            flight.effective_range.low + replay.wrong_by.0,
+            flight.effective_range.high + replay.wrong_by.1,
         );
         let mut monitor = Monitor::new(estimator, Craft::new(flight.motors.len())).unwrap();
         let mut said = Said {

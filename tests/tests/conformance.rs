@@ -194,7 +194,7 @@ fn bits(outcomes: &[Outcome]) -> Vec<String> {
                 "{:?} {:?} {:?} {}",
                 bits(o.value()),
                 bits(Some(o.coverage)),
-                o.dominant,
+                o.dominant_rule,
                 o.clamped
             )
         })
@@ -270,7 +270,7 @@ fn the_bits_of_the_corpus_are_those_on_file() {
                     .value()
                     .map_or("none".to_owned(), |value| format!("{:x}", value.to_bits()));
                 let rule = outcome
-                    .dominant
+                    .dominant_rule
                     .map_or("none".to_owned(), |rule| rule.to_string());
                 lines += &format!(
                     " {value},{:x},{rule},{}",
@@ -338,7 +338,7 @@ fn decision_maps_have_the_bits_of_single_calls() {
                 let value = map.value(cell).map(f64::to_bits);
                 assert_eq!(value, single.value().map(f64::to_bits), "{}", case.place);
                 assert_eq!(map.coverage(cell).to_bits(), single.coverage.to_bits());
-                assert_eq!(map.dominant(cell), single.dominant);
+                assert_eq!(map.dominant(cell), single.dominant_rule);
             }
         }
     }

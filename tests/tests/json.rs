@@ -1,4 +1,4 @@
-//! What commands print as JSON is what the schemas in `crates/cli/schemas` describe.
+//! What commands print as JSON is what the schemas of `flagred schema` describe, which are derived from the same types.
 
 use std::fmt::Write as _;
 
@@ -40,6 +40,29 @@ fn trouble() -> String {
         writeln!(text, "{t_s},{motors},0,{roll_deg},0,0").unwrap();
     }
     text
+}
+
+/// A name that a schema does not describe is an error in every document.
+#[test]
+fn every_object_of_a_schema_is_closed() {
+    fn open(schema: &Value, path: &str, found: &mut Vec<String>) {
+        if schema.get("properties").is_some() && schema["additionalProperties"] != false {
+            found.push(path.to_owned());
+        }
+        let fields = schema.as_object().into_iter().flatten();
+        let items = schema.as_array().into_iter().flatten().enumerate();
+        let items = items.map(|(i, item)| (i.to_string(), item));
+        for (name, part) in fields.map(|(name, part)| (name.clone(), part)).chain(items) {
+            open(part, &format!("{path}/{name}"), found);
+        }
+    }
+    let mut found = Vec::new();
+    for name in schema::DOCUMENTS {
+        let schema = schema::printed(name);
+        assert_eq!(schema["$id"], format!("flagred.{name}/1"));
+        open(&schema, name, &mut found);
+    }
+    assert_eq!(found, Vec::<String>::new());
 }
 
 #[test]

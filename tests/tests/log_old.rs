@@ -87,7 +87,7 @@ fn the_upper_limit_is_that_of_the_generation_unless_the_commands_go_beyond() {
         (("OTHER", 0.0), 1900.0, 1.0),
     ] {
         let flight = read(&copter(4, to_us, &[low, limit]).bytes);
-        let effective = flight.effective;
+        let effective = flight.effective_range;
         assert_eq!(effective.low, 0.13, "{}", effective.source);
         // Parameters are single precision.
         assert!((effective.high - high).abs() < 1e-7, "{}", effective.source);

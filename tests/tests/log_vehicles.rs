@@ -103,7 +103,7 @@ fn compare(vehicle: &Vehicle) -> Flight {
     assert_eq!(setup.assumed, Vec::<String>::new());
     assert_eq!(setup.motors, flight.motors);
     assert_eq!(Some(&setup.range), flight.range.as_ref());
-    assert_eq!(setup.effective, flight.effective);
+    assert_eq!(setup.effective_range, flight.effective_range);
     assert_eq!(setup.geometry, flight.geometry);
     assert_eq!(telemetry.vehicle().kind, flight.vehicle.kind);
     assert_eq!(telemetry.vehicle().motors, flight.vehicle.motors);
@@ -187,7 +187,7 @@ fn an_ardupilot_vehicle_by_its_heartbeats() {
     }
     let flight = compare(&vehicle);
     assert_eq!(
-        (flight.effective.low, flight.effective.high),
+        (flight.effective_range.low, flight.effective_range.high),
         (0.125, 0.875)
     );
     assert_eq!(spans(&flight), [(2.0, 6.0)]);
@@ -195,7 +195,7 @@ fn an_ardupilot_vehicle_by_its_heartbeats() {
     assert!((flight.armed.unwrap().duration_s() - 5.95).abs() < 1e-6);
     // Of a recording the first value counts, of a link the latest one.
     vehicle.parameter("MOT_SPIN_MAX", 0.5_f32.to_le_bytes(), 2);
-    assert_eq!(vehicle.recorded().effective.high, 0.875);
+    assert_eq!(vehicle.recorded().effective_range.high, 0.875);
     assert_eq!(vehicle.live().0.parameter("MOT_SPIN_MAX"), Some(0.5));
 }
 

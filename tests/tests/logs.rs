@@ -206,13 +206,13 @@ fn compare(folder: &Path, log: &str) {
     }
     if log == "aptxt_mechanical_fail.log" {
         // The reference knows no upper limit before 3.4; its margins on the full range end at 0.07.
-        assert_eq!(flight.effective.high, 0.93);
+        assert_eq!(flight.effective_range.high, 0.93);
         assert!((flight.full_range_statistics().unwrap().margin_min - 0.07).abs() < 1e-3);
-        flight.effective.high = 1.0;
+        flight.effective_range.high = 1.0;
         leave_chatter_out(&mut flight, &columns(&gunzip(&truth_of("motors.csv.gz"))));
     }
     if let Some(low) = summary.get("effective_lo") {
-        compare_range(log, &flight.effective, low, &summary["effective_hi"]);
+        compare_range(log, &flight.effective_range, low, &summary["effective_hi"]);
     }
     compare_rows(log, &flight, &columns(&gunzip(&truth_of("motors.csv.gz"))));
     compare_attitude(log, &flight, &columns(&gunzip(&truth_of("att.csv.gz"))));
@@ -388,7 +388,7 @@ fn flight_csv_series_are_read_whole() {
     assert!(flight.report.is_clean(), "{:?}", flight.report);
     assert_eq!(flight.motors.len(), 8);
     assert_eq!(flight.vehicle.frame.as_deref(), Some("x8_def_c60"));
-    assert_eq!(flight.effective.low, 0.15);
+    assert_eq!(flight.effective_range.low, 0.15);
     assert!(flight.signal("climb_m_s").is_some());
     assert!(
         flight

@@ -105,7 +105,7 @@ fn a_table_of_all_cells() {
     let mut lines = text.lines();
     assert_eq!(
         lines.next(),
-        Some("margin,spread,risk,coverage,rule,filled,distance")
+        Some("margin,spread,risk,coverage,dominant_rule,filled,distance")
     );
     let rows: Vec<Vec<f64>> = lines
         .map(|line| {

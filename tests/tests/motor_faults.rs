@@ -64,12 +64,12 @@ fn line(flight: &Followed) -> String {
     let mut text = format!("{:24}", flight.id);
     for found in &flight.findings {
         let motor = found.motor.map_or(String::new(), |m| {
-            let or = m.or.map_or(String::new(), |or| format!(" or {}", or + 1));
-            format!(" motor {}{or}", m.motor + 1)
+            let or = m.or_number.map_or(String::new(), |or| format!(" or {or}"));
+            format!(" motor {}{or}", m.number)
         });
         text += &format!(
             "  {} {} {:.0} %{motor} {:.1}-{:.1}",
-            found.level, found.measure, found.peak_pct, found.raised_s, found.to_s
+            found.severity, found.measure, found.value_pct, found.raised_s, found.to_s
         );
     }
     text
@@ -109,7 +109,7 @@ fn a_lasting_fault_stays_reported_and_its_motor_is_named() {
         let named: Vec<_> = named.filter_map(|found| found.motor).collect();
         assert!(!named.is_empty(), "{id}");
         for found in named {
-            assert_eq!((found.motor + 1, found.or), (motor, None), "{id}");
+            assert_eq!((found.number, found.or_number), (motor, None), "{id}");
         }
         assert_eq!(flight.good_and_unknown_s, [0.0; 0]);
     }
@@ -291,7 +291,7 @@ fn a_weak_motor_is_the_one_above_its_trim_and_stays_reported() {
         let found = found.find(|found| found.measure == Measure::WeakMotor);
         let found = found.unwrap_or_else(|| panic!("{shifts:?}: {:?}", flown.findings));
         let named = found.motor.unwrap();
-        assert_eq!((named.motor, named.or), (motor, None));
+        assert_eq!((named.number, named.or_number), (motor + 1, None));
         assert!(found.raised_s < 52.0 && found.to_s > 119.0, "{found:?}");
         let after = levels(&updates, found.raised_s..120.0);
         assert!(after.iter().all(|level| *level >= Some(Level::Warn)));
@@ -378,7 +378,7 @@ fn a_motor_that_stopped_is_named_and_not_the_one_opposite() {
         .find(|found| found.measure == Measure::Imbalance)
         .unwrap();
     let motor = found.motor.unwrap();
-    assert_eq!((motor.motor, motor.or), (2, None));
+    assert_eq!((motor.number, motor.or_number), (3, None));
     // At the same time nothing tells them apart.
     let (flown, _) = fly_clipped(&HEXA, &[(40.0, &both)]);
     let mut found = flown.findings.iter();
@@ -386,7 +386,7 @@ fn a_motor_that_stopped_is_named_and_not_the_one_opposite() {
         .find(|found| found.measure == Measure::Imbalance)
         .unwrap();
     let motor = found.motor.unwrap();
-    assert_eq!((motor.motor, motor.or), (2, Some(3)));
+    assert_eq!((motor.number, motor.or_number), (3, Some(4)));
 }
 
 /// As [`fly`], without noise for motors at 0.

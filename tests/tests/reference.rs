@@ -370,7 +370,10 @@ fn of_balance(assessment: &Assessment) -> Vec<Unbalanced> {
         .map(|found| Unbalanced {
             measure: found.measure,
             raised_s: found.raised_s,
-            motor: found.motor.map(|motor| (motor.motor, motor.or)).unwrap(),
+            motor: found
+                .motor
+                .map(|motor| (motor.number - 1, motor.or_number.map(|number| number - 1)))
+                .unwrap(),
         })
         .collect();
     all.sort_by(|a, b| a.raised_s.total_cmp(&b.raised_s));
@@ -387,7 +390,7 @@ fn found(assessment: &Assessment) -> Vec<Trouble> {
     });
     let mut all: Vec<Trouble> = of_risk
         .map(|found| Trouble {
-            level: found.level,
+            level: found.severity,
             from_s: found.from_s,
             raised_s: found.raised_s,
             failed_s: found.failed_s,

@@ -25,7 +25,7 @@ fn steady() -> (Flight, f64) {
     (flight, start_s)
 }
 
-/// Every line is one that crates/cli/schemas/watch.json describes.
+/// Every line is one that `flagred schema watch` describes.
 fn valid(said: &Said) {
     let schema = schema::schema("watch");
     for line in &said.events {

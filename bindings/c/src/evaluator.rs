@@ -24,7 +24,7 @@ pub(crate) struct Outcome {
 
 impl Outcome {
     fn of(outcome: &table::Outcome) -> Outcome {
-        let dominant = outcome.dominant.map(|rule| i32::try_from(rule).ok());
+        let dominant = outcome.dominant_rule.map(|rule| i32::try_from(rule).ok());
         Outcome {
             value: outcome.value().unwrap_or(f64::NAN),
             coverage: outcome.coverage,

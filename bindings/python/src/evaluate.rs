@@ -182,7 +182,7 @@ impl Block<'_> {
                 .zip(clamped.iter_mut());
             for (((coverage, rule), clamped), outcome) in to.zip(outcomes) {
                 *coverage = outcome.coverage;
-                *rule = rule_number(outcome.dominant);
+                *rule = rule_number(outcome.dominant_rule);
                 *clamped = outcome.clamped;
             }
         }

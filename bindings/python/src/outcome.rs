@@ -92,7 +92,7 @@ impl From<engine::Outcome> for Outcome {
         Outcome {
             value: outcome.value(),
             coverage: outcome.coverage,
-            dominant_rule: outcome.dominant.map(|rule| rule + 1),
+            dominant_rule: outcome.dominant_rule.map(|rule| rule + 1),
             clamped: outcome.clamped,
             state: match outcome.state {
                 State::Defined(_) => STATES[0],

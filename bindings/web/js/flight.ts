@@ -1,8 +1,24 @@
 /** Flight logs: read, assessed, explained, compared. */
 
+import type { FlightDocument, Moment, Threshold, VerdictSettings } from './documents.js';
 import { beside, type Source } from './load.js';
 import { guard } from './panic.js';
 import * as wasm from './wasm/flight.js';
+
+export type {
+  FlightDocument,
+  FlightFinding,
+  Level,
+  LevelSettings,
+  Moment,
+  Peak,
+  Reliability,
+  Step,
+  Summary,
+  Threshold,
+  VerdictSettings,
+  VerdictWord,
+} from './documents.js';
 
 const guarded = guard(wasm.panicMessage);
 
@@ -16,32 +32,6 @@ declare const FileReaderSync: new () => { readAsArrayBuffer(blob: Blob): ArrayBu
 
 /** Gives `length` bytes of a log from `offset` on, fewer before its end, none at its end. */
 export type Read = (offset: number, length: number) => Uint8Array;
-
-export type Level = 'GOOD' | 'INFO' | 'WARN' | 'FAIL';
-
-/** Limits in %; `null` is none. */
-export interface Threshold {
-  risk_pct: number | null;
-  elevated_risk_pct: number | null;
-}
-
-/** When a level is raised, and until when it is held. */
-export interface LevelSettings {
-  raise: Threshold;
-  after_s: number;
-  until: Threshold;
-}
-
-/** When a profile warns and fails. */
-export interface VerdictSettings {
-  warn: LevelSettings;
-  fail: LevelSettings;
-  clear_after_s: number;
-  quiet_after_take_off_s: number;
-  quiet_before_landing_s: number;
-  idle_below: number;
-  notices: Record<'noise' | 'reserve' | 'imbalance', { value: number; after_s: number } | null>;
-}
 
 /** Other thresholds and times; what is left out stays as it is. */
 export interface VerdictChanges {
@@ -58,84 +48,8 @@ export interface LevelChanges {
   until?: Partial<Threshold>;
 }
 
-/** The largest value of a quantity, and when it was first reached. */
-export interface Peak {
-  t_s: number;
-  value_pct: number;
-}
-
-/** How many moments with a risk of a band, one each 0.5 s, were followed by an attitude error over 5 degrees within 5 s. */
-export interface Reliability {
-  /** The ends of the band, in %. */
-  from_pct: number;
-  to_pct: number;
-  real: { moments: number; followed: number } | null;
-  simulated: { moments: number; followed: number } | null;
-}
-
-/** What is said of a flight, without its steps. `docs/json.md` describes all of it. */
-export interface Brief {
-  schema: string;
-  log: { path: string; format: string };
-  vehicle: { kind: string; frame: string | null; firmware: string | null; [more: string]: unknown };
-  profile: { name: string; rules: string; verdict: VerdictSettings; reliability: Reliability[] };
-  /** `NA` where there is none; then `reason` says why, and `help` what helps. */
-  verdict: Level | 'NA';
-  reason?: string;
-  help?: string | null;
-  findings: FlightFinding[];
-  findings_left_out: number;
-  summary: {
-    in_air_s: number;
-    assessed_s: number;
-    filled_s: number;
-    risk_mean_pct: number | null;
-    risk_max: Peak | null;
-    elevated_risk_max: Peak | null;
-    saturated_share: number | null;
-  };
-  widened_step_s: number | null;
-}
-
-export interface FlightFinding {
-  severity: Level;
-  from_s: number;
-  to_s: number;
-  /** What kind of finding it is: a stable word for programs, such as `fighting_gusts`. */
-  code: string;
-  /** What happened, and what it means. */
-  text: string;
-  /** What to do. */
-  advice: string;
-  [more: string]: unknown;
-}
-
-/** What was known at a time of a flight. */
-export interface Moment {
-  t_s: number;
-  mode: string | null;
-  /** The latest step; `null` where there is none, or where samples are missing since. */
-  step: {
-    t_s: number;
-    risk: number | null;
-    elevated_risk: number | null;
-    coverage: number | null;
-    /** Whether the risk is interpolated, since no rule applies. */
-    filled: boolean | null;
-    /** The strongest rule, counted from 1. */
-    dominant_rule: number | null;
-    margin: number | null;
-    spread: number | null;
-    judged: boolean;
-    inputs: Record<string, number | null>;
-  } | null;
-  filled_from: number | null;
-  clamped: boolean;
-  inputs: { name: string; given: number; value: number; terms: { term: string; degree: number }[] }[];
-  units: Record<string, string>;
-  /** The rules that fire, the strongest first. */
-  rules: { rule: number; text: string; degree: number; strength: number }[];
-}
+/** What is said of a flight, without its steps. `docs/json.md` describes it. */
+export type Brief = Omit<FlightDocument, 'steps'>;
 
 /** A stretch of time on the log's clock, in seconds; of a comparison, since each flight began. */
 export interface Stretch {

@@ -1,8 +1,11 @@
 /** Rule sets: an open text under an author's hands, a compiled rule set to evaluate and draw, other programs' formats. */
 
+import type { Explanation } from './documents.js';
 import { beside, type Source } from './load.js';
 import { guard } from './panic.js';
 import * as wasm from './wasm/rules.js';
+
+export type { Explanation } from './documents.js';
 
 const guarded = guard(wasm.panicMessage);
 
@@ -177,18 +180,9 @@ export interface Value {
   /** The largest firing strength. */
   coverage: number;
   /** The number of the rule that has it, from 1; `null` where none fires. */
-  rule: number | null;
+  dominantRule: number | null;
   /** Whether an input lay outside its range. */
   clamped: boolean;
-}
-
-/** The document of `flagred explain --json`; rules count from 1. */
-export interface Explanation {
-  schema: 'flagred.explain/1';
-  model: string;
-  inputs: { name: string; given: number; value: number; terms: { term: string; degree: number }[] }[];
-  rules: { rule: number; text: string; degree: number; strength: number }[];
-  outputs: { name: string; value: number | null; is_default: boolean; coverage: number }[];
 }
 
 /** What a map shows: one output over one or two inputs, the others held. */
@@ -209,7 +203,7 @@ export interface Cells {
   /** The largest firing strength. */
   coverage: Float64Array;
   /** The number of the rule that has it, from 1; NaN where none fires. */
-  rules: Float64Array;
+  dominantRules: Float64Array;
   /** 1 where a profile filled a gap between rules. */
   filled: Float64Array;
 }
@@ -257,7 +251,7 @@ export class RuleSet {
     const all = viewed(view, (made) => this.#set.map(made));
     const cells = all.length / 4;
     const part = (i: number) => all.subarray(i * cells, (i + 1) * cells);
-    return { values: part(0), coverage: part(1), rules: part(2), filled: part(3) };
+    return { values: part(0), coverage: part(1), dominantRules: part(2), filled: part(3) };
   }
 
   /** The picture of `flagred map`: SVG. */

@@ -52,8 +52,8 @@ test('every outcome of the corpus has the bits on file', async () => {
   assert.ok(cases.length >= 400);
   for (const { place, text, point, expected } of cases) {
     const rules = new RuleSet(text);
-    const single = rules.evaluate(point).map(({ value, coverage, rule, clamped }) => {
-      return [known(value), bits(coverage), rule === null ? 'none' : rule - 1, Number(clamped)].join(',');
+    const single = rules.evaluate(point).map(({ value, coverage, dominantRule, clamped }) => {
+      return [known(value), bits(coverage), dominantRule === null ? 'none' : dominantRule - 1, Number(clamped)].join(',');
     });
     assert.deepEqual(single, expected, place);
     const values = expected.map((outcome) => outcome.split(',')[0]);

@@ -6,26 +6,37 @@ use serde::Serialize;
 
 use crate::Examined;
 
+/// The versions of the layouts; they grow when a name changes its meaning or goes.
+const CHECK: &str = "flagred.check/1";
+const EXPLAIN: &str = "flagred.explain/1";
+
 /// The findings about a rule set or a profile: `flagred check --json`.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Checked<'a> {
+    #[cfg_attr(feature = "schema", schemars(extend("const" = CHECK)))]
     schema: &'static str,
+    /// The file, as given.
     file: &'a str,
-    /// The name of the rule set; absent where it has errors, and of a profile.
+    /// The name of the rule set; null where it has errors, and of a profile.
     model: Option<&'a str>,
     /// The name of the profile; absent where it cannot be read, and of a rule set.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "str"))]
     profile: Option<&'a str>,
     /// The commands that made the rule set; absent where it says none.
     #[serde(skip_serializing_if = "<[Step]>::is_empty")]
     provenance: &'a [Step],
+    /// What was found in the text, then by the analysis.
     findings: &'a [Diagnostic],
     /// The findings that the author accepts; absent where there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     accepted: Vec<check::Accepted>,
+    /// Regions, conflicts, reach and monotonicity in numbers; null where the rule set has errors, and of a profile.
     report: Option<&'a check::Report>,
     /// What each input of a profile reaches alone; absent of a rule set.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "[Alone]"))]
     alone: Option<&'a [Alone]>,
 }
 
@@ -54,7 +65,7 @@ impl<'a> Checked<'a> {
         alone: &'a [Alone],
     ) -> Checked<'a> {
         Checked {
-            schema: "flagred.check/1",
+            schema: CHECK,
             file,
             model: None,
             profile: name,
@@ -69,8 +80,12 @@ impl<'a> Checked<'a> {
 
 /// How the outputs come about at a point: `flagred explain --json`.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Explanation"))]
 pub struct Explained<'a> {
+    #[cfg_attr(feature = "schema", schemars(extend("const" = EXPLAIN)))]
     schema: &'static str,
+    /// The name of the rule set.
     model: &'a str,
     #[serde(flatten)]
     explanation: &'a engine::Explanation,
@@ -86,7 +101,7 @@ impl<'a> Explained<'a> {
     /// Of the rule set of this name.
     pub fn new(model: &'a str, explanation: &'a engine::Explanation) -> Explained<'a> {
         Explained {
-            schema: "flagred.explain/1",
+            schema: EXPLAIN,
             model,
             explanation,
             silent: None,

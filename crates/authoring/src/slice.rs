@@ -111,7 +111,7 @@ fn cell(mapped: &Mapped<'_>, outcome: &Outcome, point: &[f64]) -> Cell {
     Cell {
         value: reading.map(|r| r.value).or_else(|| outcome.value()),
         coverage: outcome.coverage,
-        rule: outcome.dominant,
+        rule: outcome.dominant_rule,
         filled_from: reading.map(|reading| reading.distance),
     }
 }

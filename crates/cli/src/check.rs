@@ -214,7 +214,7 @@ fn row(one: &Alone) -> [String; 3] {
         Some(term) => format!("{value} ({})", visible(term)),
         None => value,
     };
-    let mut risk = format!("{} {:.0} %", visible(&one.risk), one.risk_pct);
+    let mut risk = format!("{} {:.0} %", visible(&one.risk_output), one.risk_pct);
     if one.level > Level::Good {
         risk += &format!(", {}", one.level);
     }

@@ -220,8 +220,9 @@ impl<'e> Watch<'e> {
             let (session, estimator) = (&self.session, self.estimator);
             let words = self.words.line(now_s, &event, session, estimator);
             self.told.words.extend(words);
-            let json = jsonl::json(now_s, &event, session, estimator);
-            self.told.json.extend(json.ok().flatten());
+            let line = jsonl::line(now_s, &event, session, estimator);
+            let json = line.and_then(|line| jsonl::text(&line).ok());
+            self.told.json.extend(json);
             self.screen.add(now_s, &event, session, estimator);
         }
         self.told.packets.append(&mut self.out.packets);

@@ -4,6 +4,7 @@ use std::io::Write;
 
 use flagred_tuning::Interval;
 use fuzzy::drawing::{short, visible};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The reasons for rows without use that are shown.
@@ -31,11 +32,15 @@ pub(crate) fn divided(group_by: Option<&String>) -> String {
     }
 }
 
-/// An interval in a JSON document.
-#[derive(Serialize)]
+/// A figure of rows left out, with its 95 % interval.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Interval")]
 pub(crate) struct OfInterval {
+    /// The figure.
     value: f64,
+    /// The lower end of the interval.
     low: f64,
+    /// The upper end of the interval.
     high: f64,
 }
 

@@ -44,6 +44,9 @@ mod tune;
 mod validate;
 mod watch;
 
+#[doc(hidden)] // For the types of the npm package.
+pub use schema::npm_types;
+
 use std::{ffi::OsString, process::ExitCode};
 
 use clap::{Parser, Subcommand};

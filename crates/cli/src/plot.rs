@@ -74,7 +74,7 @@ fn curves(engine: &Engine) -> Result<Vec<Slice>, Failure> {
             curve.cells.push(Cell {
                 value: outcome.value(),
                 coverage: outcome.coverage,
-                rule: outcome.dominant,
+                rule: outcome.dominant_rule,
                 filled_from: None,
             });
         }

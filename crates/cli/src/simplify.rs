@@ -8,6 +8,7 @@ use fuzzy::{
     drawing::{short, visible},
     model::Step,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::{
@@ -239,7 +240,7 @@ impl Outcome<'_> {
         let rules = simplified.model.rules.iter().zip(&simplified.rules);
         let ors = [self.model, &simplified.model].map(disjunction);
         Document {
-            schema: "flagred.simplify/1",
+            schema: SCHEMA,
             rules: Rules {
                 before: self.model.rules.len(),
                 after: simplified.model.rules.len(),
@@ -302,59 +303,87 @@ fn disjunction(model: &Model) -> &'static str {
     fuzzy::format::word_of_or(model.operators.or)
 }
 
+/// The version of the document's layout.
+const SCHEMA: &str = "flagred.simplify/1";
+
 /// The document of `--json`.
-#[derive(Serialize)]
-struct Document<'a> {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Document<'a> {
+    #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
     rules: Rules,
+    /// The inputs that no rule needs.
     dropped_inputs: &'a [String],
+    /// The disjunction; it changes only where no rule has an OR.
     or: Change,
+    /// Where both rule sets were compared.
     points: Points<'a>,
-    /// `None`: equal.
+    /// By how much an output may differ; null: by 1e-12 of its range.
     tolerance: Option<f64>,
-    /// `None` where there is none at all.
+    /// The largest difference; null where there is none at all.
     difference: Option<OfDifference<'a>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Rules {
+    /// The number of rules before.
     before: usize,
+    /// The number of rules after.
     after: usize,
+    /// The numbers, before, of the rules without effect.
+    #[schemars(inner(range(min = 1)))]
     dropped: Vec<usize>,
+    /// The rules after.
     list: Vec<OfRule>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct OfRule {
+    /// The rule in words.
     rule: String,
+    /// The numbers, before, of the rules that it stands for.
+    #[schemars(inner(range(min = 1)))]
     of: Vec<usize>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Change {
+    /// Before.
     before: &'static str,
+    /// After.
     after: &'static str,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Points<'a> {
+    /// The points at which both were compared.
     all: usize,
+    /// The rows among them.
     rows: usize,
+    /// The rows without use.
     refused: usize,
+    /// Why these rows have no use.
     reasons: &'a [String],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct OfDifference<'a> {
+    /// The output.
     output: &'a str,
+    /// The size of the difference.
     size: f64,
+    /// The value before.
     before: f64,
+    /// The value after.
     after: f64,
+    /// Where it was seen.
     inputs: Vec<OfInput<'a>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct OfInput<'a> {
+    /// The input.
     input: &'a str,
+    /// Its value.
     value: f64,
 }

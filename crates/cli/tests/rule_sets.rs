@@ -331,7 +331,7 @@ fn eval_names_columns_by_output_and_goes_on_where_no_rule_fires() {
     assert_eq!(output.status.code(), Some(1), "{}", errors(&output));
     assert_eq!(
         text,
-        "t\tname\tfan\talarm\tfan_rule\talarm_rule\terror\n\
+        "t\tname\tfan\talarm\tfan_dominant_rule\talarm_dominant_rule\terror\n\
          25\ta\t5.5\t0.6111111111111112\t1\t2\t\n\
          10\tb\t\t0.5\t\t\tno rule fires for `fan`\n"
     );

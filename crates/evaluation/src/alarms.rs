@@ -96,7 +96,7 @@ pub(crate) struct Needless {
     pub(crate) alarms_per_hour: Option<Figure>,
     pub(crate) fails_per_hour: Option<Figure>,
     /// The share of the times with an alarm on.
-    pub(crate) share_on: Option<Figure>,
+    pub(crate) share_of_time_on: Option<Figure>,
 }
 
 /// What a vehicle adds.
@@ -181,24 +181,25 @@ impl Needless {
             fails: count(|vehicle| vehicle.fails) as usize,
             alarms_per_hour: figure(0),
             fails_per_hour: figure(1),
-            share_on: figure(2),
+            share_of_time_on: figure(2),
         }
     }
 }
 
 /// The upsets of flights, and how the alarms of a profile found them.
 #[derive(Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Upsets {
+    /// With an alarm on in the 10 s before.
     pub(crate) before: usize,
-    /// Within 1 s after.
-    #[serde(rename = "within_1_s")]
-    pub(crate) after: usize,
+    /// With an alarm raised within 1 s after.
+    pub(crate) within_1_s: usize,
+    /// Without an alarm in that time.
     pub(crate) never: usize,
     /// Those of flights without a verdict.
     pub(crate) not_assessed: usize,
-    /// The median of the leads, in seconds.
-    #[serde(rename = "lead_s_median")]
-    pub(crate) lead_s: Option<f64>,
+    /// The median of how long before, in seconds.
+    pub(crate) lead_s_median: Option<f64>,
 }
 
 impl Upsets {
@@ -220,18 +221,18 @@ impl Upsets {
                         found.before += 1;
                         leads.push(lead_s);
                     }
-                    Some(UpsetAlarm::After) => found.after += 1,
+                    Some(UpsetAlarm::After) => found.within_1_s += 1,
                     Some(UpsetAlarm::Never) => found.never += 1,
                 }
             }
         }
-        found.lead_s = median(leads);
+        found.lead_s_median = median(leads);
         found
     }
 
     /// All that were assessed.
     pub(crate) fn assessed(&self) -> usize {
-        self.before + self.after + self.never
+        self.before + self.within_1_s + self.never
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use flagred::flight::VerdictWord;
 use serde::Serialize;
 
 use crate::{
@@ -21,40 +22,61 @@ const SCHEMA: &str = "flagred.evaluate/1";
 
 /// The document of an evaluation: what `flagred validate --json` prints.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Document<'a> {
+    #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
     schema: &'static str,
+    /// What was predicted: `steps`, half a second apart, or whole `flights`.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["steps", "flights"])))]
     cases: &'static str,
+    /// How far ahead a risk should predict, in seconds; null of whole flights.
     horizon_s: Option<f64>,
+    /// The number of flights.
     flights: usize,
+    /// The number of cases of an estimator.
     steps: Option<usize>,
+    /// The number of files that are not complete flights.
     left_out: usize,
+    /// These files.
     left_out_files: &'a [LeftOut],
+    /// The profiles, then the predictors without rules.
     estimators: Vec<EstimatorDocument<'a>>,
+    /// The flights.
     records: Vec<RecordDocument<'a>>,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct EstimatorDocument<'a> {
     name: &'a str,
     description: &'a str,
     #[serde(flatten)]
     all: ScoresDocument,
     /// Only of steps, which have a time before and after.
+    /// Over steps without a critical error in the 5 s before.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "ScoresDocument"))]
     quiet: Option<ScoresDocument>,
+    /// Over steps without a critical error in the 10 s before.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "ScoresDocument"))]
     onset: Option<ScoresDocument>,
     by_vehicle: Vec<OfVehicle<'a>>,
     by_kind: Vec<OfKind<'a, ScoresDocument>>,
+    /// Of a risk in %, by tenths of the scale; null of other scores.
     reliability: Option<Vec<BandDocument>>,
     /// Only of profiles.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "ProfileWarnings<'_>"))]
     warnings: Option<ProfileWarnings<'a>>,
+    /// Of profiles, on flights.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "AlarmsDocument<'_>"))]
     alarms: Option<AlarmsDocument<'a>>,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct OfVehicle<'a> {
     vehicle: &'a str,
     #[serde(flatten)]
@@ -62,6 +84,7 @@ struct OfVehicle<'a> {
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct OfKind<'a, T> {
     kind: &'a str,
     #[serde(flatten)]
@@ -69,31 +92,51 @@ struct OfKind<'a, T> {
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct ScoresDocument {
+    /// The area under the ROC curve.
     auc: Option<f64>,
+    /// Its 95 % interval, by resampling whole flights.
     auc_interval: Option<[f64; 2]>,
+    /// The area under the precision-recall curve.
     pr_auc: Option<f64>,
+    /// Its 95 % interval.
     pr_auc_interval: Option<[f64; 2]>,
+    /// Why there is no area, such as `no critical step`.
     no_auc: Option<String>,
+    /// The mean over the flights that have critical cases and others.
     within_flight_auc: Option<f64>,
+    /// Its 95 % interval.
     within_flight_auc_interval: Option<[f64; 2]>,
+    /// The number of those flights.
     within_flight_flights: usize,
+    /// The cases with a score.
     cases: usize,
+    /// The critical ones of them.
     critical: usize,
+    /// The cases without a score.
     unknown: usize,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct BandDocument {
+    /// The lower end of the band in %; it belongs to it.
     from_pct: f64,
+    /// The upper end in %; 100 belongs to the last band.
     to_pct: f64,
+    /// The cases with such a risk.
     cases: u64,
+    /// The critical ones of them.
     critical: u64,
+    /// The share of critical cases, from 0 to 1.
     critical_share: Option<f64>,
+    /// The mean of their risks in %.
     risk_mean_pct: Option<f64>,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct ProfileWarnings<'a> {
     #[serde(flatten)]
     all: WarningsDocument<'a>,
@@ -101,6 +144,7 @@ struct ProfileWarnings<'a> {
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct WarningsDocument<'a> {
     #[serde(flatten)]
     counts: &'a Warnings,
@@ -110,37 +154,52 @@ struct WarningsDocument<'a> {
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct AlarmsDocument<'a> {
+    /// At least 20 s, from 5 s after take-off, 10 s away from any error over 5 degrees and any tilt over 45 degrees.
     calm_stretches: NeedlessDocument,
+    /// Flights whose error over 1 s never exceeds 5 degrees, with a tilt under 45 degrees and without an upset.
     ordinary_flights: NeedlessDocument,
+    /// The upsets of flights, found by any alarm.
     upsets: UpsetsDocument<'a>,
+    /// The upsets of flights, found by FAIL alone.
     upsets_by_fail: UpsetsDocument<'a>,
     by_kind: Vec<OfKind<'a, AlarmsOfKind<'a>>>,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct AlarmsOfKind<'a> {
     calm_stretches: NeedlessDocument,
     upsets: UpsetsDocument<'a>,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct NeedlessDocument {
+    /// The flights with such times and a verdict.
     flights: usize,
+    /// The flights with such times whose verdict is NA.
     not_assessed: usize,
+    /// The length of these times.
     hours: f64,
+    /// How many flights were GOOD, WARN and FAIL.
     verdicts: Verdicts,
+    /// Times of WARN or FAIL; one that turns into the other counts once.
     alarms: usize,
     alarms_per_hour: Option<f64>,
     alarms_per_hour_interval: Option<[f64; 2]>,
+    /// Times of FAIL.
     fails: usize,
     fails_per_hour: Option<f64>,
     fails_per_hour_interval: Option<[f64; 2]>,
+    /// The share of these times with an alarm on.
     share_of_time_on: Option<f64>,
     share_of_time_on_interval: Option<[f64; 2]>,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "UPPERCASE")]
 struct Verdicts {
     good: usize,
@@ -149,7 +208,9 @@ struct Verdicts {
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct UpsetsDocument<'a> {
+    /// The upsets of flights with a verdict.
     assessed: usize,
     #[serde(flatten)]
     upsets: &'a Upsets,
@@ -157,40 +218,62 @@ struct UpsetsDocument<'a> {
 
 /// A flight with its episodes, and the warnings of each profile.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct RecordDocument<'a> {
+    /// The log.
     file: &'a str,
+    /// The serial number of the board, or the header's `vehicle_id` or `vehicle`.
     vehicle: Option<&'a str>,
+    /// What the flight was about, as its header says.
     kind: &'a str,
+    /// The judged time, in seconds.
     judged_s: f64,
+    /// The time in the air, in seconds.
     in_air_s: f64,
+    /// The largest attitude error over a second in the air, in degrees.
     largest_error_deg: Option<f64>,
+    /// When the vehicle was upset, in seconds.
     upsets_s: Vec<f64>,
+    /// The number of steps.
     steps: usize,
+    /// The number of critical steps.
     critical: usize,
+    /// What each profile reported, by its name.
     profiles: BTreeMap<&'a str, SaidDocument<'a>>,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct SaidDocument<'a> {
-    verdict: String,
+    /// Its verdict of the flight.
+    verdict: VerdictWord,
+    /// Times of WARN or FAIL.
     alarms: &'a [Span],
+    /// Times of FAIL.
     fails: &'a [Span],
+    /// Times of critical error.
     episodes: Vec<EpisodeDocument>,
+    /// Times of WARN or FAIL that count as warnings.
     warnings: Vec<WarningDocument>,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct EpisodeDocument {
     #[serde(flatten)]
     episode: Span,
+    /// Since when the warning was on that announced or answered it.
     warned_s: Option<f64>,
+    /// How long before the episode, in seconds; negative after its start.
     lead_s: Option<f64>,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct WarningDocument {
     #[serde(flatten)]
     span: Span,
+    /// Whether no episode followed.
     r#false: bool,
 }
 
@@ -347,8 +430,8 @@ impl NeedlessDocument {
             fails: of.fails,
             fails_per_hour: value(of.fails_per_hour),
             fails_per_hour_interval: interval(of.fails_per_hour),
-            share_of_time_on: value(of.share_on),
-            share_of_time_on_interval: interval(of.share_on),
+            share_of_time_on: value(of.share_of_time_on),
+            share_of_time_on_interval: interval(of.share_of_time_on),
         }
     }
 }
@@ -390,9 +473,8 @@ impl<'a> SaidDocument<'a> {
             span: warning.span,
             r#false: warning.is_false,
         };
-        let verdict = said.verdict;
         SaidDocument {
-            verdict: verdict.map_or_else(|| "NA".to_owned(), |level| level.to_string()),
+            verdict: said.verdict.into(),
             alarms: &said.alarms,
             fails: &said.fails,
             episodes: said.judged.answers.iter().map(episode).collect(),

@@ -341,7 +341,7 @@ fn follow(
 
 /// The times of findings of a level or a higher one.
 fn alarms(findings: &[Finding], least: Level) -> Vec<Span> {
-    let findings = findings.iter().filter(|finding| finding.level >= least);
+    let findings = findings.iter().filter(|finding| finding.severity >= least);
     Span::joined(findings.map(|finding| Span {
         from_s: finding.raised_s,
         to_s: finding.to_s.max(finding.raised_s),

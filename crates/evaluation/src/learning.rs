@@ -22,16 +22,20 @@ pub struct Row {
 
 /// Errors of predictions on rows, in the unit of the output, weighted by row. NaN where no row was compared.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Errors {
     /// The rows compared.
     pub rows: usize,
     /// The rows for which there was no prediction.
     pub without_prediction: usize,
     /// The root mean square of the error.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub rmse: f64,
     /// The mean size of the error.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub mean_absolute: f64,
     /// The mean of prediction less truth: above 0 the predictions are too high.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub bias: f64,
 }
 
@@ -266,11 +270,13 @@ pub struct GapComparison {
 
 /// Errors over all rows, and the mean over rules of the errors of their rows.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MethodErrors {
     /// Each row counts.
     pub by_row: Errors,
     /// Each rule counts the same, however many samples it has: the mean of its mean absolute error. Rules none of whose
     /// rows could be predicted do not count; NaN where that is all of them.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub by_rule_mean_absolute: f64,
 }
 
@@ -317,7 +323,7 @@ pub fn leave_one_rule_out(
             continue;
         };
         let outcome = with_it.outcome(inputs)?;
-        if let Some(rule) = outcome.dominant
+        if let Some(rule) = outcome.dominant_rule
             && !with_it.is_gap(outcome)
         {
             of_rule.entry(rule).or_default().push(row);

@@ -63,8 +63,11 @@ use warnings::Warnings;
 
 /// A file that is not among the flights, and why.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LeftOut {
+    /// Its name.
     file: String,
+    /// Why it is not among the flights.
     reason: String,
 }
 

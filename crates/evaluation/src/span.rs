@@ -10,6 +10,7 @@
 /// assert!(gust.contains(30.0) && gust.contains(33.5) && !gust.contains(34.0));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Span {
     /// Where it begins.
     pub from_s: f64,

@@ -14,30 +14,34 @@ const SAME_GROUP_S: f64 = 5.0;
 
 /// The warnings of a profile over a number of flights.
 #[derive(Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Warnings {
+    /// The number of flights.
     pub(crate) flights: usize,
+    /// The judged time in hours.
     pub(crate) hours: f64,
+    /// Times of critical error.
     pub(crate) episodes: usize,
     /// Episodes with a warning on that began before them.
     pub(crate) announced: usize,
     /// The median of how long before, in seconds, over those that were announced.
-    #[serde(rename = "lead_s_median")]
-    pub(crate) lead_s: Option<f64>,
-    /// Groups of episodes, and those whose first one was announced: a warning that stays on announces all the others.
+    pub(crate) lead_s_median: Option<f64>,
+    /// Groups of episodes that follow each other within 5 s.
     pub(crate) groups: usize,
+    /// Groups whose first episode was announced: a warning that stays on announces all the others.
     pub(crate) groups_announced: usize,
-    #[serde(rename = "group_lead_s_median")]
-    pub(crate) group_lead_s: Option<f64>,
+    /// The median of how long before these, in seconds.
+    pub(crate) group_lead_s_median: Option<f64>,
     /// Episodes that were not announced, but answered by a warning before they were over.
     pub(crate) answered: usize,
     /// The median of how long that took from their start, in seconds.
-    #[serde(rename = "answer_s_median")]
-    pub(crate) answer_s: Option<f64>,
+    pub(crate) answer_s_median: Option<f64>,
+    /// Times of WARN or FAIL.
     pub(crate) warnings: usize,
+    /// Warnings without an episode.
     pub(crate) false_warnings: usize,
     /// The share of the time that a warning was on.
-    #[serde(rename = "share_of_time_on")]
-    pub(crate) share_on: Option<f64>,
+    pub(crate) share_of_time_on: Option<f64>,
 }
 
 impl Warnings {
@@ -84,10 +88,10 @@ impl Warnings {
         sum.announced = leads.len();
         sum.groups_announced = group_leads.len();
         sum.answered = answers.len();
-        sum.lead_s = median(leads);
-        sum.group_lead_s = median(group_leads);
-        sum.answer_s = median(answers);
-        sum.share_on = (sum.hours > 0.0).then(|| on_s / (sum.hours * 3600.0));
+        sum.lead_s_median = median(leads);
+        sum.group_lead_s_median = median(group_leads);
+        sum.answer_s_median = median(answers);
+        sum.share_of_time_on = (sum.hours > 0.0).then(|| on_s / (sum.hours * 3600.0));
         sum
     }
 

@@ -4,6 +4,8 @@ use crate::{Geometry, Intervals, Parameter, Report, Series, Signal};
 
 /// The kind of log a flight was read from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(with = "String"))]
 #[non_exhaustive]
 pub enum Format {
     /// ArduPilot DataFlash, binary (`.bin`).
@@ -32,6 +34,8 @@ impl std::fmt::Display for Format {
 
 /// What kind of vehicle flew.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(with = "String"))]
 #[non_exhaustive]
 pub enum VehicleKind {
     /// A multirotor: quad, hexa, octa, X8, tri, Y6 ...
@@ -89,6 +93,7 @@ impl std::fmt::Display for VehicleKind {
 /// The vehicle, as far as the log describes it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Vehicle {
     /// What kind it is.
@@ -114,9 +119,11 @@ pub struct Vehicle {
 /// One motor, and the output that drives it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Motor {
     /// Motor number of the autopilot, from 1.
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub number: u16,
     /// The output as the log names it, such as `C3` or `actuator_motors.control[2]`.
     pub output: String,
@@ -127,6 +134,7 @@ pub struct Motor {
 /// A range of commands, and where it came from.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Range {
     /// Lower end.
     pub low: f64,
@@ -215,6 +223,11 @@ impl Commands {
 
 /// A message or a change of mode at a time.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(with = "crate::serialize::EventFields<'_, T>", rename = "Event")
+)]
 pub struct Event<T = String> {
     /// Time in microseconds on the log's clock.
     pub t_us: i64,
@@ -259,11 +272,9 @@ pub struct Flight {
     pub range: Option<Range>,
     /// The part of the range that is used in flight, as fractions of it: a motor at its
     /// upper end is saturated although the range goes further.
-    #[cfg_attr(feature = "serde", serde(rename = "effective_range"))]
-    pub effective: Range,
+    pub effective_range: Range,
     /// Why the used part counts as the whole range although the log tells limits.
-    #[cfg_attr(feature = "serde", serde(rename = "effective_range_doubt"))]
-    pub effective_doubt: Option<String>,
+    pub effective_range_doubt: Option<String>,
     /// What is assumed of motors, their commands and ranges because the log does not report it, in words; `flagred watch`
     /// assumes the same of the vehicle. Empty where nothing is.
     pub assumed: Vec<String>,
@@ -303,8 +314,8 @@ impl Flight {
             motors: Vec::new(),
             geometry: None,
             range: None,
-            effective: whole_range("the log names no tighter limits"),
-            effective_doubt: None,
+            effective_range: whole_range("the log names no tighter limits"),
+            effective_range_doubt: None,
             assumed: Vec::new(),
             parameters: Vec::new(),
             commands: Commands::default(),
@@ -341,7 +352,7 @@ impl Flight {
     }
 
     /// Command on the effective range, 0..1: `e = (c - lo) / (hi - lo)`, clipped, where
-    /// `c` is [`Flight::command`] and `lo`, `hi` are [`Flight::effective`].
+    /// `c` is [`Flight::command`] and `lo`, `hi` are [`Flight::effective_range`].
     ///
     /// ```
     /// let log = "\
@@ -358,7 +369,7 @@ impl Flight {
     /// # Ok::<(), flagred_flightlog::ReadError>(())
     /// ```
     pub fn effective_command(&self, raw: f64) -> Option<f64> {
-        self.command(raw).map(|c| self.effective.fraction(c))
+        self.command(raw).map(|c| self.effective_range.fraction(c))
     }
 
     /// Whether the vehicle was in the air at `t_s`; `None` when the log does not tell.

@@ -20,6 +20,8 @@ fn without_motors(log_bitmask: Option<u32>) -> String {
 
 /// Information that the log lacks: the reason why a value is not available (NA).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(with = "crate::serialize::GapFields"))]
 #[non_exhaustive]
 pub enum Gap {
     /// The vehicle is known and is not a multirotor.

@@ -3,6 +3,7 @@
 /// A time interval on the log's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Interval {
     /// Start in seconds.
     pub start_s: f64,
@@ -25,6 +26,11 @@ impl Interval {
 
 /// Intervals in order of time, and the rule by which they were found.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(with = "crate::serialize::IntervalsFields<'_>")
+)]
 pub struct Intervals {
     /// The intervals, in order of time, without overlap.
     pub spans: Vec<Interval>,

@@ -77,6 +77,7 @@ impl<'a> FromIterator<(&'a str, f64)> for Parameters {
 /// A parameter of the autopilot.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Parameter {
     /// Its name.

@@ -2,7 +2,7 @@
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-use crate::{Basis, Commands, Event, Format, Gap, Intervals, Series, Signal, VehicleKind};
+use crate::{Commands, Event, Format, Gap, Interval, Intervals, Series, Signal, VehicleKind};
 
 macro_rules! by_name {
     ($($kind:ty),*) => {$(
@@ -14,7 +14,7 @@ macro_rules! by_name {
     )*};
 }
 
-by_name!(Format, VehicleKind, Basis);
+by_name!(Format, VehicleKind);
 
 /// `{ "t_s": [..], "raw": [[..], ..] }`, a row a sample; what is not known is no number.
 impl Serialize for Commands {
@@ -52,32 +52,60 @@ impl Serialize for Series {
     }
 }
 
+/// An [`Event`] as serde data.
+#[derive(serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(crate) struct EventFields<'a, T> {
+    /// The time on the clock of the log, in seconds.
+    t_s: f64,
+    /// The text, or the name of the mode.
+    what: &'a T,
+}
+
 impl<T: Serialize> Serialize for Event<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("Event", 2)?;
-        fields.serialize_field("t_s", &self.t_s())?;
-        fields.serialize_field("what", &self.what)?;
-        fields.end()
+        let (t_s, what) = (self.t_s(), &self.what);
+        EventFields { t_s, what }.serialize(serializer)
     }
+}
+
+/// [`Intervals`] as serde data.
+#[derive(serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(crate) struct IntervalsFields<'a> {
+    /// The sum of their lengths, in seconds.
+    duration_s: f64,
+    /// How they were found, such as `EV 28 (not landed) to EV 18 (land complete)`.
+    rule: &'a str,
+    /// The intervals, in order of time, without overlap.
+    spans: &'a [Interval],
 }
 
 impl Serialize for Intervals {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("Intervals", 3)?;
-        fields.serialize_field("duration_s", &self.duration_s())?;
-        fields.serialize_field("rule", &self.rule)?;
-        fields.serialize_field("spans", &self.spans)?;
-        fields.end()
+        let fields = IntervalsFields {
+            duration_s: self.duration_s(),
+            rule: &self.rule,
+            spans: &self.spans,
+        };
+        fields.serialize(serializer)
     }
 }
 
-/// The reason, and what the pilot can do.
+/// A [`Gap`] as serde data.
+#[derive(serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(crate) struct GapFields {
+    /// What the log lacks.
+    reason: String,
+    /// What the pilot can do.
+    help: Option<&'static str>,
+}
+
 impl Serialize for Gap {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("Gap", 2)?;
-        fields.serialize_field("reason", &self.to_string())?;
-        fields.serialize_field("help", &self.help())?;
-        fields.end()
+        let (reason, help) = (self.to_string(), self.help());
+        GapFields { reason, help }.serialize(serializer)
     }
 }
 

@@ -8,6 +8,7 @@ use crate::{Flight, Gap};
 /// whole population (divided by the number of values, not by one less).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Statistics {
     /// Rows of motor commands in the air.

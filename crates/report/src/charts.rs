@@ -118,7 +118,7 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment, shown: Stretch) -
             start_s: finding.from_s,
             end_s: finding.to_s,
         };
-        (span, level_class(finding.level))
+        (span, level_class(finding.severity))
     });
     let said = flight
         .messages
@@ -247,7 +247,7 @@ pub(crate) fn margins(
 /// The command of each motor on its full range; the parts outside the effective range are shaded.
 pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
     let gap_s = gap_s(estimator, flight.command_rate_hz());
-    let limits = &flight.effective;
+    let limits = &flight.effective_range;
     let limit = |share: f64| Mark {
         value: share * 100.0,
         class: "limit",

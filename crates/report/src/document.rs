@@ -8,7 +8,7 @@ use flagred::{
     profile::Reliability,
     verdict::VerdictSettings,
 };
-use flagred_flightlog::{Flight, Motor, Parameter, Range, Report};
+use flagred_flightlog::{Flight, Format, Motor, Parameter, Range, Report, VehicleKind};
 use serde::Serialize;
 
 use crate::finding::{Teller, numbered};
@@ -16,48 +16,75 @@ use crate::finding::{Teller, numbered};
 /// The version of the document's layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.assess/1";
 
-/// `docs/json.md` and `crates/cli/schemas/assess.json` describe it.
+/// What is said of a flight: `flagred assess --json`. `docs/json.md` describes it.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "FlightDocument"))]
 pub struct Document<'a> {
+    #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
     schema: &'static str,
+    /// The log that was read.
     log: Log<'a>,
     vehicle: Vehicle<'a>,
+    /// The amount of data read, and damage.
     read: &'a Report,
     profile: Profile<'a>,
     #[serde(flatten)]
     verdict: &'a Verdict,
+    /// The gravest first, those of equal severity in order of time; of many the gravest 1,000.
     findings: Vec<FindingDocument<'a>>,
+    /// How many findings were left out.
     findings_left_out: u64,
     summary: &'a Summary,
+    /// The risk over time. The npm package can leave it out; `flagred assess` never does.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Steps<'_>"))]
     steps: Option<Steps<'a>>,
+    /// Seconds between the steps, where they are further apart than was asked for: 250,000 are kept at most.
     widened_step_s: Option<f64>,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Log<'a> {
+    /// Its path, as given.
     path: &'a str,
-    format: String,
+    /// The kind of log, such as `ArduPilot DataFlash`.
+    format: Format,
 }
 
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Vehicle<'a> {
-    kind: String,
+    /// What kind it is, such as `multirotor`.
+    kind: VehicleKind,
+    /// Frame or type name, such as `QUAD/X`.
     frame: Option<&'a str>,
+    /// Firmware with version.
     firmware: Option<&'a str>,
+    /// The motors in order of their number.
     motors: &'a [Motor],
+    /// The range of the raw commands.
     range: Option<&'a Range>,
+    /// The part of the range that is used in flight, as fractions of it.
     effective_range: &'a Range,
+    /// Why the used part counts as the whole range although the log reports limits.
     effective_range_doubt: Option<&'a str>,
+    /// What is assumed of motors, their commands and ranges because the log does not report it, in words.
     assumed: &'a [String],
+    /// Parameters of the autopilot that motors and ranges rest on, and gains, as far as the log has them.
     parameters: &'a [Parameter],
 }
 
 /// What the verdict rests on beside the flight.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Profile<'a> {
+    /// Its name.
     name: &'a str,
+    /// The name of its rule set, or its file.
     rules: &'a str,
+    /// When levels are raised and lowered.
     verdict: VerdictSettings,
     /// How often errors followed a risk; empty where it was not measured.
     reliability: &'a [Reliability],
@@ -65,12 +92,18 @@ struct Profile<'a> {
 
 /// A finding with the output of its motor, and in words.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "FlightFinding"))]
 pub struct FindingDocument<'a> {
     #[serde(flatten)]
     finding: Finding,
+    /// The output of the motor, as the log names it.
     output: Option<&'a str>,
+    /// What kind of finding it is: a stable word for programs, such as `fighting_gusts`.
     code: String,
+    /// What happened, and what it means, for pilots.
     text: String,
+    /// What to do.
     advice: String,
 }
 
@@ -120,16 +153,16 @@ pub fn document<'a>(
         schema: SCHEMA,
         log: Log {
             path: name,
-            format: flight.format.to_string(),
+            format: flight.format,
         },
         vehicle: Vehicle {
-            kind: flight.vehicle.kind.to_string(),
+            kind: flight.vehicle.kind,
             frame: flight.vehicle.frame.as_deref(),
             firmware: flight.vehicle.firmware.as_deref(),
             motors: &flight.motors,
             range: flight.range.as_ref(),
-            effective_range: &flight.effective,
-            effective_range_doubt: flight.effective_doubt.as_deref(),
+            effective_range: &flight.effective_range,
+            effective_range_doubt: flight.effective_range_doubt.as_deref(),
             assumed: &flight.assumed,
             parameters: &flight.parameters,
         },

@@ -31,7 +31,8 @@ pub fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
         match lines.iter_mut().find(|line| is_same(line.worst, finding)) {
             Some(line) => {
                 line.count += 1;
-                if (finding.level, gravity(finding)) > (line.worst.level, gravity(line.worst)) {
+                if (finding.severity, gravity(finding)) > (line.worst.severity, gravity(line.worst))
+                {
                     line.worst = finding;
                 }
             }
@@ -46,9 +47,9 @@ pub fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
 
 /// Whether two findings have one cause: an input of the rules, or what a notice is about.
 fn is_same(a: &Finding, b: &Finding) -> bool {
-    let motor = |finding: &Finding| finding.motor.map(|motor| motor.motor);
+    let motor = |finding: &Finding| finding.motor.map(|motor| motor.number);
     match (a.is_of_risk(), b.is_of_risk()) {
-        (true, true) if a.risk != b.risk => false,
+        (true, true) if a.risk_output != b.risk_output => false,
         (true, true) => match (&a.cause, &b.cause) {
             (Some(a), Some(b)) => a.input == b.input,
             (a, b) => a.is_none() && b.is_none(),
@@ -61,8 +62,8 @@ fn is_same(a: &Finding, b: &Finding) -> bool {
 /// How bad its peak is: of a reserve, how small.
 fn gravity(finding: &Finding) -> f64 {
     match finding.measure {
-        Measure::Reserve => -finding.peak_pct,
-        _ => finding.peak_pct,
+        Measure::Reserve => -finding.value_pct,
+        _ => finding.value_pct,
     }
 }
 
@@ -116,7 +117,7 @@ impl<'a> Teller<'a> {
             parts.push(match finding.is_of_risk() {
                 true => format!(
                     "output {}, margin {:.2} on average, {:.2} at least",
-                    motor.output, found.mean_margin, found.least_margin
+                    motor.output, found.margin_mean, found.margin_min
                 ),
                 false => format!("output {}", motor.output),
             });
@@ -126,7 +127,9 @@ impl<'a> Teller<'a> {
 
     /// The motor that a finding names.
     pub fn motor(&self, finding: &Finding) -> Option<&'a Motor> {
-        finding.motor.and_then(|motor| self.motors.get(motor.motor))
+        finding
+            .motor
+            .and_then(|motor| self.motors.get(motor.number.checked_sub(1)?))
     }
 
     fn description(&self, cause: &Cause) -> Option<&'a str> {
@@ -136,16 +139,16 @@ impl<'a> Teller<'a> {
     }
 }
 
-/// The finding with the autopilot's numbers of its motors in place of their indices in the samples.
+/// The finding with the autopilot's numbers of its motors in place of their places in the samples.
 pub fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
     let mut finding = finding.clone();
-    let number = |index: usize| {
-        let motor = motors.get(index);
-        motor.map_or(index, |motor| usize::from(motor.number).saturating_sub(1))
+    let number_of = |place: usize| {
+        let motor = place.checked_sub(1).and_then(|index| motors.get(index));
+        motor.map_or(place, |motor| usize::from(motor.number))
     };
     if let Some(named) = &mut finding.found.motor {
-        named.motor = number(named.motor);
-        named.or = named.or.map(number);
+        named.number = number_of(named.number);
+        named.or_number = named.or_number.map(number_of);
     }
     finding
 }

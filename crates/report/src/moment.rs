@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use flagred::{
     estimator::Estimator,
-    flight::{Assessment, Step},
+    flight::{Assessment, NamedStep, Step},
 };
 use flagred_flightlog::Flight;
 use fuzzy::engine::{ExplainedInput, FiredRule};
@@ -12,13 +12,14 @@ use serde::Serialize;
 
 /// A time of a flight.
 #[derive(Serialize)]
-pub struct Moment<'a, S> {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Moment<'a> {
     /// The time that was asked for, in seconds.
     t_s: f64,
     /// The flight mode.
     mode: Option<&'a str>,
     /// The latest step, where it is not long ago.
-    step: Option<S>,
+    step: Option<NamedStep<'a>>,
     /// The distance to the nearest inputs that rules cover, in shares of their ranges, where the risk is interpolated.
     filled_from: Option<f64>,
     /// Whether an input was outside its range.
@@ -37,7 +38,7 @@ pub fn moment<'a>(
     estimator: &'a Estimator,
     assessed: &'a Assessment,
     t_s: f64,
-) -> Moment<'a, impl Serialize + 'a> {
+) -> Moment<'a> {
     let step = latest(estimator, assessed, t_s);
     let estimate = step.and_then(|step| step.estimate);
     let explained = step.and_then(|step| explain(estimator, step));

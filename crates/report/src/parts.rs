@@ -264,8 +264,8 @@ pub(crate) fn findings(subject: &Subject, estimator: &Estimator) -> Markup {
                 }
             }
             @for line in finding::lines(&assessed.findings) {
-                li.(charts::level_class(line.worst.level)) {
-                    b { (line.worst.level) } " " (teller.line(&line))
+                li.(charts::level_class(line.worst.severity)) {
+                    b { (line.worst.severity) } " " (teller.line(&line))
                     br;
                     (teller.words(line.worst).advice)
                     br;
@@ -425,7 +425,7 @@ fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
         format!("{low} to {high} {unit} ({})", range.source)
     };
     add("range", flight.range.as_ref().map(range));
-    add("effective range", Some(range(&flight.effective)));
+    add("effective range", Some(range(&flight.effective_range)));
     for parameter in &flight.parameters {
         let value = format!("{} ({})", number(parameter.value, 6), parameter.source);
         add(&parameter.name, Some(value));

@@ -81,13 +81,13 @@ pub fn write(
     };
     if verbose {
         for finding in &assessed.findings {
-            line(out, finding.level, &teller.finding(finding))?;
+            line(out, finding.severity, &teller.finding(finding))?;
             indented(out, &teller.words(finding).advice)?;
             indented(out, &teller.details(finding))?;
         }
     } else {
         for one in finding::lines(&assessed.findings) {
-            line(out, one.worst.level, &teller.line(&one))?;
+            line(out, one.worst.severity, &teller.line(&one))?;
             indented(out, &teller.words(one.worst).advice)?;
         }
     }
@@ -173,7 +173,7 @@ pub fn vehicle(flight: &Flight) -> String {
             unit => &format!(" {unit}"),
         };
         parts.push(format!("{} to {}{unit}", range.low, range.high));
-        parts.push(effective_range(&flight.effective));
+        parts.push(effective_range(&flight.effective_range));
     }
     parts.join(", ")
 }
@@ -202,7 +202,7 @@ pub fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
 /// What the verdict does not rest on: limits that are none, and what is left out of a log that is too large.
 pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     let mut notes = Vec::new();
-    if let Some(doubt) = &flight.effective_doubt {
+    if let Some(doubt) = &flight.effective_range_doubt {
         notes.push(format!("the effective range is the whole range: {doubt}"));
     }
     if !flight.assumed.is_empty() {

@@ -27,6 +27,7 @@ const STEPS: u32 = 32;
 /// The highest risk that an input reaches alone.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Alone {
     /// The input.
@@ -36,7 +37,7 @@ pub struct Alone {
     /// The term that this value belongs to most; `None` where it belongs to none.
     pub term: Option<String>,
     /// The output that is the risk: of several, the one that raises the highest level.
-    pub risk: String,
+    pub risk_output: String,
     /// That risk in %.
     pub risk_pct: f64,
     /// The level that the risk reaches if it stays.
@@ -101,7 +102,7 @@ pub(super) fn outvoted(estimator: &Estimator, at: &Places) -> Vec<Diagnostic> {
 
 fn message(one: &Alone, profile: &Profile) -> String {
     let mut others = profile.other_risks.iter();
-    let other = others.find(|risk| risk.output == one.risk);
+    let other = others.find(|risk| risk.output == one.risk_output);
     let warn = other.map_or(profile.verdict.warn, |risk| risk.warn);
     let below = match warn.raise.risk_pct {
         Some(limit) => format!("below `warn` at {limit}"),
@@ -111,7 +112,7 @@ fn message(one: &Alone, profile: &Profile) -> String {
         "`{}` cannot raise a warning alone: {} gives `{}` {} % while all other inputs are calm, {below}",
         one.input,
         at(one),
-        one.risk,
+        one.risk_output,
         shown(one.risk_pct)
     )
 }
@@ -190,7 +191,7 @@ fn of_risk(estimator: &Estimator) -> Vec<Option<Alone>> {
             input: profile.inputs.get(index)?.name.clone(),
             value,
             term: term(variable.as_ref()?, value),
-            risk: profile.output.clone(),
+            risk_output: profile.output.clone(),
             risk_pct,
             level: level(profile, risk_pct),
         })

@@ -213,7 +213,11 @@ fn an_input_beside_the_motors_that_raises_no_level_alone_is_outvoted() {
     let reached = alone(&shipped);
     let battery = reached.iter().find(|one| one.input == "battery").unwrap();
     assert_eq!(
-        (battery.risk.as_str(), battery.level, battery.risk_pct),
+        (
+            battery.risk_output.as_str(),
+            battery.level,
+            battery.risk_pct
+        ),
         ("battery_risk", Level::Fail, 100.0)
     );
 }

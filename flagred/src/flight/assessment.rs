@@ -29,6 +29,7 @@ pub struct Assessment {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Summary {
     /// The time in the air: the sum of all flights of a log, in seconds.
     pub in_air_s: f64,
@@ -49,6 +50,7 @@ pub struct Summary {
 /// The largest value of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Peak {
     /// When it was first reached, in seconds.
     pub t_s: f64,

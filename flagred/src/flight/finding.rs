@@ -8,6 +8,7 @@ use crate::{estimator::Estimator, monitor::OfRisk, verdict};
 /// A finding of a flight, with its cause by name.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Finding {
     /// When, what and how grave. Its motor is known only where a motor is the cause.
@@ -17,7 +18,8 @@ pub struct Finding {
     pub cause: Option<Cause>,
     /// The output that is the risk, where it is one of [`Profile::other_risks`](crate::profile::Profile::other_risks).
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub risk: Option<String>,
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
+    pub risk_output: Option<String>,
 }
 
 impl Deref for Finding {
@@ -43,7 +45,7 @@ impl Finding {
         Finding {
             found,
             cause,
-            risk: None,
+            risk_output: None,
         }
     }
 
@@ -51,7 +53,7 @@ impl Finding {
     pub(super) fn elsewhere(of_risk: &OfRisk, estimator: &Estimator) -> Finding {
         let other = estimator.others().get(of_risk.risk).unwrap_or(estimator);
         Finding {
-            risk: Some(other.profile().output.clone()),
+            risk_output: Some(other.profile().output.clone()),
             ..Finding::new(of_risk.found, other)
         }
     }
@@ -60,6 +62,7 @@ impl Finding {
 /// What raised the risk when a level was reached: [`verdict::Cause`] by name.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Cause {
     /// The input of the rule that distinguishes it: of the propositions of its antecedent, that of the fewest rules.
@@ -68,8 +71,9 @@ pub struct Cause {
     pub value: f64,
     /// The term, with its hedges.
     pub term: String,
-    /// The rule's index in the model; serialised, rules count from 1.
+    /// The rule as its index in the model; serialised, as its number from 1.
     #[cfg_attr(feature = "serde", serde(serialize_with = "crate::verdict::from_one"))]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub rule: usize,
 }
 

@@ -2,20 +2,75 @@
 
 use alloc::string::{String, ToString};
 
-use serde::{Serialize, Serializer, ser::SerializeMap, ser::SerializeStruct};
+use serde::{Serialize, Serializer};
 
-use super::{Assessment, Finding, Step, Summary, Verdict};
-use crate::sample::serialize_risk;
+use super::{Assessment, Finding, Reason, Step, Summary, Verdict};
+use crate::{sample::RiskFields, verdict::Level};
+
+/// A verdict in one word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "UPPERCASE")]
+pub enum VerdictWord {
+    /// No finding is graver than INFO.
+    Good,
+    /// The gravest finding is WARN.
+    Warn,
+    /// The gravest finding is FAIL.
+    Fail,
+    /// There is no verdict.
+    Na,
+}
+
+/// A level; `None` where it is unknown.
+impl From<Option<Level>> for VerdictWord {
+    fn from(level: Option<Level>) -> VerdictWord {
+        match level {
+            Some(Level::Good | Level::Info) => VerdictWord::Good,
+            Some(Level::Warn) => VerdictWord::Warn,
+            Some(Level::Fail) => VerdictWord::Fail,
+            None => VerdictWord::Na,
+        }
+    }
+}
+
+impl From<&Verdict> for VerdictWord {
+    fn from(verdict: &Verdict) -> VerdictWord {
+        match verdict {
+            Verdict::Known(level) => Some(*level).into(),
+            Verdict::NotAvailable(_) => VerdictWord::Na,
+        }
+    }
+}
+
+/// A [`Verdict`] as serde data.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(super) struct VerdictFields {
+    /// The level of the gravest finding; `NA` where there is no verdict.
+    verdict: VerdictWord,
+    /// Only with `NA`: why there is no verdict.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
+    reason: Option<String>,
+    /// Only with `NA`: what the pilot can do to get a verdict next time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
+    help: Option<Option<&'static str>>,
+}
 
 impl Serialize for Verdict {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("Verdict", 3)?;
-        fields.serialize_field("verdict", &self.to_string())?;
-        if let Verdict::NotAvailable(reason) = self {
-            fields.serialize_field("reason", &reason.to_string())?;
-            fields.serialize_field("help", &reason.help())?;
-        }
-        fields.end()
+        let reason = match self {
+            Verdict::Known(_) => None,
+            Verdict::NotAvailable(reason) => Some(reason),
+        };
+        let fields = VerdictFields {
+            verdict: self.into(),
+            reason: reason.map(ToString::to_string),
+            help: reason.map(Reason::help),
+        };
+        fields.serialize(serializer)
     }
 }
 
@@ -52,43 +107,69 @@ impl Assessment {
 
 impl Step {
     /// The step as serde data, with the inputs by their names: those of [`Assessment::inputs`].
-    pub fn by_name<'a>(&'a self, names: &'a [String]) -> impl Serialize + 'a {
-        Named { names, step: self }
+    pub fn by_name<'a>(&'a self, names: &'a [String]) -> NamedStep<'a> {
+        NamedStep {
+            t_s: self.t_s,
+            risk: RiskFields::new(self.estimate, self.elevated_risk_pct),
+            margin: self.margin,
+            spread: self.spread,
+            judged: self.judged,
+            inputs: NamedInputs {
+                names,
+                values: &self.inputs,
+            },
+        }
     }
 }
 
 /// The steps of a flight as serde data; from [`Assessment::steps_by_name`].
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(with = "alloc::vec::Vec<NamedStep<'_>>", inline)
+)]
 pub struct Steps<'a>(&'a Assessment);
 
 impl Serialize for Steps<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let names = &self.0.inputs;
-        serializer.collect_seq(self.0.steps.iter().map(|step| Named { names, step }))
+        serializer.collect_seq(self.0.steps.iter().map(|step| step.by_name(names)))
     }
 }
 
-struct Named<'a> {
-    names: &'a [String],
-    step: &'a Step,
+/// What was known at one time of a flight, as serde data; from [`Step::by_name`].
+#[derive(Debug, Clone, Copy, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Step"))]
+pub struct NamedStep<'a> {
+    /// The time on the clock of the log, in seconds.
+    t_s: f64,
+    #[serde(flatten)]
+    risk: RiskFields,
+    /// The mean margin over all motors and the window of the profile.
+    margin: Option<f64>,
+    /// The standard deviation of the commands over all motors and the window of the profile.
+    spread: Option<f64>,
+    /// Whether the step counts for findings and summary.
+    judged: bool,
+    /// The inputs of the rule set by their names.
+    inputs: NamedInputs<'a>,
 }
 
-impl Serialize for Named<'_> {
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(with = "alloc::collections::BTreeMap<String, Option<f64>>", inline)
+)]
+struct NamedInputs<'a> {
+    names: &'a [String],
+    values: &'a [f64],
+}
+
+impl Serialize for NamedInputs<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        struct Inputs<'a, 'b>(&'b Named<'a>);
-        impl Serialize for Inputs<'_, '_> {
-            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                serializer.collect_map(self.0.names.iter().zip(&self.0.step.inputs))
-            }
-        }
-        let step = self.step;
-        let mut fields = serializer.serialize_map(None)?;
-        fields.serialize_entry("t_s", &step.t_s)?;
-        serialize_risk(&mut fields, step.estimate, step.elevated_risk_pct)?;
-        fields.serialize_entry("margin", &step.margin)?;
-        fields.serialize_entry("spread", &step.spread)?;
-        fields.serialize_entry("judged", &step.judged)?;
-        fields.serialize_entry("inputs", &Inputs(self))?;
-        fields.end()
+        serializer.collect_map(self.names.iter().zip(self.values))
     }
 }

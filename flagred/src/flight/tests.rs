@@ -57,7 +57,7 @@ fn risk_just_after_take_off_and_just_before_landing_is_not_judged() {
     assert_eq!(cut.verdict, Verdict::Known(Level::Fail));
     assert!(
         cut.findings
-            .is_sorted_by(|a, b| (b.level, a.from_s) <= (a.level, b.from_s))
+            .is_sorted_by(|a, b| (b.severity, a.from_s) <= (a.severity, b.from_s))
     );
 }
 
@@ -212,10 +212,10 @@ fn a_lasting_fault_stays_a_finding_until_landing() {
         let mut found = flown.findings.iter();
         let found = found.find(|finding| finding.measure == measure).unwrap();
         let motor = found.motor.unwrap();
-        assert_eq!((motor.motor, motor.side), (1, crate::margin::Side::High));
+        assert_eq!((motor.number, motor.side), (2, crate::margin::Side::Upper));
         assert!(found.raised_s < from_s + 15.0, "{found:?}");
         assert!(found.to_s > 119.0, "{found:?}");
-        assert_eq!(found.level, Level::Warn);
+        assert_eq!(found.severity, Level::Warn);
     }
     // As it was before: nothing is at odds.
     let (flown, levels) = with_a_dead_motor(1e9);
@@ -243,7 +243,7 @@ fn a_flight_with_information_alone_is_good() {
     }
     let flown = assessor.finish();
     assert_eq!(flown.verdict, Verdict::Known(Level::Good));
-    let levels: Vec<Level> = flown.findings.iter().map(|f| f.level).collect();
+    let levels: Vec<Level> = flown.findings.iter().map(|f| f.severity).collect();
     assert_eq!(levels, [Level::Info]);
     assert_eq!(flown.findings[0].cause, None);
 }
@@ -322,7 +322,7 @@ fn fly_twice(estimator: &Estimator) -> (Assessment, Vec<(f64, Level)>, Vec<Optio
         });
         changes.extend(update.change.map(|level| (t_s, level)));
         if update.change.is_some() {
-            open.push(assessor.open_finding().and_then(|found| found.risk));
+            open.push(assessor.open_finding().and_then(|found| found.risk_output));
         }
     }
     (assessor.finish(), changes, open)
@@ -338,7 +338,7 @@ fn several_risks_have_the_findings_of_profiles_of_each() {
     let (assessment, changes, open) = fly_twice(&both);
     let of = |risk: Option<&str>| {
         let found = assessment.findings.iter();
-        let of_risk = found.filter(|found| found.risk.as_deref() == risk);
+        let of_risk = found.filter(|found| found.risk_output.as_deref() == risk);
         of_risk
             .map(|found| (found.found, found.cause.clone()))
             .collect::<Vec<_>>()
@@ -363,7 +363,7 @@ fn several_risks_have_the_findings_of_profiles_of_each() {
     let torn = assessment
         .findings
         .iter()
-        .find(|found| found.risk.is_some());
+        .find(|found| found.risk_output.is_some());
     assert_eq!(torn.unwrap().cause.as_ref().unwrap().input, "spread");
 
     // The level is the worst of both.

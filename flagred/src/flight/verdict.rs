@@ -10,6 +10,8 @@ use crate::{
 
 /// How risky a flight was.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(with = "super::serialize::VerdictFields"))]
 pub enum Verdict {
     /// The level of its gravest finding; GOOD without any.
     Known(Level),

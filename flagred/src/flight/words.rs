@@ -66,7 +66,7 @@ impl Finding {
         if self.is_of_risk() {
             if let (Some(_), Some(motor)) = (&self.cause, &self.motor) {
                 let limit = side(motor.side, "lower", "upper");
-                let number = motor.motor + 1;
+                let number = motor.number;
                 brief = [format!("{limit} limit"), format!(", motor {number}")];
                 text += &format!(" Motor {number} was closest to its {limit} limit.");
             }
@@ -87,11 +87,11 @@ impl Finding {
 
     /// ` The risk reached 93 %.`
     fn reached(&self) -> String {
-        let of = match &self.risk {
+        let of = match &self.risk_output {
             Some(risk) => format!(" `{risk}`"),
             None => String::new(),
         };
-        format!(" The {}{of} reached {:.0} %.", self.measure, self.peak_pct)
+        format!(" The {}{of} reached {:.0} %.", self.measure, self.value_pct)
     }
 
     /// A text with the finding's numbers in place of what stands in braces.
@@ -106,7 +106,7 @@ impl Finding {
             fill("{percent}", &|| format!("{:.0}", 100.0 * cause.value));
             fill("{value}", &|| number(cause.value));
         }
-        fill("{peak}", &|| format!("{:.0}", self.peak_pct));
+        fill("{peak}", &|| format!("{:.0}", self.value_pct));
         fill("{threshold}", &|| format!("{:.0}", self.threshold_pct));
         let motor = self.motor.as_ref();
         fill("{motor}", &|| {
@@ -208,14 +208,14 @@ impl Words {
 
 /// `motor 3`, or `motor 3 or 8` where the commands do not show which.
 fn name_of(motor: &MotorFinding) -> String {
-    let or = motor.or.map(|or| format!(" or {}", or + 1));
-    format!("motor {}{}", motor.motor + 1, or.unwrap_or_default())
+    let or = motor.or_number.map(|number| format!(" or {number}"));
+    format!("motor {}{}", motor.number, or.unwrap_or_default())
 }
 
 fn side(side: Side, low: &'static str, high: &'static str) -> &'static str {
     match side {
-        Side::Low => low,
-        Side::High => high,
+        Side::Lower => low,
+        Side::Upper => high,
     }
 }
 

@@ -95,7 +95,7 @@ fn a_land_detector_that_flickers_for_less_than_a_second_ends_nothing() {
     let [finding] = ended(&landed)[..] else {
         panic!("{landed:?}")
     };
-    assert_eq!(finding.level, Level::Fail);
+    assert_eq!(finding.severity, Level::Fail);
     assert_eq!(last(&landed).level, None);
 }
 
@@ -146,7 +146,7 @@ fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
             panic!("one finding")
         };
         assert_eq!(
-            (finding.level, finding.measure, finding.peak_pct),
+            (finding.severity, finding.measure, finding.value_pct),
             (Level::Fail, Measure::IdleInAir, 100.0)
         );
         assert_eq!((finding.cause, finding.motor), (None, None));
@@ -241,9 +241,12 @@ fn little_reserve_is_told_while_it_lasts_and_ends_with_the_flight() {
     };
     assert!((23.0..28.0).contains(&warned_s), "{warned_s}");
     let open = flown.monitor.open_finding().unwrap();
-    assert_eq!((open.level, open.measure), (Level::Warn, Measure::Reserve));
+    assert_eq!(
+        (open.severity, open.measure),
+        (Level::Warn, Measure::Reserve)
+    );
     assert_eq!(open.threshold_pct, 10.0);
-    assert!((4.0..6.0).contains(&open.peak_pct), "{}", open.peak_pct);
+    assert!((4.0..6.0).contains(&open.value_pct), "{}", open.value_pct);
 
     let light = flown.fly(5.0, true, HOVER);
     assert_eq!(last(&light).level, Some(Level::Warn));
@@ -293,12 +296,12 @@ fn a_motor_that_leaves_its_own_part_is_told_and_one_that_always_had_it_is_not() 
         panic!("no imbalance")
     };
     assert_eq!(
-        (finding.level, finding.measure),
+        (finding.severity, finding.measure),
         (Level::Warn, Measure::WeakMotor)
     );
     assert!((40.0..55.0).contains(&finding.from_s), "{finding:?}");
     let motor = finding.motor.unwrap();
-    assert_eq!((motor.motor, motor.side), (1, Side::High));
+    assert_eq!((motor.number, motor.side), (2, Side::Upper));
 
     let mut flown = noticing(notices);
     flown.fly(60.0, true, [0.4, 0.9, 0.4, 0.4]);
@@ -323,10 +326,10 @@ fn noise_is_information_and_changes_no_level() {
         assert_eq!(noise.is_some(), is_told, "{noise:?}");
         if let Some(noise) = noise {
             assert_eq!(
-                (noise.level, noise.measure),
+                (noise.severity, noise.measure),
                 (Level::Info, Measure::CommandNoise)
             );
-            assert!((6.0..7.2).contains(&noise.peak_pct), "{noise:?}");
+            assert!((6.0..7.2).contains(&noise.value_pct), "{noise:?}");
         }
     }
 }

@@ -214,9 +214,9 @@ fn risk_follows_the_motors_within_the_window_and_is_unknown_on_the_ground() {
     };
     assert!(25.0 < warn_s && warn_s < fail_s && fail_s < 33.0);
     let findings: Vec<Finding> = flight.iter().flat_map(|a| a.ended).flatten().collect();
-    let levels: Vec<Level> = findings.iter().map(|f| f.level).collect();
+    let levels: Vec<Level> = findings.iter().map(|f| f.severity).collect();
     assert_eq!(levels, [Level::Fail]);
-    assert_eq!(findings[0].motor.map(|m| m.mean_margin), Some(0.0));
+    assert_eq!(findings[0].motor.map(|m| m.margin_mean), Some(0.0));
     assert_eq!(monitor.finish(), [None; 4]);
 }
 
@@ -312,7 +312,7 @@ fn after_a_lost_link_or_a_restart_nothing_old_is_carried_on() {
         let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
         fly(&mut monitor, 25.0, &[(20.0, 1.0, true)]);
         let open = monitor.clone().finish();
-        assert_eq!(open[0].map(|finding| finding.level), Some(Level::Fail));
+        assert_eq!(open[0].map(|finding| finding.severity), Some(Level::Fail));
         let after = monitor.push(&Sample {
             t_s: 20.0 + jump_s,
             motors: &[0.5, 0.5],

@@ -95,6 +95,7 @@ pub const CRITICAL_ERROR_DEG: f64 = 5.0;
 /// How many moments with a risk of a band were followed by a large attitude error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Reliability {
     /// The lower end of the band in %; it belongs to it.
     pub from_pct: f64,
@@ -109,6 +110,7 @@ pub struct Reliability {
 /// How many moments were followed by an attitude error over 5 degrees within 5 s.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Followed {
     /// All moments, one each 0.5 s.
     pub moments: u64,

@@ -75,7 +75,7 @@ impl Alert {
         self.asks_why = false;
         if let Some(finding) = &mut self.finding {
             finding.cause = cause;
-            finding.motor = finding.motor.filter(|found| is_of_limits(found.motor));
+            finding.motor = finding.motor.filter(|found| is_of_limits(found.number - 1));
         }
     }
 
@@ -133,7 +133,7 @@ impl Alert {
                 Measure::ElevatedRisk => elevated_pct,
                 _ => risk_pct,
             };
-            finding.peak_pct = finding.peak_pct.max(value);
+            finding.value_pct = finding.value_pct.max(value);
         }
         if held >= self.level {
             self.last_held_s = t_s;
@@ -180,11 +180,11 @@ impl Alert {
         });
         // The span of an earlier FAIL goes on.
         let failed_s = opened.failed_s.or(failed_s);
-        let same = opened.level == level;
-        let is_worse = level > opened.level;
+        let same = opened.severity == level;
+        let is_worse = level > opened.severity;
         self.asks_why = is_worse;
         self.finding = Some(Finding {
-            level: level.max(opened.level),
+            severity: level.max(opened.severity),
             failed_s,
             to_s: t_s,
             measure: if same { opened.measure } else { measure },
@@ -193,8 +193,8 @@ impl Alert {
             } else {
                 threshold_pct
             },
-            peak_pct: if same {
-                opened.peak_pct
+            value_pct: if same {
+                opened.value_pct
             } else {
                 f64::NEG_INFINITY
             },
@@ -218,7 +218,7 @@ impl Alert {
         let is_landing = |finding: &Finding| {
             landed
                 && !reaches_fail
-                && finding.level < Level::Fail
+                && finding.severity < Level::Fail
                 && t_s - finding.raised_s < quiet_s
         };
         let ended = self.end_finding().filter(|finding| !is_landing(finding));
@@ -239,19 +239,19 @@ fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
         .enumerate()
         .filter(|(_, m)| m.record.samples > 0);
     let (motor, Motor { record, .. }) = known.min_by(|(_, a), (_, b)| {
-        let margins = a.record.mean_margin.total_cmp(&b.record.mean_margin);
+        let margins = a.record.margin_mean.total_cmp(&b.record.margin_mean);
         let both_stopped = a.at_zero_s > 0.0 && b.at_zero_s > 0.0;
         match both_stopped {
             true => margins.then(b.at_zero_s.total_cmp(&a.at_zero_s)),
             false => margins,
         }
     })?;
-    (record.least_margin < NEAR_LIMIT).then_some(MotorFinding {
-        motor,
-        or: None,
+    (record.margin_min < NEAR_LIMIT).then_some(MotorFinding {
+        number: motor + 1,
+        or_number: None,
         side: record.side,
-        mean_margin: record.mean_margin,
-        least_margin: record.least_margin,
+        margin_mean: record.margin_mean,
+        margin_min: record.margin_min,
     })
 }
 
@@ -340,16 +340,16 @@ mod tests {
         let mut flown = Flown::new([0.0, 0.0]);
         // A motor at the upper limit is as near to it.
         for (at_zero_s, named) in [
-            ([0.1, 0.3], 1),
-            ([0.3, 0.1], 0),
-            ([0.2, 0.2], 0),
-            ([0.0, 0.3], 0),
+            ([0.1, 0.3], 2),
+            ([0.3, 0.1], 1),
+            ([0.2, 0.2], 1),
+            ([0.0, 0.3], 1),
         ] {
             for (motor, at_zero_s) in flown.motors.iter_mut().zip(at_zero_s) {
                 motor.at_zero_s = at_zero_s;
                 motor.record.add(0.0);
             }
-            assert_eq!(weakest(&flown.motors).unwrap().motor, named);
+            assert_eq!(weakest(&flown.motors).unwrap().number, named);
         }
     }
 
@@ -384,17 +384,17 @@ mod tests {
         let [finding] = findings.as_slice() else {
             panic!("{findings:?}")
         };
-        assert_eq!(finding.level, Level::Fail);
+        assert_eq!(finding.severity, Level::Fail);
         assert_eq!(
             (finding.from_s, finding.raised_s, finding.failed_s),
             (1.0, 1.5, Some(9.5))
         );
         assert_eq!(finding.to_s, 9.9);
         assert_eq!(finding.measure, Measure::ElevatedRisk);
-        assert_eq!((finding.threshold_pct, finding.peak_pct), (80.0, 90.0));
+        assert_eq!((finding.threshold_pct, finding.value_pct), (80.0, 90.0));
         let motor = finding.motor.unwrap();
-        assert_eq!((motor.motor, motor.side), (1, Side::High));
-        approx::assert_abs_diff_eq!(motor.mean_margin, 0.05, epsilon = 1e-12);
+        assert_eq!((motor.number, motor.side), (2, Side::Upper));
+        approx::assert_abs_diff_eq!(motor.margin_mean, 0.05, epsilon = 1e-12);
     }
 
     #[test]
@@ -403,7 +403,7 @@ mod tests {
         assert_eq!(changes, [(0.5, Level::Fail)]);
         let finding = flown.end(2.0, false).ended.unwrap();
         assert_eq!(
-            (finding.level, finding.measure),
+            (finding.severity, finding.measure),
             (Level::Fail, Measure::Risk)
         );
     }
@@ -459,8 +459,8 @@ mod tests {
             flown.push(f64::from(i) / 10.0, 0.0, if i < 50 { 0.0 } else { 90.0 });
         }
         let motor = flown.end(30.0, false).ended.unwrap().motor.unwrap();
-        assert_eq!((motor.motor, motor.side), (1, Side::High));
-        approx::assert_abs_diff_eq!(motor.least_margin, 0.05, epsilon = 1e-12);
+        assert_eq!((motor.number, motor.side), (2, Side::Upper));
+        approx::assert_abs_diff_eq!(motor.margin_min, 0.05, epsilon = 1e-12);
     }
 
     #[test]
@@ -481,6 +481,6 @@ mod tests {
         assert_eq!(changes, [(0.5, Level::Fail), (3.9, Level::Warn)]);
         assert_eq!(findings, []);
         let finding = flown.end(6.0, false).ended.unwrap();
-        assert_eq!((finding.level, finding.to_s), (Level::Fail, 5.9));
+        assert_eq!((finding.severity, finding.to_s), (Level::Fail, 5.9));
     }
 }

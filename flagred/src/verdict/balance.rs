@@ -150,7 +150,7 @@ fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
             measure: Measure::WeakMotor,
             value: shift,
             limit,
-            motor: named(motors, motor, Side::High, other.map(|(other, _)| other)),
+            motor: named(motors, motor, Side::Upper, other.map(|(other, _)| other)),
         }
     })
 }
@@ -201,13 +201,13 @@ fn culprit(motors: &[Motor], value: impl Fn(&Motor) -> f64 + Copy) -> Option<Mot
         return Some(named(
             motors,
             first,
-            Side::Low,
+            Side::Lower,
             other.map(|(other, _)| other),
         ));
     }
     let other = next.filter(|(_, next)| most - next < EQUAL);
     let other = other.map(|(other, _)| other);
-    Some(named(motors, highest_one, Side::High, other))
+    Some(named(motors, highest_one, Side::Upper, other))
 }
 
 /// Whether the highest motor is alone up there.
@@ -229,10 +229,10 @@ fn highest(
 fn named(motors: &[Motor], motor: usize, side: Side, or: Option<usize>) -> MotorFinding {
     let margin = motors.get(motor).map_or(0.0, |motor| margin(motor.command));
     MotorFinding {
-        motor,
-        or,
+        number: motor + 1,
+        or_number: or.map(|or| or + 1),
         side,
-        mean_margin: margin,
-        least_margin: margin,
+        margin_mean: margin,
+        margin_min: margin,
     }
 }

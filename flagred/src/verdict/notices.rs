@@ -121,7 +121,7 @@ impl Notices {
     /// The worst open finding but information.
     pub(crate) fn open(&self) -> Option<Finding> {
         let mut open = self.watches.iter().filter_map(|watch| watch.finding);
-        open.rfind(|finding| finding.level > Level::Info)
+        open.rfind(|finding| finding.severity > Level::Info)
     }
 }
 
@@ -154,20 +154,20 @@ impl Watch {
         if let Some(finding) = &mut self.finding {
             finding.to_s = t_s;
             if finding.measure == passed.measure {
-                finding.peak_pct = match passed.measure {
-                    Measure::Reserve => finding.peak_pct.min(value_pct),
-                    _ => finding.peak_pct.max(value_pct),
+                finding.value_pct = match passed.measure {
+                    Measure::Reserve => finding.value_pct.min(value_pct),
+                    _ => finding.value_pct.max(value_pct),
                 };
             }
         } else if t_s - from_s >= after_s - ROUNDING_S {
             self.finding = Some(Finding {
-                level,
+                severity: level,
                 from_s,
                 raised_s: t_s,
                 to_s: t_s,
                 measure: passed.measure,
                 threshold_pct: 100.0 * passed.limit,
-                peak_pct: value_pct,
+                value_pct,
                 motor: passed.motor,
                 ..Finding::NONE
             });

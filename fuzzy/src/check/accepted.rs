@@ -11,6 +11,7 @@ use crate::{
 /// An entry of [`Model::allow`], and how many findings it accepts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Accepted {
     /// The code of the finding.

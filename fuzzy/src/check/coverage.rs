@@ -8,6 +8,7 @@ use crate::model::{Model, Variable};
 /// A box of the input space in which no rule of an output reaches a degree.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Uncovered {
     /// The output.
@@ -31,6 +32,7 @@ pub struct Uncovered {
 /// One side of a box.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Side {
     /// The input.
     pub input: String,
@@ -43,6 +45,7 @@ pub struct Side {
 /// `input IS term`
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Antecedent {
     /// The input.
     pub input: String,

@@ -81,6 +81,7 @@ impl Default for Options {
 /// All that was found. Fields hold indices of rules in the model; serialised, rules count from 1.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Report {
     /// Boxes of the input space without a rule.
@@ -96,6 +97,7 @@ pub struct Report {
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_numbers")
     )]
+    #[cfg_attr(feature = "schema", schemars(inner(range(min = 1))))]
     pub never_firing: Vec<usize>,
     /// Variables and terms that no rule uses.
     pub unused: Vec<TermOf>,

@@ -12,6 +12,7 @@ use super::{
 /// A claim about an output: it never falls, or never rises, when an input rises.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Monotone {
     /// The input.
     pub input: String,
@@ -24,6 +25,7 @@ pub struct Monotone {
 /// What an output does when an input rises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Direction {
     /// It never falls.
@@ -69,6 +71,7 @@ impl FromStr for Monotone {
 /// A counterexample to a claim.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Counterexample {
     /// The claim, with the output that contradicts it.

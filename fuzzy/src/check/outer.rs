@@ -22,6 +22,7 @@ pub(super) const NEAR: f64 = 0.01;
 /// An outer term of an output whose peak the output never takes.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Unreached {
     /// The term.

@@ -15,6 +15,7 @@ use crate::{
 /// Two rules with the same condition that conclude different terms of one output, or one rule that does.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Contradiction {
     /// The earlier rule.
@@ -22,12 +23,14 @@ pub struct Contradiction {
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub first: usize,
     /// The later rule; the same where one rule contradicts itself.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub second: usize,
     /// The output they disagree about.
     pub output: String,
@@ -40,18 +43,21 @@ pub struct Contradiction {
 /// A rule that adds nothing: wherever it fires, another rule with the same conclusion fires at least as strongly.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Subsumed {
     /// The rule that adds nothing.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub rule: usize,
     /// The wider rule.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub by: usize,
 }
 

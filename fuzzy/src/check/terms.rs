@@ -8,6 +8,7 @@ use crate::model::{MembershipFunction, Model, Term, Variable};
 /// A term of a variable.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TermOf {
     /// The input or output.
     pub variable: String,
@@ -18,6 +19,7 @@ pub struct TermOf {
 /// A part of a variable's range in which every term is 0.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Hole {
     /// The input.
@@ -31,6 +33,7 @@ pub struct Hole {
 /// Two terms of a variable with the same degrees everywhere.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct EqualTerms {
     /// The input or output.

@@ -14,6 +14,7 @@ use crate::{
 /// A step between two neighbouring rules that goes against the trend.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct AgainstTrend {
     /// The input.
@@ -29,6 +30,7 @@ pub struct AgainstTrend {
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub from_rule: usize,
     /// The term it concludes.
     pub from_term: String,
@@ -37,6 +39,7 @@ pub struct AgainstTrend {
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub to_rule: usize,
     /// The term it concludes, which is against the trend.
     pub to_term: String,

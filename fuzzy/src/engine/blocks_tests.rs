@@ -80,12 +80,12 @@ fn blocks_have_operators_of_their_own() {
     let expected = (0.375 * 3.0 + 0.125 * 6.0) / 0.5;
     assert!((outcomes[0].value().unwrap() - expected).abs() < 1e-12);
     assert_eq!(
-        (outcomes[0].coverage, outcomes[0].dominant),
+        (outcomes[0].coverage, outcomes[0].dominant_rule),
         (0.375, Some(0))
     );
     // 0.5 against 0.5: of equal rules the first counts.
     assert_eq!(outcomes[1].state, State::Defined(1.0));
-    assert_eq!(outcomes[1].dominant, Some(2));
+    assert_eq!(outcomes[1].dominant_rule, Some(2));
     let explained = engine.explain(&[0.25, 0.5]).unwrap();
     let fired: Vec<(usize, f64)> = explained
         .rules
@@ -153,11 +153,11 @@ rules: [IF x IS up THEN y IS low]
         assert_eq!(batch, vec![one; 9]);
         assert_eq!(
             engine.explain(&[x]).unwrap().rules.is_empty(),
-            one.dominant.is_none()
+            one.dominant_rule.is_none()
         );
         let raising = engine.raised_by(&mut engine.scratch(), &[x], 0, 0.5);
-        assert_eq!(raising, one.dominant);
-        one.coverage == x && one.dominant == Some(0)
+        assert_eq!(raising, one.dominant_rule);
+        one.coverage == x && one.dominant_rule == Some(0)
     };
     assert!(fires(1e-12, 1e-12) && !fires(1e-12, 0.999e-12));
     assert!(fires(1e-6, 1e-6) && !fires(1e-6, 0.999e-6));

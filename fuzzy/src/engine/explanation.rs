@@ -5,6 +5,7 @@ use alloc::{string::String, vec::Vec};
 /// Why an evaluation gives its values.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Explanation {
     /// The inputs, with the degree of each of their terms.
@@ -18,6 +19,7 @@ pub struct Explanation {
 /// An input, and the degrees of its terms.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ExplainedInput {
     /// Its name.
@@ -33,6 +35,7 @@ pub struct ExplainedInput {
 /// The degree of membership of a value in a term.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Degree {
     /// The term.
@@ -44,6 +47,7 @@ pub struct Degree {
 /// A rule that fired.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FiredRule {
     /// Its index in the model; serialised, rules count from 1.
@@ -51,6 +55,7 @@ pub struct FiredRule {
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub rule: usize,
     /// The rule as it is written.
     pub text: String,
@@ -64,6 +69,7 @@ pub struct FiredRule {
 /// An output, and the rules that contribute to it.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ExplainedOutput {
     /// Its name.
@@ -90,6 +96,7 @@ pub struct ExplainedOutput {
 /// What a rule contributes to an output.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Share {
     /// The rule's index in the model; serialised, rules count from 1.
@@ -97,6 +104,7 @@ pub struct Share {
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub rule: usize,
     /// The term it concludes.
     pub term: String,

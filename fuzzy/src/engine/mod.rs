@@ -70,7 +70,7 @@ pub use what_if::{Change, Effect};
 /// let engine = Engine::new(&model)?;
 /// let speed = engine.evaluate(&[30.0])?[0];
 /// assert!(speed.value() > Some(4.5));
-/// assert_eq!(speed.dominant, Some(1)); // the second rule
+/// assert_eq!(speed.dominant_rule, Some(1)); // the second rule
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]

@@ -20,6 +20,7 @@ use crate::{
 /// A rule that does not fire at a point, and why.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SilentRule {
     /// Its index in the model; serialised, rules count from 1.
@@ -27,6 +28,7 @@ pub struct SilentRule {
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub rule: usize,
     /// The rule as it is written.
     pub text: String,
@@ -38,6 +40,7 @@ pub struct SilentRule {
 /// Why a rule does not fire.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(tag = "reason", rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Silence {

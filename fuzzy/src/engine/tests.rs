@@ -58,12 +58,12 @@ fn a_value_with_its_reasons() {
         Outcome {
             state: State::Defined(10.0),
             coverage: 0.5,
-            dominant: Some(0),
+            dominant_rule: Some(0),
             clamped: false,
         }
     );
     assert_eq!(one(&engine, 9.0).coverage, 0.5);
-    assert_eq!(one(&engine, 9.0).dominant, Some(1));
+    assert_eq!(one(&engine, 9.0).dominant_rule, Some(1));
     assert_eq!((engine.input("x"), engine.input("z")), (Some(0), None));
     assert_eq!((engine.output("y"), engine.output("x")), (Some(0), None));
 }
@@ -73,7 +73,7 @@ fn where_no_rule_fires() {
     let undefined = one(&Engine::new(&gap(NoRuleFires::Undefined)).unwrap(), 5.0);
     assert_eq!(undefined.state, State::NoRuleFired);
     assert_eq!(undefined.value(), None);
-    assert_eq!((undefined.coverage, undefined.dominant), (0.0, None));
+    assert_eq!((undefined.coverage, undefined.dominant_rule), (0.0, None));
 
     let chosen = one(&Engine::new(&gap(NoRuleFires::Value(42.0))).unwrap(), 5.0);
     assert_eq!(chosen.state, State::Default(42.0));
@@ -183,7 +183,7 @@ fn same_bits(one: &Outcome, other: &Outcome) -> bool {
         (
             value,
             outcome.coverage.to_bits(),
-            outcome.dominant,
+            outcome.dominant_rule,
             outcome.clamped,
         )
     };

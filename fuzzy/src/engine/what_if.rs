@@ -14,6 +14,7 @@ const STEPS: usize = 200;
 /// The nearest change if one input changes and the others stay.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Change {
     /// The input that changes.
@@ -33,6 +34,7 @@ pub struct Change {
 /// What changes if an input changes.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(tag = "effect", rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Effect {
@@ -47,6 +49,7 @@ pub enum Effect {
         output: String,
         /// The index of the rule in the model, none where no rule fires; serialised, rules count from 1.
         #[cfg_attr(feature = "serde", serde(serialize_with = "rule_number"))]
+        #[cfg_attr(feature = "schema", schemars(with = "Option<usize>", range(min = 1)))]
         rule: Option<usize>,
         /// The value of the output there.
         value: Option<f64>,
@@ -188,14 +191,14 @@ impl Walk<'_> {
             *inputs.get_mut(self.index)? = x;
             self.engine.at(&inputs).ok()?.get(output).copied()
         };
-        let dominant = |x: f64| outcome(x).and_then(|outcome| outcome.dominant);
-        let before = self.now.get(output)?.dominant;
+        let dominant = |x: f64| outcome(x).and_then(|outcome| outcome.dominant_rule);
+        let before = self.now.get(output)?.dominant_rule;
         let at = self.first(places, |x| dominant(x) == before)?;
         let there = outcome(at)?;
         let output = self.engine.model().outputs.get(output)?;
         let effect = Effect::Rule {
             output: output.variable.name.clone(),
-            rule: there.dominant,
+            rule: there.dominant_rule,
             value: there.value(),
         };
         Some(self.change(at, effect))

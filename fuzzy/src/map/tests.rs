@@ -67,7 +67,7 @@ fn cells_points_and_slices() {
     let map = DecisionMap::new(&engine, slice, 0).unwrap();
     let direct = engine.evaluate(&[0.07, 0.25]).unwrap()[0];
     assert_eq!(map.value(2), direct.value());
-    assert_eq!(map.dominant(2), direct.dominant);
+    assert_eq!(map.dominant(2), direct.dominant_rule);
 
     assert_eq!(
         grid.clone().fix("battery", 1.0).unwrap_err().to_string(),

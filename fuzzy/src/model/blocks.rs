@@ -27,7 +27,7 @@ use crate::table::{Activation, Conjunction, Disjunction, Implication};
 /// ".parse()?;
 /// let engine = Engine::new(&model)?;
 /// let lamp = engine.evaluate(&[30.0])?[1];
-/// assert_eq!(lamp.dominant, Some(2)); // `lamp IS on`; the rule after it does not fire
+/// assert_eq!(lamp.dominant_rule, Some(2)); // `lamp IS on`; the rule after it does not fire
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]

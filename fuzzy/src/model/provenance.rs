@@ -5,6 +5,7 @@ use alloc::{string::String, vec::Vec};
 /// A command that made a rule set of another one. It changes nothing of what the rules mean.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Step {
     /// What made it: a command, or in words.
     pub command: String,
@@ -29,6 +30,7 @@ pub struct Step {
 /// A file with data.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DataFile {
     /// Its name, without folders.
     pub file: String,
@@ -39,6 +41,7 @@ pub struct DataFile {
 /// A loss before and after.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LossChange {
     /// What it is, as `RMS error`.
     pub name: String,

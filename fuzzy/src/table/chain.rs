@@ -376,7 +376,7 @@ pub(crate) fn stage(
         let rule_of_model = |rule: usize| place.rules.get(rule).map(|rule| *rule as usize);
         if let Some(outcome) = outcomes.get_mut(*output as usize) {
             *outcome = Outcome {
-                dominant: own.dominant.and_then(rule_of_model),
+                dominant_rule: own.dominant_rule.and_then(rule_of_model),
                 clamped: own.clamped || clamped,
                 ..*own
             };

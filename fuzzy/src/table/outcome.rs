@@ -16,7 +16,7 @@ pub struct Outcome {
     /// The largest firing strength (weight included) of a rule of this output, in [0, 1].
     pub coverage: f64,
     /// The index in the model of the rule with that strength, the first of equal ones. `None` where no rule fired.
-    pub dominant: Option<usize>,
+    pub dominant_rule: Option<usize>,
     /// Whether an input was outside its range and was clamped to it.
     pub clamped: bool,
 }
@@ -42,7 +42,7 @@ impl Outcome {
     pub const UNDEFINED: Outcome = Outcome {
         state: State::NoRuleFired,
         coverage: 0.0,
-        dominant: None,
+        dominant_rule: None,
         clamped: false,
     };
 

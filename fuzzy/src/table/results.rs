@@ -81,7 +81,7 @@ impl<const L: usize> Results<L> {
         }
         self.coverage[row] = outcome.coverage;
         self.rules[row] = outcome
-            .dominant
+            .dominant_rule
             .map_or(f64::INFINITY, |rule| number_of(rule as u32));
         self.given.clamped[row] = u64::from(outcome.clamped);
         self.given.infinite[row] = u64::from(outcome.state == State::InputNotFinite);
@@ -106,7 +106,7 @@ impl<const L: usize> Results<L> {
                 State::Default(self.default_values[row])
             },
             coverage: self.coverage[row],
-            dominant: self.dominant(row).map(|rule| rule as usize),
+            dominant_rule: self.dominant(row).map(|rule| rule as usize),
             clamped: self.given.clamped[row] != 0,
         }
     }

@@ -35,7 +35,7 @@ pub fn check(flight: &Flight, log: &[u8]) {
         assert!(signal.t_s.is_sorted(), "{}", signal.label.name);
         assert_eq!(signal.t_s.len(), signal.values.len());
     }
-    for range in flight.range.iter().chain([&flight.effective]) {
+    for range in flight.range.iter().chain([&flight.effective_range]) {
         assert!(range.high > range.low, "{range:?}");
     }
     for intervals in flight.in_air.iter().chain(&flight.armed) {

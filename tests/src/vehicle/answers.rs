@@ -65,8 +65,8 @@ pub(super) fn parameters(flight: &Flight) -> Vec<(String, f64)> {
     let mut parameters = vec![
         ("MOT_PWM_MIN".to_owned(), or_zero(range.low)),
         ("MOT_PWM_MAX".to_owned(), or_zero(range.high)),
-        ("MOT_SPIN_MIN".to_owned(), flight.effective.low),
-        ("MOT_SPIN_MAX".to_owned(), flight.effective.high),
+        ("MOT_SPIN_MIN".to_owned(), flight.effective_range.low),
+        ("MOT_SPIN_MAX".to_owned(), flight.effective_range.high),
         ("RCMAP_THROTTLE".to_owned(), 3.0),
         ("RC3_MIN".to_owned(), range.low),
         ("RC3_MAX".to_owned(), range.high),

@@ -111,7 +111,7 @@ impl Vehicle {
         let frame = ardupilot_frames().find(|frame| frame.name == name).unwrap();
         Vehicle {
             pwm: (range.low, range.high),
-            spin: (flight.effective.low, flight.effective.high),
+            spin: (flight.effective_range.low, flight.effective_range.high),
             frame: (frame.class, frame.kind),
             factors: geometry.factors.clone(),
         }

@@ -199,8 +199,8 @@ fn told_by_the_assessor(
         let motor = finding.as_ref().and_then(|finding| finding.motor);
         let cause = finding.as_ref().and_then(|finding| finding.cause.as_ref());
         let about = match (motor, cause) {
-            (Some(motor), Some(_)) => format!(", limit, motor {}", motor.motor + 1),
-            (Some(motor), None) => format!(", motor {}", motor.motor + 1),
+            (Some(motor), Some(_)) => format!(", limit, motor {}", motor.number),
+            (Some(motor), None) => format!(", motor {}", motor.number),
             (None, Some(_)) => {
                 let words = finding.as_ref().map(|finding| finding.words(estimator));
                 format!(", {}", words.unwrap().brief.concat())

@@ -94,7 +94,7 @@ fn told(outcomes: &[Outcome]) -> String {
             "{state} {} {} {} {}",
             bits(outcome.value().unwrap_or(f64::NAN)),
             bits(outcome.coverage),
-            outcome.dominant.map_or(-1, |rule| rule as i64),
+            outcome.dominant_rule.map_or(-1, |rule| rule as i64),
             i32::from(outcome.clamped)
         )
     };

@@ -143,7 +143,7 @@ function pixels(shown: Shown, colours: Colours): ImageData {
   for (let i = 0; i < points; i++) {
     for (let j = 0; j < points; j++) {
       const cell = i * points + j;
-      const value = isRules ? cells.rules[cell]! : cells.values[cell]!;
+      const value = isRules ? cells.dominantRules[cell]! : cells.values[cell]!;
       if (value !== value) continue;
       const from = isRules ? distinct : scale;
       const colour = 3 * (isRules ? (value - 1) % (distinct.length / 3) : clamp(Math.round((value - output.low) * steps), 0, 255));

@@ -258,7 +258,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     const [x, y] = view.axes.map(({ input }) => inputs[input]!);
     if (!x) return;
     map.draw({ kind: choice.kind, view, cells, x, y, output: outputs[view.output]!, point: point(now.about) });
-    named(now.about, cells.rules);
+    named(now.about, cells.dominantRules);
   }
 
   /** Which colour is which rule. */

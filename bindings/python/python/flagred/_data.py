@@ -62,7 +62,7 @@ class Parameter(NamedTuple):
     """A parameter of the autopilot."""
 
     name: str
-    value: float | None
+    value: float
     source: str
 
 
@@ -139,8 +139,8 @@ class MotorFinding(NamedTuple):
     """The other motor that it may be as well, where the commands do not tell which."""
     side: str
     """The limit it was nearest to: ``lower`` or ``upper``. Out of balance: below or above its part."""
-    margin_mean: float | None
-    margin_min: float | None
+    margin_mean: float
+    margin_min: float
 
 
 class Cause(NamedTuple):
@@ -148,7 +148,7 @@ class Cause(NamedTuple):
 
     input: str
     term: str
-    value: float | None
+    value: float
     rule: int
     """The number of the rule in the rule set, from 1."""
 
@@ -170,7 +170,7 @@ class Finding(NamedTuple):
     """The worst value of the measure in that time."""
     motor: MotorFinding | None
     cause: Cause | None
-    risk: str | None
+    risk_output: str | None
     """The output that is the risk, where it is not the first of the profile."""
     output: str | None
     """The output of the motor, as the log names it."""
@@ -218,9 +218,8 @@ def finding(data: dict[str, Any]) -> Finding:
     motor, cause = data.pop("motor"), data.pop("cause")
     return Finding(
         motor=MotorFinding(**motor) if motor else None,
-        # Documents count rules from 1, Python from 0.
         cause=Cause(**cause) if cause else None,
-        risk=data.pop("risk", None),
+        risk_output=data.pop("risk_output", None),
         **data,
     )
 

@@ -107,7 +107,7 @@ struct Value<'a> {
     is_default: bool,
     coverage: f64,
     /// The number of the strongest rule, from 1.
-    rule: Option<usize>,
+    dominant_rule: Option<usize>,
     clamped: bool,
 }
 
@@ -149,7 +149,7 @@ impl RuleSet {
             value: outcome.value(),
             is_default: matches!(outcome.state, State::Default(_)),
             coverage: outcome.coverage,
-            rule: outcome.dominant.map(|rule| rule + 1),
+            dominant_rule: outcome.dominant_rule.map(|rule| rule + 1),
             clamped: outcome.clamped,
         };
         json(&names.zip(&outcomes).map(value).collect::<Vec<_>>())

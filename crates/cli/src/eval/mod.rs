@@ -66,7 +66,7 @@ impl With {
     fn name(self) -> &'static str {
         match self {
             With::Coverage => "coverage",
-            With::Rule => "rule",
+            With::Rule => "dominant_rule",
             With::Clamped => "clamped",
             With::Error => "error",
         }

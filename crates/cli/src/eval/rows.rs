@@ -245,7 +245,7 @@ impl<'p> Evaluator<'p> {
                 With::Rule => {
                     for outcome in outcomes {
                         let rule = outcome
-                            .dominant
+                            .dominant_rule
                             .map_or(String::new(), |rule| (rule + 1).to_string());
                         writer.write_field(rule)?;
                     }

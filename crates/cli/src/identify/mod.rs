@@ -2,6 +2,8 @@
 
 mod report;
 
+pub(crate) use report::Document;
+
 use std::{io::Write as _, ops::ControlFlow, path::PathBuf};
 
 use flagred_tuning::{

@@ -7,6 +7,7 @@ use fuzzy::{
     drawing::{short, visible},
     model::Step,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Arguments, Outcome};
@@ -119,47 +120,69 @@ fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io
     Ok(())
 }
 
+/// The version of the document's layout.
+const SCHEMA: &str = "flagred.identify/1";
+
 /// The document of `--json`.
-#[derive(Serialize)]
-pub(super) struct Document<'a> {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Document<'a> {
+    #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
     rows: Rows<'a>,
     columns: Columns<'a>,
+    /// The steps of the search.
     steps: Vec<OfStep<'a>>,
+    /// The number of rules.
     rules: usize,
+    /// The combinations of terms without a rule.
     combinations_without_rows: usize,
-    /// `None` where validation was not wanted.
+    /// Null where validation was not wanted.
     validation: Option<Validation>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Rows<'a> {
+    /// The rows that were used.
     used: usize,
+    /// The rows without use.
     refused: usize,
+    /// Why these rows have no use.
     reasons: &'a [String],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Columns<'a> {
+    /// The columns that could become inputs.
     looked_at: usize,
+    /// The columns without numbers.
     without_numbers: &'a [String],
+    /// The inputs of the rule set.
     used: Vec<&'a str>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct OfStep<'a> {
+    /// The input that is new, or has another term.
     input: &'a str,
+    /// How many terms it has now; of clusters, how many there are.
     terms: usize,
+    /// The RMS error on rows left out, in the unit of the output.
     left_out: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Validation {
+    /// The parts of the cross-validation.
     parts: usize,
+    /// The rows for which no rule fires: the mean of the other rows stands for them.
     rows_without_value: usize,
+    /// The RMS error of the rule set on rows left out of the whole search.
     identified: OfInterval,
+    /// The RMS error of a line over all columns.
     linear: OfInterval,
+    /// The RMS error of the mean.
     mean: OfInterval,
+    /// `identified` divided by `linear`.
     ratio: OfInterval,
 }
 
@@ -173,7 +196,7 @@ impl<'a> Document<'a> {
         });
         let inputs = identified.model.inputs.iter();
         Document {
-            schema: "flagred.identify/1",
+            schema: SCHEMA,
             rows: Rows {
                 used: outcome.rows,
                 refused: outcome.refused.len(),

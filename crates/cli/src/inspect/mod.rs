@@ -3,6 +3,8 @@
 pub(crate) mod json;
 pub(crate) mod text;
 
+pub(crate) use json::Document;
+
 use std::{io::Write, path::PathBuf};
 
 use flagred_flightlog::Gap;

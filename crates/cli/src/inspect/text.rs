@@ -22,7 +22,7 @@ pub(crate) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Re
     line(
         out,
         "effective",
-        &range(Some(&flight.effective), " of the range"),
+        &range(Some(&flight.effective_range), " of the range"),
     )?;
     lines(out, "time", clock(flight))?;
     line(out, "armed", &spans(flight.armed.as_ref()))?;

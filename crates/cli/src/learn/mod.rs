@@ -2,6 +2,8 @@
 
 pub(crate) mod report;
 
+pub(crate) use report::Document;
+
 use std::io::Write as _;
 
 use clap::ValueEnum;

@@ -5,6 +5,7 @@ use std::io::Write;
 use flagred::gap::GapMethod;
 use flagred_evaluation::learning::{Errors, MethodErrors};
 use fuzzy::{check::Counterexample, drawing::visible, model::Step};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Arguments, Outcome};
@@ -158,68 +159,95 @@ pub(super) fn words(
     Ok(())
 }
 
+/// The version of the document's layout.
+const SCHEMA: &str = "flagred.learn/1";
+
 /// The document of `--json`.
-#[derive(Serialize)]
-pub(super) struct Document<'a> {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Document<'a> {
+    #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
     rows: Rows<'a>,
+    /// How conflicts are resolved.
+    #[schemars(extend("enum" = ["strongest", "heaviest", "mean"]))]
     resolution: String,
     rules: Rules,
+    /// The antecedents whose rows disagree.
     conflicts: u64,
+    /// The antecedents with too few or unsure rows.
     left_out: u64,
     missing: Missing,
-    /// `None` where no direction was asked for.
+    /// Null where neither `--rising` nor `--falling` was given.
     monotone: Option<Monotone<'a>>,
-    /// `None` of a map with too many cells.
+    /// Null where the map of all inputs has more than 2,000,000 cells.
     coverage: Option<Coverage>,
-    /// `None` where rows were too few, or validation was not wanted.
+    /// Null where rows were too few, or validation was not wanted.
     cross_validation: Option<&'a Errors>,
+    /// Only with `--compare-gaps`.
     gap_methods: Option<GapMethods<'a>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Rows<'a> {
+    /// The rows that were used.
     used: u64,
+    /// The rows without use.
     refused: usize,
+    /// Why these rows have no use.
     reasons: &'a [String],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Rules {
+    /// The rules that were learned.
     learned: usize,
+    /// The rules that the model had.
     kept: usize,
+    /// The learned rules without rows of their own.
     completed: u64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Missing {
+    /// The number of antecedents without a rule.
     count: u64,
+    /// Some of them.
     antecedents: Vec<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Monotone<'a> {
+    /// Whether the output follows `--rising` and `--falling`.
     holds: bool,
+    /// The rules that have another consequent for it.
     moved: u64,
+    /// The worst of each claim.
     counterexamples: &'a [Counterexample],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Coverage {
+    /// The share of the map that rules cover.
     by_rules: f64,
+    /// The share of the map with a value after filling.
     after_filling: f64,
+    /// How gaps are filled.
     gap_method: &'static str,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct GapMethods<'a> {
+    /// How many rules were left out one by one.
     rules_left_out: u32,
+    /// The errors with the rule.
     with_the_rule: &'a Errors,
+    /// The errors of each method without the rule.
     methods: Vec<OfMethod<'a>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct OfMethod<'a> {
+    /// The name of the method.
     method: &'static str,
     #[serde(flatten)]
     errors: &'a MethodErrors,
@@ -230,7 +258,7 @@ impl<'a> Document<'a> {
         let learned = &outcome.learned;
         let missing = learned.missing_antecedents.iter();
         Document {
-            schema: "flagred.learn/1",
+            schema: SCHEMA,
             rows: Rows {
                 used: learned.samples,
                 refused: outcome.refused_count,

@@ -2,6 +2,8 @@
 
 mod report;
 
+pub(crate) use report::Document;
+
 use std::{
     io::{IsTerminal, Write as _},
     ops::ControlFlow,

@@ -7,6 +7,7 @@ use fuzzy::{
     drawing::{short, visible},
     model::{LossChange, Step},
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Arguments, LossName, Outcome};
@@ -186,60 +187,89 @@ pub(super) fn words(
     Ok(())
 }
 
+/// The version of the document's layout.
+const SCHEMA: &str = "flagred.tune/1";
+
 /// The document of `--json`.
-#[derive(Serialize)]
-pub(super) struct Document<'a> {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Document<'a> {
+    #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
     rows: Rows<'a>,
+    /// `squared`, `log` or `ranking`.
+    #[schemars(extend("enum" = ["squared", "log", "ranking"]))]
     loss: String,
+    /// The RMS error, the mean log loss, or the share of pairs in the wrong order, before.
     before: f64,
+    /// The same after.
     after: f64,
+    /// Whether the user ended the search.
     ended_early: bool,
+    /// Whether the search began with a checkpoint.
     from_checkpoint: bool,
-    /// `None` where validation was not wanted.
+    /// Null where validation was not wanted.
     validation: Option<OfValidation>,
-    /// `None` where it was not wanted.
+    /// Null where it was not wanted.
     learning_curve: Option<Vec<OfPoint>>,
+    /// The numbers that moved.
     moved: Vec<OfNumber<'a>>,
-    /// Constants at the end of the range whose loss would be smaller beyond it.
+    /// Constants, as `variable.term`, at the end of the range whose loss would be smaller beyond it.
     at_bounds: &'a [String],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Rows<'a> {
+    /// The rows that were used.
     used: usize,
+    /// The rows where no rule fires: they count as the middle of the range.
     without_value: usize,
+    /// The rows without use.
     refused: usize,
+    /// Why these rows have no use.
     reasons: &'a [String],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct OfValidation {
+    /// The parts of the cross-validation.
     parts: usize,
+    /// The loss on rows left out, before.
     before: OfInterval,
+    /// The loss on rows left out, after.
     after: OfInterval,
+    /// By how much it fell.
     gain: OfInterval,
+    /// The rows left out by tenths of their predictions, where truths are 0 and 1; else empty.
     reliability: Vec<OfBin>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct OfBin {
+    /// The number of rows.
     rows: usize,
+    /// The mean of the predictions, as places in the range from 0 to 1.
     predicted: f64,
+    /// The share of rows with the truth 1.
     observed: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct OfPoint {
+    /// The share of the other rows or groups.
     share: f64,
+    /// The loss on rows left out.
     left_out: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct OfNumber<'a> {
+    /// `variable.term`, or `rule 3`.
     of: &'a str,
+    /// The number that moved, such as `peak`.
     name: &'a str,
+    /// Before.
     before: f64,
+    /// After.
     after: f64,
 }
 
@@ -258,7 +288,7 @@ impl<'a> Document<'a> {
             after: moved.after,
         });
         Document {
-            schema: "flagred.tune/1",
+            schema: SCHEMA,
             rows: Rows {
                 used: outcome.rows,
                 without_value: tuned.without_value,

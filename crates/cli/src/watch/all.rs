@@ -20,7 +20,8 @@ use super::{
     DATAGRAM, FRAMES, LINES,
     endpoint::Endpoint,
     fleet::{Fleet, Id, Summary, worst},
-    jsonl, lines,
+    jsonl::{self, FleetLine},
+    lines,
     port::{Port, Received},
     printer::Printer,
     screen,
@@ -31,8 +32,6 @@ use crate::{
     failure::{Exit, Failure},
 };
 
-/// The version of the lines' layout.
-const SCHEMA: &str = "flagred.watch-all/1";
 /// How often time passes for all vehicles, and how often the screen is drawn.
 const TICK: Duration = Duration::from_millis(50);
 const FRAME: Duration = Duration::from_millis(500);
@@ -201,9 +200,7 @@ impl<'e> Shown<'e> {
         let profile = &self.estimator.profile().name;
         let text = match self.face {
             Face::Json => {
-                let line =
-                    serde_json::json!({"schema": SCHEMA, "endpoints": names, "profile": profile});
-                format!("{line}\n")
+                return self.json(&FleetLine::started(names, profile));
             }
             Face::Words => lines::words(0.0, &format!("{}, profile {profile}", names.join(", "))),
             Face::Screen => screen::ENTER.to_owned(),
@@ -224,12 +221,11 @@ impl<'e> Shown<'e> {
         let name = || self.name(id);
         let text = match self.face {
             Face::Json => {
-                let line = jsonl::json(now_s, event, session, self.estimator);
-                let Ok(Some(line)) = line else {
-                    return;
-                };
-                let vehicle = serde_json::Value::from(name());
-                format!("{{\"vehicle\":{vehicle},\"watch\":{}}}\n", line.trim_end())
+                if let Some(watch) = jsonl::line(now_s, event, session, self.estimator) {
+                    let vehicle = name();
+                    self.json(&FleetLine::Event { vehicle, watch });
+                }
+                return;
             }
             Face::Words if !matches!(event, Event::Risk { .. }) => {
                 let what = lines::describe(event, session, self.estimator);
@@ -240,11 +236,17 @@ impl<'e> Shown<'e> {
         self.printer.print(text);
     }
 
+    fn json(&mut self, line: &FleetLine<'_>) {
+        if let Ok(text) = jsonl::text(line) {
+            self.printer.print(text);
+        }
+    }
+
     fn note(&mut self, now_s: f64, text: &str) {
         match self.face {
             Face::Json => {
-                let line = serde_json::json!({"at_s": jsonl::rounded(now_s), "note": text});
-                self.printer.print(format!("{line}\n"));
+                let at_s = jsonl::rounded(now_s);
+                self.json(&FleetLine::Note { at_s, note: text });
             }
             Face::Words => self.printer.print(lines::words(now_s, text)),
             Face::Screen => {}
@@ -316,15 +318,15 @@ impl<'e> Shown<'e> {
             };
             let text = match self.face {
                 Face::Json => {
-                    let line = serde_json::json!({
-                        "vehicle": name,
-                        "verdict": verdict,
-                        "reason": reason,
-                        "help": help,
-                        "risk_max": one.risk_max,
-                        "lost_share": one.lost_share,
+                    self.json(&FleetLine::Summary {
+                        vehicle: &name,
+                        verdict: (&one.verdict).into(),
+                        reason,
+                        help,
+                        risk_max: one.risk_max,
+                        lost_share: one.lost_share,
                     });
-                    format!("{line}\n")
+                    continue;
                 }
                 _ => {
                     let most = one.risk_max.map_or("risk unknown".to_owned(), |most| {
@@ -341,14 +343,13 @@ impl<'e> Shown<'e> {
         let (vehicles, dropped) = (all.len(), self.printer.dropped());
         let text = match self.face {
             Face::Json => {
-                let line = serde_json::json!({
-                    "worst": worst.to_string(),
-                    "vehicles": vehicles,
-                    "heartbeats_refused": fleet.refused,
-                    "vehicles_left_out": fleet.forgotten,
-                    "dropped_lines": dropped,
+                return self.json(&FleetLine::Ended {
+                    worst: (&worst).into(),
+                    vehicles,
+                    heartbeats_refused: fleet.refused,
+                    vehicles_left_out: fleet.forgotten,
+                    dropped_lines: dropped,
                 });
-                format!("{line}\n")
             }
             _ => lines::words(now_s, &format!("{worst} at worst of {vehicles} vehicles")),
         };

@@ -55,9 +55,9 @@ pub(crate) fn words(at_s: f64, text: &str) -> String {
 pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimator) -> String {
     match event {
         Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),
-        Event::Locked { system, source } => format!(
+        Event::Locked { system, address } => format!(
             "motor commands of vehicle {system} come{}: it is believed, and nobody else in its name",
-            from(*source)
+            from(*address)
         ),
         Event::GivenUp { system } => {
             format!("vehicle {system} is given up: it is silent, or sends no motor commands")
@@ -70,11 +70,11 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             what,
             system,
             component,
-            source,
+            address,
         } => match what {
             Doubt::SecondSender => format!(
                 "something else{} speaks as vehicle {system}: it is not believed",
-                from(*source)
+                from(*address)
             ),
             Doubt::OtherComponent => format!(
                 "component {component} of vehicle {system} sends parameters: they are not taken for those of the autopilot"
@@ -117,13 +117,13 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             "LINK LOST: nothing comes from the vehicle, the risk is unknown".to_owned()
         }
         Event::Lost {
-            what: Silent::Motors,
+            what: Silent::MotorCommands,
         } => "no motor commands come (SERVO_OUTPUT_RAW), the risk is unknown".to_owned(),
         Event::Back { what, after_s } => format!(
             "{} again, after {after_s:.1} s of silence",
             match what {
                 Silent::Link => "the vehicle is heard",
-                Silent::Motors => "motor commands come",
+                Silent::MotorCommands => "motor commands come",
             }
         ),
         Event::Rebooted => "the vehicle started anew: what was before is forgotten".to_owned(),
@@ -140,7 +140,11 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             let view = session.view();
             let teller = teller(view.as_ref(), estimator);
             let advice = teller.words(finding).advice;
-            format!("{} of {} {advice}", finding.level, teller.finding(finding))
+            format!(
+                "{} of {} {advice}",
+                finding.severity,
+                teller.finding(finding)
+            )
         }
         Event::Over { end, flown } => over(*end, flown),
     }
@@ -221,8 +225,8 @@ fn ready(setup: &Setup) -> String {
         setup.range.high,
         setup.range.unit,
         setup.range.source,
-        effective_range(&setup.effective),
-        setup.effective.source,
+        effective_range(&setup.effective_range),
+        setup.effective_range.source,
     );
     if !setup.assumed.is_empty() {
         text += &format!(

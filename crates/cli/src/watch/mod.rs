@@ -34,13 +34,12 @@ use crate::{
 };
 use endpoint::Endpoint;
 use jsonl::EventLine;
+pub(crate) use jsonl::{FleetLine, Line};
 use port::{Port, Received};
 use printer::Printer;
 use screen::Screen;
 use session::{Doubts, Event, Out, Session};
 
-/// The version of the lines' layout; it grows when a name changes its meaning or goes.
-const SCHEMA: &str = "flagred.watch/1";
 /// The default component id: the first of those for onboard computers.
 const COMPONENT: u8 = 191;
 /// The most that is read of a key file: digits and some white space.
@@ -300,12 +299,8 @@ impl Display {
         let is_screen = !jsonl && io::stdout().is_terminal();
         let mut printer = Printer::new(if is_screen { FRAMES } else { LINES });
         let face = if jsonl {
-            let started = EventLine::Started {
-                schema: SCHEMA,
-                endpoint: title,
-                profile,
-            };
-            printer.print(jsonl::json_line(0.0, started)?);
+            let started = Line::new(0.0, EventLine::started(title, profile));
+            printer.print(jsonl::text(&started)?);
             Face::Json
         } else if is_screen {
             let title = format!("{title}, profile {profile}");
@@ -333,7 +328,10 @@ impl Display {
     ) -> Result<(), Failure> {
         for event in events.drain(..) {
             let line = match &mut self.face {
-                Face::Json => jsonl::json(at_s, &event, session, estimator)?,
+                Face::Json => {
+                    let line = jsonl::line(at_s, &event, session, estimator);
+                    line.map(|line| jsonl::text(&line)).transpose()?
+                }
                 Face::Words(words) => words.line(at_s, &event, session, estimator),
                 Face::Screen(screen) => {
                     screen.add(at_s, &event, session, estimator);
@@ -398,7 +396,7 @@ impl Display {
     fn end(mut self, at_s: f64, worst: &Verdict, totals: &Totals) -> Result<(), Failure> {
         let last = if let Face::Json = self.face {
             let ended = EventLine::Ended {
-                worst: worst.to_string(),
+                worst: worst.into(),
                 reason: lines::reason(worst),
                 skipped_bytes: totals.skipped.bytes,
                 bad_checksums: totals.skipped.checksums,
@@ -410,7 +408,7 @@ impl Display {
                 unsent: totals.unsent,
                 dropped_lines: self.printer.dropped(),
             };
-            jsonl::json_line(at_s, ended)?
+            jsonl::text(&Line::new(at_s, ended))?
         } else {
             let why = lines::reason(worst).map_or(String::new(), |reason| format!(": {reason}"));
             lines::words(at_s, &format!("{worst} at worst{why}; {}", totals.words()))

@@ -142,7 +142,10 @@ impl<'e> Session<'e> {
             News::Commands { t_s } => {
                 if !std::mem::replace(&mut tracked.is_proved, true) {
                     let system = packet.system;
-                    out.events.push(Event::Locked { system, source });
+                    out.events.push(Event::Locked {
+                        system,
+                        address: source,
+                    });
                     self.candidates.clear();
                 }
                 self.assess(now_s, t_s, out);
@@ -392,7 +395,7 @@ impl<'e> Session<'e> {
         if watch.commands_lost {
             watch.commands_lost = false;
             out.events.push(Event::Back {
-                what: Silent::Motors,
+                what: Silent::MotorCommands,
                 after_s: now_s - watch.commands_s,
             });
         }
@@ -506,7 +509,7 @@ fn told(what: Doubt, source: Source, packet: &Packet<'_>) -> Event {
         what,
         system: packet.system,
         component: packet.component,
-        source,
+        address: source,
     }
 }
 

@@ -141,8 +141,8 @@ pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Wor
     let risk = || ("risk", update.risk.ok().map(|estimate| estimate.risk_pct));
     let (name, value) = match finding {
         Some((finding, _)) if !finding.is_of_risk() => ("", None),
-        Some((finding, _)) => match (&finding.risk, finding.measure) {
-            (Some(other), _) => (other.as_str(), Some(finding.peak_pct)),
+        Some((finding, _)) => match (&finding.risk_output, finding.measure) {
+            (Some(other), _) => (other.as_str(), Some(finding.value_pct)),
             (None, Measure::ElevatedRisk) => elevated(),
             (None, _) => risk(),
         },

@@ -24,7 +24,7 @@ pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
     );
     let upsets = |of: &Upsets| {
         let lead = of
-            .lead_s
+            .lead_s_median
             .map_or(String::new(), |s| format!(" (median lead {s:.1} s)"));
         let unknown = match of.not_assessed {
             0 => String::new(),
@@ -34,7 +34,7 @@ pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
             "{}; alarm before {}{lead}, within 1 s {}, never {}{unknown}",
             of.assessed() + of.not_assessed,
             of.before,
-            of.after,
+            of.within_1_s,
             of.never
         )
     };
@@ -83,8 +83,8 @@ fn needless(name: String, of: &Needless) -> Vec<String> {
         0 => String::new(),
         n => format!(" ({n} more NA)"),
     };
-    let on = match of.share_on {
-        Some(_) => format!("{} %", figure(of.share_on, 100.0)),
+    let on = match of.share_of_time_on {
+        Some(_) => format!("{} %", figure(of.share_of_time_on, 100.0)),
         None => "-".to_owned(),
     };
     vec![
@@ -132,20 +132,20 @@ pub(super) fn warnings(
 fn warned(kind: String, of: &Warnings) -> Vec<String> {
     let seconds = |seconds: Option<f64>| seconds.map_or("-".to_owned(), |s| format!("{s:.1} s"));
     let rate = of.false_per_hour();
-    let on = of.share_on;
+    let on = of.share_of_time_on;
     vec![
         kind,
         format!("{:.2}", of.hours),
         of.episodes.to_string(),
         percent(of.announced, of.episodes, 0),
-        seconds(of.lead_s),
+        seconds(of.lead_s_median),
         format!(
             "{} of {}",
             percent(of.groups_announced, of.groups, 0),
             of.groups
         ),
-        seconds(of.group_lead_s),
-        format!("{} ({})", seconds(of.answer_s), of.answered),
+        seconds(of.group_lead_s_median),
+        format!("{} ({})", seconds(of.answer_s_median), of.answered),
         rate.map_or("-".to_owned(), |rate| format!("{rate:.1}")),
         on.map_or("-".to_owned(), |on| format!("{:.0} %", 100.0 * on)),
     ]

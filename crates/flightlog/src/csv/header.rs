@@ -131,7 +131,7 @@ pub(super) fn apply_header(
             source: "header pwm_low_us, pwm_high_us".into(),
         });
     }
-    flight.effective = match pair("effective_low", "effective_high", FRACTIONS)? {
+    flight.effective_range = match pair("effective_low", "effective_high", FRACTIONS)? {
         Some((low, high)) => Range {
             low,
             high,

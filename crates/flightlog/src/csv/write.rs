@@ -137,8 +137,12 @@ impl Flight {
         if !self.assumed.is_empty() {
             line(out, "assumed", &self.assumed.join("; "))?;
         }
-        line(out, "effective_low", &self.effective.low.to_string())?;
-        line(out, "effective_high", &self.effective.high.to_string())?;
+        line(out, "effective_low", &self.effective_range.low.to_string())?;
+        line(
+            out,
+            "effective_high",
+            &self.effective_range.high.to_string(),
+        )?;
         let declared = self.geometry.as_ref();
         if let Some(geometry) = declared.filter(|geometry| geometry.basis == Basis::Declared) {
             if let Some(frame) = &geometry.frame {

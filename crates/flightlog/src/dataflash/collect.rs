@@ -313,8 +313,8 @@ impl<'o> Collector<'o> {
                 flight.rebooted_in_air_s = boots_in_air(&self.events, &restarts_s);
             }
         }
-        flight.effective = ardupilot::range_in_force(&self.parameters, &flight);
-        flight.effective_doubt = ardupilot::effective_doubt(&self.parameters);
+        flight.effective_range = ardupilot::range_in_force(&self.parameters, &flight);
+        flight.effective_range_doubt = ardupilot::effective_doubt(&self.parameters);
         self.series
             .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.message == *name));
         let series = self.series.into_iter().map(|(_, series)| series);

@@ -24,6 +24,7 @@ use crate::{Flight, Motor, Series, VehicleKind};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Geometry {
     /// `[roll, pitch, yaw]` of each motor, in the order of [`Flight::motors`]; the largest of
@@ -61,6 +62,9 @@ pub(crate) fn span_s(flight: &Flight) -> Option<(f64, f64)> {
 
 /// How a [`Geometry`] is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Basis {
     /// By parameters, messages or a header.

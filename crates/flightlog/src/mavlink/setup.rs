@@ -17,6 +17,7 @@ const AUX_OUTPUTS: usize = 8;
 /// Motors and the range of their commands, with where each is known from.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Setup {
     /// The motors in order of their number.
@@ -26,8 +27,7 @@ pub struct Setup {
     /// Range of the commands, 0 % to 100 %.
     pub range: Range,
     /// The part of the range that is used in flight, as fractions of it.
-    #[cfg_attr(feature = "serde", serde(rename = "effective_range"))]
-    pub effective: Range,
+    pub effective_range: Range,
     /// What is assumed because the vehicle did not report it, in words; empty where nothing is.
     pub assumed: Vec<String>,
     /// How many motors the vehicle reported to have.
@@ -54,7 +54,7 @@ impl Setup {
             outputs: outputs.iter().map(|&output| usize::from(output)).collect(),
             motors,
             range: known.range,
-            effective: known.effective,
+            effective_range: known.effective,
             assumed: known.assumed,
         }
     }
@@ -67,10 +67,8 @@ impl Setup {
     /// Whether the same packets give the same commands and the same geometry: the setups differ in words at most.
     pub fn is_equivalent(&self, other: &Setup) -> bool {
         let limits = |of: &Setup| {
-            let Setup {
-                range, effective, ..
-            } = of;
-            [range.low, range.high, effective.low, effective.high]
+            let (range, used) = (&of.range, &of.effective_range);
+            [range.low, range.high, used.low, used.high]
         };
         let numbers = |of: &Setup| {
             of.motors
@@ -96,7 +94,7 @@ impl Setup {
                     if !NO_PULSE.contains(pulse) && f64::from(*pulse) <= LONGEST_PULSE_US =>
                 {
                     let fraction = self.range.fraction(f64::from(*pulse));
-                    self.effective.fraction(fraction)
+                    self.effective_range.fraction(fraction)
                 }
                 _ => f64::NAN,
             };
@@ -226,7 +224,10 @@ mod tests {
         assert_eq!(setup.last_port(), 1);
         assert_eq!(setup.motors[2].output, "servo3_raw of port 1");
         assert_eq!((setup.range.low, setup.range.high), (1100.0, 1900.0));
-        assert_eq!((setup.effective.low, setup.effective.high), (0.0, 1.0));
+        assert_eq!(
+            (setup.effective_range.low, setup.effective_range.high),
+            (0.0, 1.0)
+        );
         assert_eq!(setup.assumed, Vec::<String>::new());
     }
 

@@ -250,13 +250,14 @@ impl Heard {
         }
         flight.parameters = self.decoder.parameters.of_motors("PARAM_VALUE");
         let parameters = &self.decoder.parameters;
-        (flight.effective, flight.effective_doubt) = match is_px4 || known.is_effective_assumed {
-            true => (known.effective, None),
-            false => (
-                ardupilot::range_in_force(parameters, flight),
-                ardupilot::effective_doubt(parameters),
-            ),
-        };
+        (flight.effective_range, flight.effective_range_doubt) =
+            match is_px4 || known.is_effective_assumed {
+                true => (known.effective, None),
+                false => (
+                    ardupilot::range_in_force(parameters, flight),
+                    ardupilot::effective_doubt(parameters),
+                ),
+            };
         flight.geometry = geometry::find(flight, &known.declared);
     }
 

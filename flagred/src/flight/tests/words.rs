@@ -11,17 +11,17 @@ use crate::{
     verdict::{self, Level, Measure, MotorFinding},
 };
 
-fn finding(measure: Measure, peak_pct: f64) -> Finding {
+fn finding(measure: Measure, value_pct: f64) -> Finding {
     Finding {
         found: verdict::Finding {
-            level: Level::Warn,
+            severity: Level::Warn,
             measure,
             threshold_pct: 60.0,
-            peak_pct,
+            value_pct,
             ..verdict::Finding::NONE
         },
         cause: None,
-        risk: None,
+        risk_output: None,
     }
 }
 
@@ -37,13 +37,13 @@ fn by(input: &str, term: &str, value: f64) -> Finding {
     }
 }
 
-fn motor(motor: usize, or: Option<usize>, side: Side) -> Option<MotorFinding> {
+fn motor(number: usize, or_number: Option<usize>, side: Side) -> Option<MotorFinding> {
     Some(MotorFinding {
-        motor,
-        or,
+        number,
+        or_number,
         side,
-        mean_margin: 0.01,
-        least_margin: 0.0,
+        margin_mean: 0.01,
+        margin_min: 0.0,
     })
 }
 
@@ -67,7 +67,7 @@ fn a_risk_has_the_words_of_its_input_and_its_numbers() {
 #[test]
 fn motors_near_a_limit_are_named_with_it() {
     let mut finding = by("at_limit", "much", 0.5);
-    finding.found.motor = motor(2, None, Side::High);
+    finding.found.motor = motor(3, None, Side::Upper);
     let words = finding.words(&shipped::flagred());
     assert_eq!(words.code, "motor_at_limit");
     assert_eq!(words.brief, ["upper limit", ", motor 3"]);
@@ -78,7 +78,7 @@ fn motors_near_a_limit_are_named_with_it() {
 #[test]
 fn another_risk_is_named() {
     let mut finding = by("battery", "low", 12.25);
-    finding.risk = Some("battery_risk".into());
+    finding.risk_output = Some("battery_risk".into());
     let Words { code, text, .. } = finding.words(&shipped::flagred_battery());
     assert_eq!(code, "low_battery");
     let expected = "The battery had 12.25 % left. The risk `battery_risk` reached 78 %.";
@@ -89,7 +89,7 @@ fn another_risk_is_named() {
 fn a_motor_is_named_as_it_is_known() {
     let estimator = shipped::flagred();
     let mut weak = finding(Measure::WeakMotor, 23.7);
-    weak.found.motor = motor(2, Some(7), Side::High);
+    weak.found.motor = motor(3, Some(8), Side::Upper);
     let words = weak.words(&estimator);
     assert_eq!(words.brief.concat(), "motor 3 or 8 weak: +24 %");
     assert!(
@@ -98,7 +98,7 @@ fn a_motor_is_named_as_it_is_known() {
         words.advice
     );
     let mut imbalance = finding(Measure::Imbalance, 16.0);
-    imbalance.found.motor = motor(1, None, Side::Low);
+    imbalance.found.motor = motor(2, None, Side::Lower);
     let words = imbalance.words(&estimator);
     assert_eq!(words.brief, ["imbalance 16 %", ", motor 2"]);
     assert!(words.text.contains("motor 2, below its"), "{}", words.text);
@@ -109,7 +109,7 @@ fn no_number_is_left_out() {
     let estimator = shipped::flagred();
     for measure in Measure::ALL {
         let mut finding = finding(measure, 50.0);
-        finding.found.motor = motor(0, None, Side::High);
+        finding.found.motor = motor(1, None, Side::Upper);
         let Words {
             brief,
             text,

@@ -48,7 +48,7 @@ fn two_stages_by_hand() {
     assert!((value(0) - 32.0 / 0.7).abs() < 1e-12);
     assert!((outcomes[0].coverage - 0.4).abs() < 1e-12);
     assert_eq!(
-        (outcomes[0].dominant, outcomes[1].dominant),
+        (outcomes[0].dominant_rule, outcomes[1].dominant_rule),
         (Some(0), Some(2))
     );
     assert!(!outcomes[0].clamped && engine.evaluate(&[-1.0]).unwrap()[0].clamped);
@@ -311,8 +311,8 @@ proptest! {
                 None if reads => Outcome { clamped: handed.clamped, ..Outcome::UNDEFINED },
                 None => second.evaluate(&[x, y, 0.0]).unwrap()[0],
             };
-            expected.dominant = expected.dominant.map(|rule| rule + second_rule);
-            let handed = Outcome { dominant: handed.dominant.map(|rule| rule + first_rule), ..handed };
+            expected.dominant_rule = expected.dominant_rule.map(|rule| rule + second_rule);
+            let handed = Outcome { dominant_rule: handed.dominant_rule.map(|rule| rule + first_rule), ..handed };
             for (outcome, expected) in [(outcomes[mid], handed), (outcomes[last], expected)] {
                 prop_assert_eq!(outcome, expected);
                 prop_assert_eq!(outcome.value().map(f64::to_bits), expected.value().map(f64::to_bits));

@@ -5,13 +5,15 @@ use flagred::{
     monitor::Update,
     verdict::{Level, MotorFinding},
 };
-use flagred_flightlog::{Parameter, Vehicle, mavlink::Setup};
-use serde::{Serialize, Serializer, ser::SerializeStruct};
+use flagred_flightlog::{Parameter, Vehicle, VehicleKind, mavlink::Setup};
+use schemars::JsonSchema;
+use serde::{Serialize, Serializer};
 
 use super::{Doubt, Source};
 
 /// Something to tell. Serialised it is a line of `--jsonl`, with the names of docs/json.md.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[schemars(inline)]
 #[serde(tag = "event", rename_all = "snake_case")]
 #[expect(
     clippy::large_enum_variant,
@@ -20,22 +22,27 @@ use super::{Doubt, Source};
 pub(crate) enum Event {
     /// A vehicle was found.
     Found {
+        /// Its MAVLink system.
         system: u8,
         #[serde(flatten, serialize_with = "about")]
+        #[schemars(with = "About<'_>")]
         vehicle: Vehicle,
     },
     /// The vehicle sends motor commands: it is believed, and nobody else in its name.
     Locked {
         system: u8,
-        #[serde(rename = "address")]
-        source: Source,
+        /// The sender's address and port; null on a serial port.
+        #[schemars(with = "Option<String>")]
+        address: Source,
     },
     /// The vehicle that is followed is given up for another one.
     GivenUp { system: u8 },
     /// It is heard from another address after it had fallen silent.
     SenderChanged {
         system: u8,
+        #[schemars(with = "Option<String>")]
         from: Source,
+        #[schemars(with = "Option<String>")]
         to: Source,
     },
     /// Something in its name is not believed; told once of each kind.
@@ -43,13 +50,16 @@ pub(crate) enum Event {
         what: Doubt,
         system: u8,
         component: u8,
-        #[serde(rename = "address")]
-        source: Source,
+        /// The sender's address and port; null on a serial port.
+        #[schemars(with = "Option<String>")]
+        address: Source,
     },
     /// Another watch of the vehicle is heard, or none any more; and whether this one speaks.
     AnotherWatch {
         system: u8,
+        /// The component that sends the risk too; null where it is not heard any more.
         component: Option<u8>,
+        /// Whether this watch sends warnings.
         speaks: bool,
     },
     /// Another vehicle is on the link; it is not followed.
@@ -58,6 +68,7 @@ pub(crate) enum Event {
     NotAMultirotor {
         system: u8,
         #[serde(flatten, serialize_with = "about")]
+        #[schemars(with = "About<'_>")]
         vehicle: Vehicle,
     },
     /// Motors and limits are known, or assumed; again where they became known better.
@@ -70,7 +81,9 @@ pub(crate) enum Event {
     /// Motor commands come too rarely since somebody else asked for less, or the link became too slow; with the station
     /// that asked, where the vehicle told it.
     Slowed {
+        /// Motor commands a second.
         rate_hz: f64,
+        /// The rate that was requested.
         wanted_hz: f64,
         system: Option<u8>,
         component: Option<u8>,
@@ -80,21 +93,31 @@ pub(crate) enum Event {
     /// Nothing comes any more.
     Lost { what: Silent },
     /// It comes again.
-    Back { what: Silent, after_s: f64 },
+    Back {
+        what: Silent,
+        /// The seconds of silence.
+        after_s: f64,
+    },
     /// The vehicle started anew.
     Rebooted,
     /// A flight began.
-    TookOff { t_s: f64 },
+    TookOff {
+        /// The time on the clock of the vehicle, in seconds.
+        t_s: f64,
+    },
     /// The level changed in flight, with the words, the motor and the cause of the finding that it rests on. It is unknown where the
     /// risk became unknown while an alarm stood.
     Level {
         t_s: f64,
+        /// The new level; null where the risk became unknown while an alarm stood.
         level: Option<Level>,
-        /// The level before.
+        /// The level before; null where it was unknown.
         before: Option<Level>,
-        /// The text to the ground station.
+        /// The text to the ground station, at most 50 characters.
         text: String,
+        /// What kind of finding it rests on: a stable word for programs.
         code: Option<String>,
+        /// What to do.
         advice: Option<String>,
         motor: Option<MotorFinding>,
         cause: Option<Cause>,
@@ -110,13 +133,24 @@ pub(crate) enum Event {
     Over { end: End, flown: Flown },
 }
 
-/// What is told of a vehicle.
+/// A vehicle in an event.
+#[derive(Serialize, JsonSchema)]
+struct About<'a> {
+    /// What kind it is, such as `multirotor`.
+    kind: VehicleKind,
+    /// Frame or type name.
+    frame: Option<&'a str>,
+    /// Firmware with version.
+    firmware: Option<&'a str>,
+}
+
 fn about<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result<S::Ok, S::Error> {
-    let mut fields = serializer.serialize_struct("Vehicle", 3)?;
-    fields.serialize_field("kind", &vehicle.kind.to_string())?;
-    fields.serialize_field("frame", &vehicle.frame)?;
-    fields.serialize_field("firmware", &vehicle.firmware)?;
-    fields.end()
+    let about = About {
+        kind: vehicle.kind,
+        frame: vehicle.frame.as_deref(),
+        firmware: vehicle.firmware.as_deref(),
+    };
+    about.serialize(serializer)
 }
 
 /// How a flight, or what was seen of it, ended.
@@ -131,7 +165,7 @@ pub(crate) enum End {
 }
 
 /// What was lost in the air.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Lost {
     Link,
@@ -141,7 +175,7 @@ pub(crate) enum Lost {
 }
 
 /// Why a flight is not followed to its end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Left {
     /// The watch ended.
@@ -162,10 +196,9 @@ pub(crate) struct Flown {
 }
 
 /// What fell silent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Silent {
     Link,
-    #[serde(rename = "motor_commands")]
-    Motors,
+    MotorCommands,
 }

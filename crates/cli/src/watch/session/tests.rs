@@ -219,7 +219,7 @@ fn parameters_that_never_come_are_assumed_and_those_that_come_late_are_taken() {
     let last = bench.setups()[1];
     assert_eq!(last.assumed, [] as [&str; 0]);
     assert_eq!(
-        (last.effective.low, last.effective.high),
+        (last.effective_range.low, last.effective_range.high),
         (f64::from(0.1_f32), f64::from(0.9_f32))
     );
     assert_eq!(last.motors[2].source, "SERVO3_FUNCTION = 35");
@@ -360,12 +360,12 @@ fn a_lasting_imbalance_is_told_with_its_motor_until_landing() {
         Some(Level::Warn)
     );
     let told = bench.events.iter().rev().find_map(|event| match event {
-        Event::Level { text, motor, .. } => Some((text.clone(), motor.as_ref()?.motor)),
+        Event::Level { text, motor, .. } => Some((text.clone(), motor.as_ref()?.number)),
         _ => None,
     });
     let (text, motor) = told.unwrap();
     assert!(text.starts_with("FLAGRED: WARN motor 3 weak: +"), "{text}");
-    assert_eq!(motor, 2);
+    assert_eq!(motor, 3);
     let mut out = Out::default();
     assert_eq!(bench.session.finish(&mut out), Verdict::Known(Level::Warn));
 }
@@ -413,7 +413,7 @@ fn silence_takes_the_risk_away_and_is_told_once() {
     bench.wait(5.0);
     let lost = |what: Silent| move |event: &Event| matches!(event, Event::Lost { what: of } if *of == what);
     assert_eq!(bench.count(lost(Silent::Link)), 1);
-    assert_eq!(bench.count(lost(Silent::Motors)), 0);
+    assert_eq!(bench.count(lost(Silent::MotorCommands)), 0);
     let view = bench.session.view().unwrap();
     assert!(view.latest.is_none() && view.margin.is_none() && view.motors.is_empty());
     let asked = bench.sent.len();
@@ -425,7 +425,7 @@ fn silence_takes_the_risk_away_and_is_told_once() {
 
     // Heartbeats alone: the link is back, the motors are not.
     bench.wait_beating(4, true);
-    assert_eq!(bench.count(lost(Silent::Motors)), 1);
+    assert_eq!(bench.count(lost(Silent::MotorCommands)), 1);
     assert!(bench.session.view().unwrap().latest.is_none());
     bench.hover(40.0, 1.0, 1500);
     assert_eq!(bench.count(|event| matches!(event, Event::Back { .. })), 2);

@@ -287,7 +287,7 @@ impl Tracked {
             && now_s - watch.commands_s >= SILENT_S
         {
             watch.commands_lost = true;
-            let what = Silent::Motors;
+            let what = Silent::MotorCommands;
             out.events.push(Event::Lost { what });
         }
     }

@@ -3,6 +3,7 @@
 use std::net::SocketAddr;
 
 use flagred_flightlog::{Vehicle, VehicleKind, mavlink::Packet};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Where a packet came from; `None` on a serial port, which has one sender.
@@ -21,7 +22,7 @@ const SERVO_OUTPUT_RAW: u32 = 36;
 const PARAM_VALUE: u32 = 22;
 
 /// Something that is not believed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Doubt {
     /// The vehicle's autopilot, from another address.
@@ -33,7 +34,7 @@ pub(crate) enum Doubt {
 }
 
 /// How much was not believed.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub(crate) struct Doubts {
     /// Packets in the name of the vehicle's autopilot from another address.
     pub(crate) second_sender: u64,

@@ -70,7 +70,7 @@ fn one_heartbeat_is_no_vehicle_and_a_stray_one_does_not_lock_the_vehicle_out() {
     }
     assert_eq!(bench.followed(), Some(1));
     let locked = bench.count(
-        |event| matches!(event, Event::Locked { system: 1, source } if *source == address(2)),
+        |event| matches!(event, Event::Locked { system: 1, address: sender } if *sender == address(2)),
     );
     assert_eq!(locked, 1);
     assert_eq!(

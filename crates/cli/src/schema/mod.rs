@@ -1,0 +1,108 @@
+//! `flagred schema`: the JSON Schemas of the formats that are read and written.
+
+mod closed;
+
+use std::io::Write;
+
+use flagred_authoring::answers::{Checked, Explained};
+use flagred_report::{document::Document as FlightDocument, moment::Moment};
+use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
+use serde_json::Value;
+
+use self::closed::closed;
+use crate::{
+    failure::{Exit, Failure},
+    identify, inspect, learn,
+    output::Stdout,
+    simplify, tune, watch,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The format
+    format: Format,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Format {
+    /// A rule set
+    RuleSet,
+    /// A profile
+    Profile,
+    /// What `flagred assess --json` prints
+    Assess,
+    /// What `flagred check --json` prints
+    Check,
+    /// What `flagred validate --json` prints
+    #[value(alias = "evaluate")]
+    Validate,
+    /// What `flagred explain --json` prints
+    Explain,
+    /// What `flagred identify --json` prints
+    Identify,
+    /// What `flagred inspect --json` prints
+    Inspect,
+    /// What `flagred learn --json` prints
+    Learn,
+    /// What `flagred simplify --json` prints
+    Simplify,
+    /// What `flagred tune --json` prints
+    Tune,
+    /// A line of `flagred watch --jsonl`
+    Watch,
+    /// A line of `flagred watch --all --jsonl`
+    WatchAll,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut out = Stdout::data();
+    let schema = match arguments.format {
+        Format::RuleSet => {
+            serde_json::to_value(fuzzy::format::schema()).map_err(std::io::Error::from)?
+        }
+        Format::Profile => {
+            write!(out, "{}", flagred::profile::SCHEMA)?;
+            out.finish()?;
+            return Ok(Exit::Clean);
+        }
+        Format::Assess => of::<FlightDocument<'_>>("assess", "--json"),
+        Format::Check => of::<Checked<'_>>("check", "--json"),
+        Format::Validate => of::<flagred_evaluation::Document<'_>>("evaluate", "--json"),
+        Format::Explain => of::<Explained<'_>>("explain", "--json"),
+        Format::Identify => of::<identify::Document<'_>>("identify", "--json"),
+        Format::Inspect => of::<inspect::Document<'_>>("inspect", "--json"),
+        Format::Learn => of::<learn::Document<'_>>("learn", "--json"),
+        Format::Simplify => of::<simplify::Document<'_>>("simplify", "--json"),
+        Format::Tune => of::<tune::Document<'_>>("tune", "--json"),
+        Format::Watch => of::<watch::Line<'_>>("watch", "--jsonl"),
+        Format::WatchAll => of::<watch::FleetLine<'_>>("watch-all", "--jsonl"),
+    };
+    serde_json::to_writer_pretty(&mut out, &schema).map_err(std::io::Error::from)?;
+    writeln!(out)?;
+    out.finish()?;
+    Ok(Exit::Clean)
+}
+
+fn generator() -> SchemaGenerator {
+    SchemaSettings::draft2020_12()
+        .for_serialize()
+        .into_generator()
+}
+
+/// The schema of what a command prints with an option.
+fn of<T: JsonSchema>(name: &str, option: &str) -> Value {
+    let mut schema = generator().into_root_schema_for::<T>();
+    let command = name.replace("-all", " --all");
+    schema.insert("$id".into(), format!("flagred.{name}/1").into());
+    schema.insert("title".into(), format!("flagred {command} {option}").into());
+    closed(schema.to_value())
+}
+
+/// The types of the documents that the npm package hands out, as the `$defs` of a schema.
+pub fn npm_types() -> Value {
+    let mut generator = generator();
+    generator.subschema_for::<FlightDocument<'_>>();
+    generator.subschema_for::<Moment<'_>>();
+    generator.subschema_for::<Explained<'_>>();
+    closed(serde_json::json!({"$defs": generator.take_definitions(true)}))
+}
