@@ -25,6 +25,10 @@ const FLEET_SCHEMA: &str = "flagred.watch-all/1";
 #[derive(Serialize, JsonSchema)]
 #[schemars(inline)]
 #[serde(tag = "event", rename_all = "snake_case")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a line is printed as soon as it is made"
+)]
 pub(crate) enum EventLine<'a> {
     /// The first line.
     Started {
@@ -150,6 +154,10 @@ pub(crate) struct Line<'a> {
 /// A line of `--all --jsonl`.
 #[derive(Serialize, JsonSchema)]
 #[serde(untagged)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a line is printed as soon as it is made"
+)]
 pub(crate) enum FleetLine<'a> {
     /// The first line.
     Started {
