@@ -57,7 +57,7 @@ pub(super) fn read(
 fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Allowed> {
     let what = format!("entry {number} of `allow`");
     let fields = node.fields(&what, &KEYS, findings)?;
-    let code = "name a finding of `flagred check`: `finding: jump`";
+    let code = "name a finding of `check`: `finding: jump`";
     let reason = "write why it is accepted: `because: limits of the regulation`";
     let code = fields.require("finding", code, findings).and_then(|node| {
         let words = CODES.map(|code| (code, code));

@@ -54,10 +54,8 @@ fn has_list(key: &str, part: &Node) -> bool {
     match &part.value {
         Value::List(_) => true,
         Value::Mapping(entries) if key != "blocks" => entries.iter().any(|(_, variable)| {
-            let terms = TERMS.into_iter().filter_map(|key| child(variable, key));
-            terms
-                .into_iter()
-                .any(|terms| matches!(terms.value, Value::List(_)))
+            let mut terms = TERMS.into_iter().filter_map(|key| child(variable, key));
+            terms.any(|terms| matches!(terms.value, Value::List(_)))
         }),
         _ => false,
     }

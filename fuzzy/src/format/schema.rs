@@ -79,7 +79,7 @@ pub fn schema() -> Node {
         (
             "allow",
             list(
-                "The findings of `flagred check` that the author accepts, each with a reason",
+                "The findings of the analysis that the author accepts, each with a reason",
                 reference("allowed"),
                 None,
             ),
