@@ -175,7 +175,7 @@ fn what_is_no_log_is_named_for_what_it_is() {
         (
             "semicolons.csv",
             b"t_s;pwm1;pwm2\n0;1500;1500\n",
-            "a flight CSV begins with the names of its columns, commas between them",
+            "is a table with `;` between its cells, not a flight log",
         ),
     ] {
         let output = assess(&[&folder.file(name, bytes)]);

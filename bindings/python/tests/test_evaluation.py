@@ -51,10 +51,10 @@ def evaluation(folder) -> flagred.Evaluation:
 
 
 def command(*arguments: object) -> str:
-    """What `flagred evaluate` prints."""
+    """What `flagred validate` prints."""
     if COMMAND is None or shutil.which(COMMAND) is None:
         pytest.skip("FLAGRED_COMMAND names no command `flagred`")
-    done = subprocess.run([COMMAND, "evaluate", *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    done = subprocess.run([COMMAND, "validate", *map(str, arguments)], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     return done.stdout
 

@@ -12,6 +12,33 @@ export interface Cause {
   rule: number;
 }
 
+/** The nearest change if one input changes and the others stay. */
+export type Change = {
+  /** The input that changes. */
+  input: string;
+  /** The value of the input from which on the change holds. */
+  at: number;
+  /** How far that is from its value now; negative below it. */
+  by: number;
+  effect: 'term';
+  /** The term. */
+  term: string | null;
+} | {
+  /** The input that changes. */
+  input: string;
+  /** The value of the input from which on the change holds. */
+  at: number;
+  /** How far that is from its value now; negative below it. */
+  by: number;
+  effect: 'rule';
+  /** The output. */
+  output: string;
+  /** The index of the rule in the model, none where no rule fires; serialised, rules count from 1. */
+  rule: number | null;
+  /** The value of the output there. */
+  value: number | null;
+};
+
 /** The degree of membership of a value in a term. */
 export interface Degree {
   /** The term. */
@@ -65,6 +92,10 @@ export interface Explanation {
   rules: FiredRule[];
   /** The outputs. */
   outputs: ExplainedOutput[];
+  /** The rules that do not fire. */
+  silent?: SilentRule[] | null;
+  /** The nearest changes if one input changes. */
+  changes?: Change[] | null;
 }
 
 /** A rule that fired. */
@@ -337,6 +368,45 @@ export interface Share {
 
 /** The limit that a motor is nearer to. */
 export type Side = 'lower' | 'upper';
+
+/** A rule that does not fire at a point, and why. */
+export type SilentRule = {
+  /** Its index in the model; serialised, rules count from 1. */
+  rule: number;
+  /** The rule as it is written. */
+  text: string;
+  reason: 'condition';
+  /** The part as it is written. */
+  condition: string;
+} | {
+  /** Its index in the model; serialised, rules count from 1. */
+  rule: number;
+  /** The rule as it is written. */
+  text: string;
+  reason: 'no_value';
+  /** The output. */
+  output: string;
+} | {
+  /** Its index in the model; serialised, rules count from 1. */
+  rule: number;
+  /** The rule as it is written. */
+  text: string;
+  reason: 'disabled';
+} | {
+  /** Its index in the model; serialised, rules count from 1. */
+  rule: number;
+  /** The rule as it is written. */
+  text: string;
+  reason: 'weight';
+} | {
+  /** Its index in the model; serialised, rules count from 1. */
+  rule: number;
+  /** The rule as it is written. */
+  text: string;
+  reason: 'activation';
+  /** The degree of its condition times its weight. */
+  strength: number;
+};
 
 /** What was known at one time of a flight, as serde data; from `Step::by_name`. */
 export interface Step {

@@ -125,7 +125,7 @@ fn wrong_numbers_of_places() {
     let engine = Engine::new(&gap(NoRuleFires::Undefined)).unwrap();
     assert_eq!(
         engine.evaluate(&[1.0, 2.0]).unwrap_err().to_string(),
-        "the model has 1 inputs, but 2 values were given"
+        "the model has 1 input, but 2 values were given"
     );
     assert_eq!(
         engine

@@ -245,7 +245,7 @@ fn every_mistake_says_where_and_what_to_do() {
             "IF margin IS low THEN r IS h WITH 80%",
             "80%",
             "expected a weight after `WITH`, found `80%`",
-            "from 0 to 1",
+            "write `WITH 0.8`",
         ),
         (
             "IF margin IS low THEN r IS h WITH 1.5",

@@ -58,7 +58,7 @@ pub(super) fn head<'a>(
     let names = axes
         .chain([output])
         .map(|name| output::cell(name).into_owned());
-    let more = ["coverage", "rule", "filled", "distance"].map(str::to_owned);
+    let more = ["coverage", "dominant_rule", "filled", "distance"].map(str::to_owned);
     head.write_record(names.chain(more))?;
     let head = head
         .into_inner()
