@@ -51,7 +51,7 @@ def test_unknown_is_no_number(tip, gaps):
 @pytest.mark.parametrize(
     ("ask", "message"),
     [
-        (lambda tip: tip(1), "the model has 2 inputs, but 1 values were given"),
+        (lambda tip: tip(1), "the model has 2 inputs, but 1 value was given"),
         (lambda tip: tip(servce=1, food=2), "there is no input `servce`\n  help: did you mean `service`?"),
         (lambda tip: tip(service=1), "input `food` has no value"),
         (lambda tip: tip(1, food=2), "values are given by place and by name"),
