@@ -132,7 +132,7 @@ fn wrong_numbers_of_places() {
             .evaluate_with(&mut engine.scratch(), &[1.0], &mut [])
             .unwrap_err()
             .to_string(),
-        "the model has 1 outputs, but there is room for 0 outcomes"
+        "the model has 1 output, but there is room for 0 outcomes"
     );
 }
 
