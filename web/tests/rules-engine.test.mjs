@@ -51,7 +51,7 @@ test('the conformance corpus has the bits on file', async () => {
     const bits = (number) => new BigUint64Array(Float64Array.of(number).buffer)[0].toString(16);
     return cases.map(({ name, text, point }) => {
       const set = new window.flagred.RuleSet(text);
-      const outputs = set.evaluate(point).map(({ value, coverage, rule, clamped }) =>
+      const outputs = set.evaluate(point).map(({ value, coverage, dominantRule: rule, clamped }) =>
         [value === null ? 'none' : bits(value), bits(coverage), rule === null ? 'none' : rule - 1, Number(clamped)].join(','),
       );
       // Columns, twice the row, have the bits of the single call.

@@ -1,6 +1,6 @@
 //! Why inputs could not be evaluated.
 
-use alloc::{string::String, sync::Arc};
+use alloc::{format, string::String, sync::Arc};
 use core::fmt;
 
 /// Why inputs could not be evaluated.

@@ -1,6 +1,6 @@
 //! The first mistake of a rule, in words, with what to write instead.
 
-use alloc::{format, string::String, vec::Vec};
+use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 
 use nom::error::{ErrorKind, ParseError};
 

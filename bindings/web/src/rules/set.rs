@@ -176,7 +176,11 @@ impl RuleSet {
     pub fn explain(&self, point: &[f64]) -> Result<String, JsError> {
         let explanation = self.engine.explain(point);
         let explanation = explanation.map_err(|error| failure(error, None))?;
-        json(&Explained::new(&self.model().name, &explanation))
+        let silent = self.engine.silent(&explanation);
+        let silent = silent.map_err(|error| failure(error, None))?;
+        let changes = self.engine.what_if(point);
+        let changes = changes.map_err(|error| failure(error, None))?;
+        json(&Explained::new(&self.model().name, &explanation).with_reasons(silent, changes))
     }
 
     /// Values for the inputs that are no axis, where those of `fixed` that are not NaN stay: the middle of a range, or where the
