@@ -50,22 +50,7 @@ impl Engine {
     /// ```
     pub fn explain(&self, inputs: &[f64]) -> Result<Explanation, EvaluateError> {
         let model = self.model();
-        if inputs.len() != self.inputs.len() {
-            return Err(EvaluateError::WrongNumberOfInputs {
-                expected: self.inputs.len(),
-                got: inputs.len(),
-            });
-        }
-        // Where no rule fires, this is the answer to "why", not a reason to give none.
-        let mut outcomes = vec![Outcome::default(); self.outputs.len()];
-        self.outcomes(&mut self.scratch(), inputs, &mut outcomes);
-        if let Some(Outcome {
-            state: State::InputNotFinite,
-            ..
-        }) = outcomes.first()
-        {
-            return Err(EvaluateError::InputNotFinite);
-        }
+        let outcomes = self.outcomes_at(inputs)?;
         let explained: Vec<ExplainedInput> = model.inputs.iter().zip(inputs).map(input).collect();
         let known = Known {
             model,
@@ -81,6 +66,24 @@ impl Engine {
             inputs: explained,
             rules,
         })
+    }
+
+    /// The outcomes at a point. That no rule fires is no error here: it is what an explanation explains.
+    pub(super) fn outcomes_at(&self, inputs: &[f64]) -> Result<Vec<Outcome>, EvaluateError> {
+        if inputs.len() != self.inputs.len() {
+            return Err(EvaluateError::WrongNumberOfInputs {
+                expected: self.inputs.len(),
+                got: inputs.len(),
+            });
+        }
+        let mut outcomes = vec![Outcome::default(); self.outputs.len()];
+        self.outcomes(&mut self.scratch(), inputs, &mut outcomes);
+        match outcomes.first() {
+            Some(outcome) if outcome.state == State::InputNotFinite => {
+                Err(EvaluateError::InputNotFinite)
+            }
+            _ => Ok(outcomes),
+        }
     }
 }
 

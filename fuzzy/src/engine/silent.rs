@@ -2,7 +2,6 @@
 
 use alloc::{
     string::{String, ToString},
-    vec,
     vec::Vec,
 };
 use core::fmt;
@@ -14,7 +13,6 @@ use super::{
 use crate::{
     model::{Operators, Rule, concludes},
     rule::Condition,
-    table::Outcome,
 };
 
 /// A rule that does not fire at a point, and why.
@@ -109,14 +107,7 @@ impl Engine {
     pub fn silent(&self, explanation: &Explanation) -> Result<Vec<SilentRule>, EvaluateError> {
         let model = self.model();
         let inputs: Vec<f64> = explanation.inputs.iter().map(|input| input.given).collect();
-        if inputs.len() != self.inputs.len() {
-            return Err(EvaluateError::WrongNumberOfInputs {
-                expected: self.inputs.len(),
-                got: inputs.len(),
-            });
-        }
-        let mut outcomes = vec![Outcome::default(); self.outputs.len()];
-        self.outcomes(&mut self.scratch(), &inputs, &mut outcomes);
+        let outcomes = self.outcomes_at(&inputs)?;
         let known = Known {
             model,
             inputs: &explanation.inputs,

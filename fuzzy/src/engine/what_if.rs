@@ -1,12 +1,9 @@
 //! What changes next if one input changes.
 
-use alloc::{string::String, vec, vec::Vec};
+use alloc::{string::String, vec::Vec};
 
 use super::{Engine, EvaluateError};
-use crate::{
-    model::Variable,
-    table::{Outcome, State},
-};
+use crate::{model::Variable, table::Outcome};
 
 /// Even steps over the range of an input; between them its terms' corners are examined too.
 const STEPS: usize = 200;
@@ -87,7 +84,7 @@ impl Engine {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn what_if(&self, inputs: &[f64]) -> Result<Vec<Change>, EvaluateError> {
-        let now = self.at(inputs)?;
+        let now = self.outcomes_at(inputs)?;
         let mut found = Vec::new();
         let model = self.model();
         let outputs = model.outputs.iter().map(|output| &output.variable.name);
@@ -120,23 +117,6 @@ impl Engine {
             }
         }
         Ok(found)
-    }
-
-    fn at(&self, inputs: &[f64]) -> Result<Vec<Outcome>, EvaluateError> {
-        if inputs.len() != self.inputs.len() {
-            return Err(EvaluateError::WrongNumberOfInputs {
-                expected: self.inputs.len(),
-                got: inputs.len(),
-            });
-        }
-        let mut outcomes = vec![Outcome::default(); self.outputs.len()];
-        self.outcomes(&mut self.scratch(), inputs, &mut outcomes);
-        match outcomes.first() {
-            Some(outcome) if outcome.state == State::InputNotFinite => {
-                Err(EvaluateError::InputNotFinite)
-            }
-            _ => Ok(outcomes),
-        }
     }
 }
 
@@ -189,7 +169,7 @@ impl Walk<'_> {
         let outcome = |x: f64| {
             let mut inputs = self.inputs.to_vec();
             *inputs.get_mut(self.index)? = x;
-            self.engine.at(&inputs).ok()?.get(output).copied()
+            self.engine.outcomes_at(&inputs).ok()?.get(output).copied()
         };
         let dominant = |x: f64| outcome(x).and_then(|outcome| outcome.dominant_rule);
         let before = self.now.get(output)?.dominant_rule;

@@ -146,34 +146,33 @@ impl<N, P, S> Buffers<N, P, S> {
 #[inline(always)]
 pub(super) fn fire_row_into<A: Arrays>(
     table: &A,
-    mut finding: Finding<'_, 1>,
+    finding: Finding<'_, 1>,
     firing: &mut impl Act<1>,
 ) {
-    if table.blocks().is_empty() {
-        return fire_into::<A, 1, false>(table, finding, firing);
+    match table.blocks().is_empty() {
+        true => fire_into::<A, 1, false>(table, finding, firing),
+        false => fire_in_blocks(table, finding, firing),
     }
-    finding.find_degrees(table);
-    let Finding {
-        degrees,
-        partial,
-        stack,
-        ..
-    } = finding;
-    fire_blocks(table, degrees, partial, stack, firing);
 }
 
-/// As [`fire_row_into`], with one copy of the code for all operators: it is for what is asked seldom.
+/// As [`fire_row_into`], but compiled once for all operators, for questions that are rarely asked.
 pub(super) fn fire_row_by_any<A: Arrays>(
     table: &A,
     mut finding: Finding<'_, 1>,
     firing: &mut impl Act<1>,
 ) {
-    finding.find_degrees(table);
-    if table.blocks().is_empty() {
-        let (and, or) = (table.and(), table.or());
-        let (and, or) = (|a, b| and.of(a, b), |a, b| or.of(a, b));
-        return fire_with::<A, 1, false>(table, and, or, finding, firing);
+    if !table.blocks().is_empty() {
+        return fire_in_blocks(table, finding, firing);
     }
+    finding.find_degrees(table);
+    let (and, or) = (table.and(), table.or());
+    let (and, or) = (|a, b| and.of(a, b), |a, b| or.of(a, b));
+    fire_with::<A, 1, false>(table, and, or, finding, firing);
+}
+
+#[inline(always)]
+fn fire_in_blocks<A: Arrays>(table: &A, mut finding: Finding<'_, 1>, firing: &mut impl Act<1>) {
+    finding.find_degrees(table);
     let Finding {
         degrees,
         partial,
