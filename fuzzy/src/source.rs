@@ -1,4 +1,4 @@
-//! A text and what becomes of it: parsed, read, validated and compiled once.
+//! A text with its tree, rule set and engine, each made once.
 
 use std::{string::String, sync::OnceLock};
 

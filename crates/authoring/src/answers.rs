@@ -29,7 +29,7 @@ pub struct Checked<'a> {
     provenance: &'a [Step],
     /// What was found in the text, then by the analysis.
     findings: &'a [Diagnostic],
-    /// The findings that the author accepts; absent where there are none.
+    /// The findings that the author accepts; absent if the author accepts none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     accepted: Vec<check::Accepted>,
     /// Regions, conflicts, reach and monotonicity in numbers; null where the rule set has errors, and of a profile.

@@ -72,7 +72,7 @@ fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<A
     })
 }
 
-/// The accepted findings as they stand in a file; `None` where there are none.
+/// The key `allow` of a file; `None` if the author accepts no findings.
 pub(super) fn write(allow: &[Allowed]) -> Option<Node> {
     let entries = allow.iter().map(|one| {
         Node::mapping([

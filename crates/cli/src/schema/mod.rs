@@ -65,17 +65,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             out.finish()?;
             return Ok(Exit::Clean);
         }
-        Format::Assess => of::<FlightDocument<'_>>("assess", "--json"),
-        Format::Check => of::<Checked<'_>>("check", "--json"),
-        Format::Validate => of::<flagred_evaluation::Document<'_>>("evaluate", "--json"),
-        Format::Explain => of::<Explained<'_>>("explain", "--json"),
-        Format::Identify => of::<identify::Document<'_>>("identify", "--json"),
-        Format::Inspect => of::<inspect::Document<'_>>("inspect", "--json"),
-        Format::Learn => of::<learn::Document<'_>>("learn", "--json"),
-        Format::Simplify => of::<simplify::Document<'_>>("simplify", "--json"),
-        Format::Tune => of::<tune::Document<'_>>("tune", "--json"),
-        Format::Watch => of::<watch::Line<'_>>("watch", "--jsonl"),
-        Format::WatchAll => of::<watch::FleetLine<'_>>("watch-all", "--jsonl"),
+        Format::Assess => of::<FlightDocument<'_>>("assess", "assess --json"),
+        Format::Check => of::<Checked<'_>>("check", "check --json"),
+        Format::Validate => of::<flagred_evaluation::Document<'_>>("evaluate", "validate --json"),
+        Format::Explain => of::<Explained<'_>>("explain", "explain --json"),
+        Format::Identify => of::<identify::Document<'_>>("identify", "identify --json"),
+        Format::Inspect => of::<inspect::Document<'_>>("inspect", "inspect --json"),
+        Format::Learn => of::<learn::Document<'_>>("learn", "learn --json"),
+        Format::Simplify => of::<simplify::Document<'_>>("simplify", "simplify --json"),
+        Format::Tune => of::<tune::Document<'_>>("tune", "tune --json"),
+        Format::Watch => of::<watch::Line<'_>>("watch", "watch --jsonl"),
+        Format::WatchAll => of::<watch::FleetLine<'_>>("watch-all", "watch --all --jsonl"),
     };
     serde_json::to_writer_pretty(&mut out, &schema).map_err(std::io::Error::from)?;
     writeln!(out)?;
@@ -89,12 +89,11 @@ fn generator() -> SchemaGenerator {
         .into_generator()
 }
 
-/// The schema of what a command prints with an option.
-fn of<T: JsonSchema>(name: &str, option: &str) -> Value {
+/// The schema of the layout of this name, which a command prints.
+fn of<T: JsonSchema>(name: &str, command: &str) -> Value {
     let mut schema = generator().into_root_schema_for::<T>();
-    let command = name.replace("-all", " --all");
     schema.insert("$id".into(), format!("flagred.{name}/1").into());
-    schema.insert("title".into(), format!("flagred {command} {option}").into());
+    schema.insert("title".into(), format!("flagred {command}").into());
     closed(schema.to_value())
 }
 
