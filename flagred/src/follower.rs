@@ -74,6 +74,14 @@ enum Idle {
     InTrouble,
 }
 
+/// What is known after a sample where the risk is.
+struct Known {
+    estimate: Estimate,
+    elevated_pct: f64,
+    /// Whether the risk counts for the verdict.
+    judged: bool,
+}
+
 /// The memory of a flight: the risks of the last seconds, what each channel has seen, the values of the inputs after the
 /// latest sample (NaN is unknown), and the motors.
 #[derive(Debug)]
@@ -145,7 +153,27 @@ impl Follower {
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
     ) -> Update {
         let before = self.level();
-        let mut update = self.take(feed, room, sample, estimate);
+        let mut update = Update {
+            t_s: sample.t_s,
+            risk: Err(Unknown::OutOfOrder),
+            elevated_risk_pct: None,
+            level: None,
+            change: None,
+            judged: false,
+            ended: Ended::default(),
+        };
+        match self.take(feed, room, sample, &mut update.ended, estimate) {
+            Ok(known) => {
+                update.risk = Ok(known.estimate);
+                update.elevated_risk_pct = Some(known.elevated_pct);
+                update.judged = known.judged;
+                update.level = Some(self.level());
+            }
+            Err(reason) => {
+                update.risk = Err(reason);
+                update.level = self.level_in_doubt();
+            }
+        }
         update.change = update.level.filter(|level| *level != before);
         update
     }
@@ -155,21 +183,21 @@ impl Follower {
         feed: Feed<'_>,
         room: &mut Room<'_>,
         sample: &Sample<'_>,
+        ended: &mut Ended,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
-    ) -> Update {
+    ) -> Result<Known, Unknown> {
         let t_s = sample.t_s;
-        let mut ended = Ended::default();
         let longest_gap_s = self.settings.sampling.longest_gap_s;
         let held_s = match self.last_s {
-            _ if !t_s.is_finite() => return self.unknown(t_s, Unknown::OutOfOrder, ended),
+            _ if !t_s.is_finite() => return Err(Unknown::OutOfOrder),
             None => 0.0,
             Some(last_s) if t_s <= last_s && last_s - t_s <= longest_gap_s => {
-                return self.unknown(t_s, Unknown::OutOfOrder, ended);
+                return Err(Unknown::OutOfOrder);
             }
             // A jump, forward (a lost link) or back (a restarted vehicle), resets the state.
             Some(last_s) if !(0.0..=longest_gap_s).contains(&(t_s - last_s)) => {
                 let end = if t_s > last_s { End::Gap } else { End::Restart };
-                ended = self.forget(last_s, end, room);
+                *ended = self.forget(last_s, end, room);
                 self.in_doubt_s = self.in_doubt_s.map(|_| t_s);
                 0.0
             }
@@ -185,14 +213,14 @@ impl Follower {
             if self.in_air_since_s.is_some() {
                 let down_since_s = *self.down_since_s.get_or_insert(t_s);
                 if t_s - down_since_s >= TOUCH_S {
-                    ended = self.forget(down_since_s, End::Landing, room);
+                    *ended = self.forget(down_since_s, End::Landing, room);
                 }
             } else {
                 // It landed in a gap.
                 self.in_doubt_s = None;
                 motor::forget_trims(room.motors);
             }
-            return self.unknown(t_s, Unknown::OnGround, ended);
+            return Err(Unknown::OnGround);
         }
         self.down_since_s = None;
         let in_air_since_s = *self.in_air_since_s.get_or_insert(t_s);
@@ -216,9 +244,9 @@ impl Follower {
             Err(reason) => {
                 let known_s = self.last_known_s.unwrap_or(t_s);
                 if t_s - known_s > longest_gap_s {
-                    ended = self.stop_judging(known_s, End::Gap, room);
+                    *ended = self.stop_judging(known_s, End::Gap, room);
                 }
-                return self.unknown(t_s, reason, ended);
+                return Err(reason);
             }
         };
         self.last_known_s = Some(t_s);
@@ -244,27 +272,25 @@ impl Follower {
         let step = self.alert.push(now, room.motors);
         self.doubt(t_s);
         // Both at once cannot be: what was just forgotten takes a while to be raised again.
-        ended[0] = step.ended.or(ended[0]);
-        Update {
-            t_s,
-            risk: Ok(said),
-            elevated_risk_pct: Some(elevated),
-            level: Some(self.level()),
-            change: None,
-            judged: !takes_off,
-            ended,
+        if step.ended.is_some() {
+            ended[0] = step.ended;
         }
+        Ok(Known {
+            estimate: said,
+            elevated_pct: elevated,
+            judged: !takes_off,
+        })
     }
 
     /// The finding that the level rests on, as it stands so far; `None` while the level is good.
     pub(crate) fn open_finding(&self) -> Option<Finding> {
-        self.alert.open().or_else(|| self.notices.open())
+        self.alert.open().or_else(|| self.notices.open().copied())
     }
 
     /// The worst open finding beside the risk, as it stands so far: little reserve or an imbalance.
     #[cfg(feature = "std")]
     pub(crate) fn open_notice(&self) -> Option<Finding> {
-        self.notices.open()
+        self.notices.open().copied()
     }
 
     /// Sets the cause of the open finding where the latest sample raised its level; `cause` is asked only then.
@@ -401,22 +427,13 @@ impl Follower {
         }
     }
 
-    /// What is known where the risk is not: an alarm that stands, and never that all is good.
-    fn unknown(&self, t_s: f64, reason: Unknown, ended: Ended) -> Update {
-        let noticed = self.notices.open().map(|finding| finding.severity);
+    /// The level where the risk is unknown: an alarm that stands, and never that all is good.
+    fn level_in_doubt(&self) -> Option<Level> {
         let level = match self.last_known_s {
             Some(_) if self.in_air_since_s.is_some() => Some(self.level()),
-            _ => noticed,
+            _ => self.notices.open().map(|finding| finding.severity),
         };
-        Update {
-            t_s,
-            risk: Err(reason),
-            elevated_risk_pct: None,
-            level: level.filter(|level| *level > Level::Good),
-            change: None,
-            judged: false,
-            ended,
-        }
+        level.filter(|level| *level > Level::Good)
     }
 
     /// Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.

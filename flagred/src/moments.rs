@@ -66,21 +66,31 @@ impl Moments {
         }
     }
 
-    /// Of finite values that weigh 1 each.
-    pub(crate) fn alike(values: impl Iterator<Item = f64> + Clone) -> Moments {
+    /// Of values that weigh 1 each, as `counted` has them; [`EMPTY`](Self::EMPTY) where one of them is not finite.
+    pub(crate) fn alike(
+        values: impl Iterator<Item = f64> + Clone,
+        counted: impl Fn(f64) -> f64,
+    ) -> Moments {
         let mut all = Moments::EMPTY;
         // Counted from the first value, so that equal values have exactly it as their mean, and no spread.
-        let Some(first) = values.clone().next() else {
+        let Some(first) = values.clone().next().map(&counted) else {
             return all;
         };
+        let mut count = 0_u32;
         for value in values.clone() {
-            all.weight += 1.0;
+            if !value.is_finite() {
+                return Moments::EMPTY;
+            }
+            let value = counted(value);
+            count += 1;
             all.mean += value - first;
-            all.min = all.min.min(value);
-            all.max = all.max.max(value);
+            // Of finite numbers; `f64::min` also looks for NaN.
+            all.min = if value < all.min { value } else { all.min };
+            all.max = if value > all.max { value } else { all.max };
         }
+        all.weight = f64::from(count);
         all.mean = first + all.mean / all.weight;
-        for value in values {
+        for value in values.map(counted) {
             all.squares += (value - all.mean) * (value - all.mean);
         }
         all
@@ -189,7 +199,7 @@ mod tests {
             for value in &values {
                 merged.merge(&Moments::of(*value, 1.0));
             }
-            let alike = Moments::alike(values.iter().copied());
+            let alike = Moments::alike(values.iter().copied(), |value| value);
             prop_assert_eq!((alike.weight(), alike.min(), alike.max()), (merged.weight(), merged.min(), merged.max()));
             prop_assert!((alike.mean().unwrap_or(9.0) - merged.mean().unwrap_or(9.0)).abs() < 1e-14);
             prop_assert!((alike.std().unwrap_or(9.0) - merged.std().unwrap_or(9.0)).abs() < 1e-14);
@@ -197,7 +207,7 @@ mod tests {
 
         #[test]
         fn equal_values_have_no_spread(value in -1.0..1.0f64, count in 1usize..20) {
-            let alike = Moments::alike(core::iter::repeat_n(value, count));
+            let alike = Moments::alike(core::iter::repeat_n(value, count), |value| value);
             prop_assert_eq!((alike.mean(), alike.std()), (Some(value), Some(0.0)));
         }
 

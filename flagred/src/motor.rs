@@ -11,7 +11,7 @@ use crate::{
 pub(crate) const BIN_S: f64 = 0.1;
 
 /// The number of the bin that a time falls into.
-pub(crate) fn bin_of(t_s: f64) -> f64 {
+fn bin_of(t_s: f64) -> f64 {
     const ROUNDING: f64 = 1e-6;
     libm::floor(t_s / BIN_S + ROUNDING)
 }
@@ -63,6 +63,8 @@ pub(crate) struct Together {
     pub(crate) efforts: Efforts,
     /// The noise of the commands, known when a bin is complete; else NaN.
     pub(crate) noise: f64,
+    /// The bin that the sample fell into.
+    pub(crate) bin: f64,
 }
 
 /// The bin that the latest sample fell into.
@@ -253,7 +255,11 @@ pub(crate) fn take(motors: &mut [Motor], bin: &mut Bin, t_s: f64, commands: &[f6
     if !has_geometry {
         efforts = effort::UNKNOWN;
     }
-    Together { efforts, noise }
+    Together {
+        efforts,
+        noise,
+        bin: bin.index,
+    }
 }
 
 impl Bin {

@@ -5,7 +5,7 @@ use crate::{
     exponential::Exponential,
     margin::margin,
     moments::Moments,
-    motor::{BIN_S, Motor, Together, bin_of},
+    motor::{BIN_S, Motor, Together},
     window::Window,
 };
 
@@ -149,7 +149,7 @@ pub(crate) fn push(
     (t_s, held_s): (f64, f64),
     observed: &Now<'_>,
 ) {
-    let bin = bin_of(t_s);
+    let bin = observed.together.bin;
     let mut before: Option<(&Channel, Moments)> = None;
     for (channel, seen) in channels.iter().zip(seen) {
         // Neighbours often differ in their windows alone.
@@ -294,13 +294,10 @@ impl Channel {
             return self.threshold(one.unwrap_or(f64::NAN));
         }
         // The motors that are known tell nothing of one that is not.
-        if motors.clone().any(|value| !value.is_finite()) {
-            return Moments::EMPTY;
-        }
         if self.motors == Motors::Pooled {
-            return Moments::alike(motors.map(|value| self.counted(value)));
+            return Moments::alike(motors, |value| self.counted(value));
         }
-        let all = Moments::alike(motors);
+        let all = Moments::alike(motors, |value| value);
         let one = match self.motors {
             Motors::Pooled | Motors::Mean | Motors::One(_) => all.mean(),
             Motors::Std => all.std(),

@@ -119,8 +119,11 @@ impl Notices {
     }
 
     /// The worst open finding but information.
-    pub(crate) fn open(&self) -> Option<Finding> {
-        let mut open = self.watches.iter().filter_map(|watch| watch.finding);
+    pub(crate) fn open(&self) -> Option<&Finding> {
+        let mut open = self
+            .watches
+            .iter()
+            .filter_map(|watch| watch.finding.as_ref());
         open.rfind(|finding| finding.severity > Level::Info)
     }
 }
