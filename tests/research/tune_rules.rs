@@ -1,19 +1,23 @@
 //! Tunes candidates for the rules to fly with, judges them on vehicles that they were not tuned on, and writes the chosen one.
 //!
-//! `scripts/learn-flagred DATA` makes the rows and runs it. Prints the areas of each candidate, then of the chosen one with
-//! 95 % intervals over flights, how often it is high where it should not be, and every real vehicle, judged by rules that do
-//! not know it.
+//! `scripts/learn-flagred DATA` makes the rows and runs it. Prints the areas of each candidate, then of the chosen one, with its
+//! vote of a sudden change: areas with 95 % intervals over flights, how often it is high where it should not be, every real
+//! vehicle, and what followed its risks, all judged by rules that do not know the vehicle. The last it also writes into
+//! profiles.
 
 use std::{collections::BTreeMap, error::Error, fs, io::Write, path::Path};
 
 use flagred::gap::{Filling, GapSettings};
 use flagred_tests::tuning::{
-    AREAS, CANDIDATES, Data, EXCESSES, Row, Set, Votes, candidate, folds, judge, read, tune,
-    tune_without, with_step,
+    AREAS, CANDIDATES, Data, EXCESSES, Row, Set, Share, Votes, candidate, folds, judge, read,
+    risks_pct, shares, tune, tune_without, with_shares, with_step,
 };
 
 /// A real vehicle counts on its own from so many critical and so many other steps on.
 const ENOUGH: usize = 20;
+/// Bands of risk in the table that is printed, and in profiles.
+const PRINTED_BANDS: usize = 10;
+const PROFILE_BANDS: usize = 5;
 
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
@@ -28,10 +32,11 @@ fn main() -> Result<()> {
         upsets,
         upsets2,
         rule_set,
+        profiles @ ..,
     ] = &arguments[..]
     else {
         return Err(
-            "usage: tune_rules TEMPLATE.yaml REAL.csv REAL2.csv SITL2.csv SITL3.csv UPSETS.csv UPSETS2.csv OUT.yaml"
+            "usage: tune_rules TEMPLATE.yaml REAL.csv REAL2.csv SITL2.csv SITL3.csv UPSETS.csv UPSETS2.csv OUT.yaml [PROFILE.yaml ...]"
                 .into(),
         );
     };
@@ -67,7 +72,32 @@ fn main() -> Result<()> {
         chosen.get_or_insert(candidate);
     }
     let chosen = chosen.ok_or("no candidate")?;
-    chosen.print(&mut out)?;
+    let rule_set_of = |votes: &Votes| with_step(votes.rule_set(&chosen.rows), &model.model);
+    let without: Vec<fuzzy::Model> = chosen
+        .left_out
+        .iter()
+        .map(rule_set_of)
+        .collect::<std::result::Result<_, _>>()?;
+    let inputs = without.first().ok_or("no vehicle")?.inputs.iter();
+    let rows = read(
+        &data,
+        &inputs.map(|input| input.name.as_str()).collect::<Vec<_>>(),
+    )?;
+    let unknown = risks_pct(&without, &folds(&rows), &rows)?;
+    print(&rows, &unknown, &mut out)?;
+    print_shares(&rows, &unknown, &mut out)?;
+    for path in profiles {
+        let shares = |is_in| shares(&rows, &unknown, PROFILE_BANDS, is_in);
+        let text = with_shares(
+            &fs::read_to_string(path)?,
+            &shares(Set::is_real),
+            &shares(|set| !set.is_real()),
+        );
+        fs::write(
+            path,
+            text.ok_or_else(|| format!("{path}: no key `reliability`"))?,
+        )?;
+    }
     let model = with_step(chosen.rule_set()?, &model.model)?;
     let head = text
         .split_inclusive('\n')
@@ -94,19 +124,22 @@ struct Candidate {
     tuned: Votes,
     /// The risk at each row by rules that do not know its vehicle, in %.
     unknown: Vec<f64>,
+    /// These rules, for each fold.
+    left_out: Vec<Votes>,
 }
 
 impl Candidate {
     fn new(data: &Data<'_>, template: &fuzzy::Model) -> Result<Candidate> {
         let template = Votes::new(template)?;
         let rows = read(data, &template.names())?;
-        let (tuned, (unknown, _)) = rayon::join(
+        let (tuned, (unknown, left_out)) = rayon::join(
             || tune(&template, &rows.iter().collect::<Vec<&Row>>()),
             || tune_without(&template, &rows, &folds(&rows)),
         );
         Ok(Candidate {
             tuned,
             unknown,
+            left_out,
             rows,
         })
     }
@@ -130,83 +163,113 @@ impl Candidate {
         }
         Ok(model)
     }
+}
 
-    fn print(&self, out: &mut impl Write) -> Result<()> {
+/// How good risks in % are on all sets.
+fn print(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Result<()> {
+    writeln!(
+        out,
+        "\n| steps | ROC area, vehicles left out | steps | critical, % |\n|---|---|---|---|"
+    )?;
+    for area in &AREAS {
+        let ranking = judge(area, rows, risks_pct);
+        let (areas, intervals) = ranking
+            .areas()
+            .zip(ranking.bootstrap(300, 1))
+            .ok_or("nothing was critical")?;
         writeln!(
             out,
-            "\n| steps | ROC area, vehicles left out | steps | critical, % |\n|---|---|---|---|"
+            "| {} | {:.3} [{:.3}, {:.3}] | {} | {:.1} |",
+            area.name,
+            areas.roc,
+            intervals.roc.low,
+            intervals.roc.high,
+            ranking.len(),
+            100.0 * ranking.critical() as f64 / ranking.len() as f64
         )?;
-        for area in &AREAS {
-            let ranking = judge(area, &self.rows, &self.unknown);
-            let (areas, intervals) = ranking
-                .areas()
-                .zip(ranking.bootstrap(300, 1))
-                .ok_or("nothing was critical")?;
-            writeln!(
-                out,
-                "| {} | {:.3} [{:.3}, {:.3}] | {} | {:.1} |",
-                area.name,
-                areas.roc,
-                intervals.roc.low,
-                intervals.roc.high,
-                ranking.len(),
-                100.0 * ranking.critical() as f64 / ranking.len() as f64
-            )?;
-        }
-        writeln!(
-            out,
-            "\n| steps | risk above | vehicles left out, % of steps |\n|---|---|---|"
-        )?;
-        for excess in &EXCESSES {
-            let of = self.rows.iter().zip(&self.unknown);
-            let risks: Vec<f64> = of
-                .filter(|(row, _)| (excess.holds)(row))
-                .map(|(_, risk)| *risk)
-                .collect();
-            let above = risks.iter().filter(|risk| **risk > excess.above_pct);
-            let share = 100.0 * above.count() as f64 / risks.len() as f64;
-            writeln!(
-                out,
-                "| {} | {} | {share:.1} |",
-                excess.name, excess.above_pct
-            )?;
-        }
-        self.print_vehicles(out)
     }
+    writeln!(
+        out,
+        "\n| steps | risk above | vehicles left out, % of steps |\n|---|---|---|"
+    )?;
+    for excess in &EXCESSES {
+        let of = rows.iter().zip(risks_pct);
+        let risks: Vec<f64> = of
+            .filter(|(row, _)| (excess.holds)(row))
+            .map(|(_, risk)| *risk)
+            .collect();
+        let above = risks.iter().filter(|risk| **risk > excess.above_pct);
+        let share = 100.0 * above.count() as f64 / risks.len() as f64;
+        writeln!(
+            out,
+            "| {} | {} | {share:.1} |",
+            excess.name, excess.above_pct
+        )?;
+    }
+    print_vehicles(rows, risks_pct, out)
+}
 
-    /// Each real vehicle.
-    fn print_vehicles(&self, out: &mut impl Write) -> Result<()> {
+/// Each real vehicle.
+fn print_vehicles(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Result<()> {
+    writeln!(
+        out,
+        "\n| real vehicle | ROC area | steps | critical |\n|---|---|---|---|"
+    )?;
+    let mut vehicles: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (i, row) in rows.iter().enumerate() {
+        if row.set.is_real() {
+            vehicles.entry(&row.vehicle).or_default().push(i);
+        }
+    }
+    let mut areas = Vec::new();
+    for (vehicle, places) in &vehicles {
+        let own: Vec<Row> = places.iter().map(|i| rows[*i].clone()).collect();
+        let risks: Vec<f64> = places.iter().map(|i| risks_pct[*i]).collect();
+        let ranking = judge(&AREAS[0], &own, &risks);
+        let critical = ranking.critical();
+        let is_enough = critical >= ENOUGH && ranking.len() - critical >= ENOUGH;
+        let area = ranking.areas().filter(|_| is_enough);
+        areas.extend(area.map(|area| area.roc));
+        let area = area.map_or("-".to_owned(), |area| format!("{:.3}", area.roc));
+        writeln!(out, "| {vehicle} | {area} | {} | {critical} |", own.len())?;
+    }
+    areas.sort_by(f64::total_cmp);
+    let mean = areas.iter().sum::<f64>() / areas.len().max(1) as f64;
+    if let (Some(least), Some(most)) = (areas.first(), areas.last()) {
         writeln!(
             out,
-            "\n| real vehicle | ROC area | steps | critical |\n|---|---|---|---|"
+            "\nOf {} vehicles with at least {ENOUGH} critical and {ENOUGH} other steps: mean {mean:.3}, from {least:.3} to {most:.3}.",
+            areas.len()
         )?;
-        let mut vehicles: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-        for (i, row) in self.rows.iter().enumerate() {
-            if row.set.is_real() {
-                vehicles.entry(&row.vehicle).or_default().push(i);
-            }
-        }
-        let mut areas = Vec::new();
-        for (vehicle, places) in &vehicles {
-            let rows: Vec<Row> = places.iter().map(|i| self.rows[*i].clone()).collect();
-            let risks: Vec<f64> = places.iter().map(|i| self.unknown[*i]).collect();
-            let ranking = judge(&AREAS[0], &rows, &risks);
-            let critical = ranking.critical();
-            let is_enough = critical >= ENOUGH && ranking.len() - critical >= ENOUGH;
-            let area = ranking.areas().filter(|_| is_enough);
-            areas.extend(area.map(|area| area.roc));
-            let area = area.map_or("-".to_owned(), |area| format!("{:.3}", area.roc));
-            writeln!(out, "| {vehicle} | {area} | {} | {critical} |", rows.len())?;
-        }
-        areas.sort_by(f64::total_cmp);
-        let mean = areas.iter().sum::<f64>() / areas.len().max(1) as f64;
-        if let (Some(least), Some(most)) = (areas.first(), areas.last()) {
-            writeln!(
-                out,
-                "\nOf {} vehicles with at least {ENOUGH} critical and {ENOUGH} other steps: mean {mean:.3}, from {least:.3} to {most:.3}.",
-                areas.len()
-            )?;
-        }
-        Ok(())
     }
+    Ok(())
+}
+
+/// What followed risks in bands of 10 %.
+fn print_shares(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Result<()> {
+    writeln!(out, "\n| risk | real | sitl2 | sitl3 |\n|---|---|---|---|")?;
+    let sets: [fn(Set) -> bool; 3] = [
+        Set::is_real,
+        |set| set == Set::Sitl2,
+        |set| set == Set::Sitl3,
+    ];
+    let columns = sets.map(|is_in| shares(rows, risks_pct, PRINTED_BANDS, is_in));
+    for band in 0..PRINTED_BANDS {
+        let cell = |shares: &Vec<Share>| {
+            let Share { moments, followed } = shares[band];
+            format!(
+                "{:.0} % of {moments}",
+                100.0 * followed as f64 / moments.max(1) as f64
+            )
+        };
+        let cells = columns.each_ref().map(cell).join(" | ");
+        let width_pct = 100 / PRINTED_BANDS;
+        writeln!(
+            out,
+            "| {} to {} % | {cells} |",
+            band * width_pct,
+            (band + 1) * width_pct
+        )?;
+    }
+    Ok(())
 }

@@ -9,6 +9,7 @@ mod folds;
 mod objective;
 mod rows;
 mod search;
+mod shares;
 mod votes;
 
 pub use candidates::{CANDIDATES, candidate, with_step};
@@ -16,6 +17,7 @@ pub use folds::{folds, judge, tune_without};
 pub use objective::{AREAS, Area, EXCESSES, Excess};
 pub use rows::{Data, Row, Set, read};
 pub use search::tune;
+pub use shares::{Share, risks_pct, shares, with_shares};
 pub use votes::Votes;
 
 /// What goes wrong with files.
