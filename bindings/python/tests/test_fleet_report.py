@@ -171,7 +171,7 @@ class Tags(HTMLParser):
 def hostile(dataset: Path, out: Path) -> None:
     """The dataset with names that would be markup."""
     shutil.copytree(dataset, out)
-    for kind, names in (("flights", ("log", "vehicle", "firmware", "error", "reason")), ("findings", ("rule", "side"))):
+    for kind, names in (("flights", ("log", "vehicle", "firmware", "error", "reason")), ("findings", ("code", "rule", "side", "advice"))):
         for file in (out / kind).rglob("*.parquet"):
             table = pq.ParquetFile(file).read()
             for name in names:

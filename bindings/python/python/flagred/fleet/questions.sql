@@ -53,11 +53,11 @@ SELECT motor, side, count(*) AS findings, count(DISTINCT flight_id) AS flights, 
 FROM findings WHERE motor IS NOT NULL AND severity IN ('WARN', 'FAIL') GROUP BY motor, side ORDER BY findings DESC, motor, side;
 
 -- name: rules
--- Which rule raised the risk, in findings that warn.
-SELECT rule, count(*) AS findings, 100.0 * count(*) / sum(count(*)) OVER () AS share_pct,
+-- What raised the risk, and by which rule, in findings that warn.
+SELECT code, rule, count(*) AS findings, 100.0 * count(*) / sum(count(*)) OVER () AS share_pct,
   wilson_low(count(*), sum(count(*)) OVER ()) AS low_pct, wilson_high(count(*), sum(count(*)) OVER ()) AS high_pct,
   count(DISTINCT flight_id) AS flights
-FROM findings WHERE rule IS NOT NULL AND severity IN ('WARN', 'FAIL') GROUP BY rule ORDER BY findings DESC, rule LIMIT 20;
+FROM findings WHERE rule IS NOT NULL AND severity IN ('WARN', 'FAIL') GROUP BY code, rule ORDER BY findings DESC, rule LIMIT 20;
 
 -- name: firmware
 -- By firmware: the highest risk of a flight, and the share of flights that warned.

@@ -231,7 +231,7 @@ SECTIONS: tuple[tuple[str, str, Sequence[tuple[str, str, Cell]], str], ...] = (
     (
         "Rules",
         "rules",
-        (text("Rule", "rule"), number("Findings", "findings"), span("Share, %", "share_pct", "low_pct", "high_pct"), number("Flights", "flights")),
+        (text("Finding", "code"), text("Rule", "rule"), number("Findings", "findings"), span("Share, %", "share_pct", "low_pct", "high_pct"), number("Flights", "flights")),
         "No finding names a rule.",
     ),
     (

@@ -155,7 +155,7 @@ def _findings(assessment: Assessment, row: dict[str, Any]) -> list[dict[str, Any
     return found
 
 
-_SAME = ("severity", "measure", "from_s", "raised_s", "failed_s", "to_s", "value_pct", "threshold_pct", "text")
+_SAME = ("severity", "measure", "from_s", "raised_s", "failed_s", "to_s", "value_pct", "threshold_pct", "code", "text", "advice")
 _STEPS = {"risk": "risk_pct", "elevated_risk": "elevated_risk_pct"}
 
 

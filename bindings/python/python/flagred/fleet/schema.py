@@ -93,7 +93,9 @@ FINDINGS = _schema(
     ("margin_min", _REAL, "1", "smallest margin of that motor"),
     ("rule", _TEXT, "", "the rule that raised the risk"),
     ("cause", _TEXT, "", "the input of that rule and its term"),
+    ("code", _TEXT, "", "what kind of finding it is, such as fighting_gusts: docs/findings.md"),
     ("text!", _TEXT, "", "the finding in words"),
+    ("advice", _TEXT, "", "what to do"),
 )
 
 STEPS = _schema(
