@@ -153,6 +153,21 @@ impl RuleSet {
         self.model(|model| model.outputs.iter().map(name).collect())
     }
 
+    /// The names of the variables whose values rows of data have: the inputs, and the outputs that no other output reads.
+    fn _measured_names(&self) -> Vec<String> {
+        self.model(|model| {
+            let last = model
+                .last_outputs()
+                .into_iter()
+                .filter_map(|output| model.outputs.get(output));
+            let measured = model
+                .inputs
+                .iter()
+                .chain(last.map(|output| &output.variable));
+            measured.map(|variable| variable.name.clone()).collect()
+        })
+    }
+
     /// The text it was read from, and the name of its file.
     fn _text(&self) -> (String, String) {
         let source = self.source();

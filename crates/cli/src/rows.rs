@@ -116,11 +116,19 @@ pub(crate) struct Data {
     pub(crate) refused: Vec<String>,
 }
 
-/// Reads the values of the inputs and of the outputs of a model from all tables.
+/// The variables whose values rows have: the inputs, and the outputs that no other output reads.
+fn measured(model: &Model) -> impl Iterator<Item = &Variable> {
+    let last = model.last_outputs().into_iter();
+    let last = last.filter_map(|output| model.outputs.get(output));
+    model
+        .inputs
+        .iter()
+        .chain(last.map(|output| &output.variable))
+}
+
+/// Reads the values of the inputs of a model, and of the outputs that no other output reads, from all tables.
 pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure> {
-    let inputs = model.inputs.iter();
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    let names: Vec<&str> = inputs.chain(outputs).map(|v| v.name.as_str()).collect();
+    let names: Vec<&str> = measured(model).map(|v| v.name.as_str()).collect();
     let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
     let format = &arguments.rewrite.format;
     let mut data = columns(tables(&arguments.data, format), format, &names, optional)?;
@@ -132,9 +140,8 @@ pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure>
 
 /// Clamps the values of rows to the ranges of the variables, and reports how many were outside.
 fn clamp(data: &mut Data, model: &Model) {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
     let rows = data.rows.len();
-    for (column, variable) in model.inputs.iter().chain(outputs).enumerate() {
+    for (column, variable) in measured(model).enumerate() {
         let Variable { low, high, .. } = *variable;
         let mut first: Option<String> = None;
         let mut count = 0;

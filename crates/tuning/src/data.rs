@@ -99,11 +99,7 @@ impl Data {
 
     /// Whether a model can be tuned on the rows.
     pub(crate) fn check(&self, model: &Model, loss: Loss) -> Result<(), TuneError> {
-        let [output] = model.outputs.as_slice() else {
-            return Err(TuneError::Outputs {
-                outputs: model.outputs.len(),
-            });
-        };
+        let output = &model.outputs[target(model)?];
         self.check_columns(model.inputs.len(), loss)?;
         let (low, high) = (output.variable.low, output.variable.high);
         let distance = |target: f64| (low - target).max(target - high);
@@ -157,6 +153,16 @@ impl Data {
             return Err(TuneError::OneClass);
         }
         Ok(())
+    }
+}
+
+/// The index of the output that is tuned: the one that no other output reads.
+pub(crate) fn target(model: &Model) -> Result<usize, TuneError> {
+    match model.last_outputs()[..] {
+        [target] => Ok(target),
+        ref last => Err(TuneError::Outputs {
+            outputs: last.len(),
+        }),
     }
 }
 

@@ -237,18 +237,18 @@ fn rounded(
 /// The constants at a bound whose loss is smaller a little beyond it.
 fn at_bounds(objective: &Objective<'_>, parameters: &Parameters, at: &Point) -> Vec<String> {
     const BEYOND: f64 = 1e-3;
-    let Some(output) = at.model.outputs.first() else {
-        return Vec::new();
-    };
-    let variable = &output.variable;
-    let step = BEYOND * (variable.high - variable.low);
     let mut names = Vec::new();
-    for (index, (low, high)) in parameters.bounded() {
+    for ((output, term), (low, high)) in parameters.bounded() {
         let mut model = at.model.clone();
-        let output = model.outputs.first_mut();
-        let Some(term) = output.and_then(|output| output.variable.terms.get_mut(index)) else {
+        let Some(output) = model.outputs.get_mut(output) else {
             continue;
         };
+        let variable = &mut output.variable;
+        let step = BEYOND * (variable.high - variable.low);
+        let Some(term) = variable.terms.get_mut(term) else {
+            continue;
+        };
+        let name = format!("{}.{}", variable.name, term.name);
         let MembershipFunction::Constant { value } = &mut term.membership_function else {
             continue;
         };
@@ -257,7 +257,6 @@ fn at_bounds(objective: &Objective<'_>, parameters: &Parameters, at: &Point) -> 
             value if value <= low => -step,
             _ => continue,
         };
-        let name = format!("{}.{}", variable.name, term.name);
         let beyond = objective.point(model);
         if beyond.is_ok_and(|beyond| beyond.slopes.loss < at.slopes.loss) {
             names.push(name);

@@ -16,6 +16,9 @@ pub(crate) struct Objective<'a> {
     settings: &'a Settings,
     /// The terms of a Takagi-Sugeno output that are solved for.
     fitted: Vec<usize>,
+    target: usize,
+    /// Claims of [`Settings::monotone`] that name no output, of the one that is tuned.
+    claims: Vec<check::Monotone>,
     low: f64,
     width: f64,
     truths: Vec<f64>,
@@ -37,7 +40,8 @@ impl<'a> Objective<'a> {
         data: &'a Data,
         settings: &'a Settings,
     ) -> Objective<'a> {
-        let variable = model.outputs.first().map(|output| &output.variable);
+        let variable = model.outputs.get(parameters.target);
+        let variable = variable.map(|output| &output.variable);
         let (low, high) = variable.map_or((0.0, 1.0), |variable| (variable.low, variable.high));
         let width = high - low;
         let truths = match settings.loss {
@@ -52,6 +56,15 @@ impl<'a> Objective<'a> {
             data,
             settings,
             fitted: parameters.fitted.clone(),
+            target: parameters.target,
+            claims: settings
+                .monotone
+                .iter()
+                .map(|claim| check::Monotone {
+                    output: claim.output.clone().or(variable.map(|v| v.name.clone())),
+                    ..claim.clone()
+                })
+                .collect(),
             low,
             width,
             truths,
@@ -84,7 +97,9 @@ impl<'a> Objective<'a> {
             let value = outcome.value().map(|value| (value - self.low) / self.width);
             value.unwrap_or(f64::NAN)
         };
-        Ok(outcomes.iter().map(place).collect())
+        let outputs = engine.output_names().len();
+        let of_target = outcomes.iter().skip(self.target).step_by(outputs);
+        Ok(of_target.map(place).collect())
     }
 
     /// The loss that is reported.
@@ -100,15 +115,14 @@ impl<'a> Objective<'a> {
 
     /// The first claim of [`Settings::monotone`] that a model does not hold.
     pub(crate) fn broken_claim(&self, model: &Model) -> Result<Option<check::Monotone>, TuneError> {
-        if self.settings.monotone.is_empty() {
+        if self.claims.is_empty() {
             return Ok(None);
         }
         let engine = Engine::new(model)?;
-        let found = check::counterexamples(&engine, &self.settings.monotone).map_err(|wrong| {
-            TuneError::Claim {
+        let found =
+            check::counterexamples(&engine, &self.claims).map_err(|wrong| TuneError::Claim {
                 message: wrong.message.clone(),
-            }
-        })?;
+            })?;
         Ok(found.into_iter().next().map(|found| found.claim))
     }
 }

@@ -5,7 +5,7 @@ use fuzzy::{
     model::{Defuzzifier, MembershipFunction, Output, Role, Term, Variable},
 };
 
-use crate::{TuneError, ordered::Ordered, settings::Settings};
+use crate::{TuneError, data::target, ordered::Ordered, settings::Settings};
 
 /// The parameters of a model that may move.
 #[derive(Debug, Clone)]
@@ -15,8 +15,10 @@ pub(crate) struct Parameters {
     variables: Vec<(Place, Movable)>,
     /// The rules whose weights may move, by their index.
     weights: Vec<usize>,
-    /// The terms that are fitted in closed form.
+    /// The terms that are fitted in closed form: of the only output. Through a chain the problem is not linear.
     pub(crate) fitted: Vec<usize>,
+    /// The index of the output whose values the rows have.
+    pub(crate) target: usize,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -111,7 +113,9 @@ impl Parameters {
             variables: Vec::new(),
             weights: Vec::new(),
             fitted: Vec::new(),
+            target: target(model)?,
         };
+        let is_alone = model.outputs.len() == 1;
         for (i, variable) in model.inputs.iter().enumerate() {
             let moves = |term: &Term| may_move(&variable.name, &term.name);
             parameters.add(Place::Input(i), terms(variable, settings, &moves));
@@ -120,7 +124,7 @@ impl Parameters {
             let moves = |term: &Term| may_move(&output.variable.name, &term.name);
             let movable = match is_takagi_sugeno(output) {
                 false => terms(&output.variable, settings, &moves),
-                true if settings.fits_consequents() && is_linear_problem(output) => {
+                true if is_alone && settings.fits_consequents() && is_linear_problem(output) => {
                     let terms = output.variable.terms.iter().enumerate();
                     let fitted = terms.filter(|(_, term)| is_linear(term) && moves(term));
                     parameters.fitted = fitted.map(|(term, _)| term).collect();
@@ -174,24 +178,23 @@ impl Parameters {
         limits
     }
 
-    /// The constants of the first output that may move, by the index of their term, and their bounds.
-    pub(crate) fn bounded(&self) -> Vec<(usize, (f64, f64))> {
-        let Some(output) = self.model.outputs.first() else {
-            return Vec::new();
-        };
-        let searched = self
-            .variables
-            .iter()
-            .flat_map(|(_, movable)| match movable {
-                Movable::Consequents(terms) => terms.iter().map(|(term, _)| *term).collect(),
-                _ => Vec::new(),
-            });
-        let moving: Vec<usize> = self.fitted.iter().copied().chain(searched).collect();
-        let terms = output.variable.terms.iter().enumerate();
-        let bounded = terms.filter(|(index, _)| moving.contains(index));
-        let bounded =
-            bounded.map(|(index, term)| (index, bounds(&output.variable, term, self.beyond_range)));
-        bounded.collect()
+    /// The constants that may move, by the indices of their output and their term, and their bounds.
+    pub(crate) fn bounded(&self) -> Vec<((usize, usize), (f64, f64))> {
+        let searched = self.variables.iter().flat_map(|of| match of {
+            (Place::Output(output), Movable::Consequents(terms)) => {
+                terms.iter().map(|(term, _)| (*output, *term)).collect()
+            }
+            _ => Vec::new(),
+        });
+        let fitted = self.fitted.iter().map(|term| (self.target, *term));
+        let bounded = fitted.chain(searched).filter_map(|(output, term)| {
+            let variable = &self.model.outputs.get(output)?.variable;
+            let limits = bounds(variable, variable.terms.get(term)?, self.beyond_range);
+            Some(((output, term), limits))
+        });
+        let mut bounded: Vec<_> = bounded.collect();
+        bounded.sort_by_key(|(place, _)| *place);
+        bounded
     }
 
     /// Whether a model keeps order and least distances, constants their bounds, and what is fixed stays.

@@ -96,10 +96,12 @@ impl Settings {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TuneError {
-    /// Tuning needs one output.
-    #[error("the rule set has {outputs} outputs; tuning needs exactly one")]
+    /// Tuning needs one output that no other output reads.
+    #[error(
+        "the rule set has {outputs} outputs that no other output reads; tuning needs exactly one"
+    )]
     Outputs {
-        /// How many there are.
+        /// How many of them there are.
         outputs: usize,
     },
     /// A name that the model does not have.

@@ -23,9 +23,12 @@ fn rows_of(model: &Model, rows: usize, seed: u64) -> Data {
     let engine = Engine::new(model).unwrap();
     let columns: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
     let outcomes = engine.evaluate_batch(&columns).unwrap();
+    let target = model.last_outputs()[0];
     Data {
         truths: outcomes
             .iter()
+            .skip(target)
+            .step_by(model.outputs.len())
             .map(|outcome| outcome.value().unwrap())
             .collect(),
         inputs,
@@ -551,4 +554,60 @@ proptest! {
         let places: Vec<f64> = numbers(&tuned.model)[5..8].iter().map(|number| number.value).collect();
         prop_assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{:?}", places);
     }
+}
+
+/// A comfort in between, which no row has.
+fn chain(comfort: [f64; 2], fast: f64) -> Model {
+    let [poor, good] = comfort;
+    parse(&format!(
+        "
+fuzzy: 1
+name: fan
+inputs:
+  heat: {{range: [0, 40], partition: {{cool: 10, hot: 30}}}}
+  humidity: {{range: [0, 100], partition: {{dry: 20, wet: 80}}}}
+outputs:
+  speed: {{range: [0, 9], terms: {{slow: {{constant: 0}}, fast: {{constant: {fast}}}}}, defuzzifier: weighted_average}}
+  comfort: {{range: [0, 1], partition: {{poor: {poor}, good: {good}}}}}
+rules:
+  - IF heat IS cool AND humidity IS dry THEN comfort IS good
+  - IF heat IS hot OR humidity IS wet THEN comfort IS poor
+  - IF comfort IS poor THEN speed IS fast
+  - IF comfort IS good THEN speed IS slow
+"
+    ))
+}
+
+#[test]
+fn a_chain_is_tuned_from_the_values_of_its_last_output() {
+    let data = rows_of(&chain([0.3, 0.7], 8.0), 400, 1);
+    let begun = chain([0.1, 0.9], 6.0);
+    let settings = Settings {
+        monotone: vec![Monotone {
+            input: "heat".into(),
+            direction: check::Direction::Increasing,
+            output: None,
+        }],
+        ..Settings::default()
+    };
+    let tuned = tune(&begun, &data, &settings, &mut go_on).unwrap();
+    assert!(
+        tuned.after < tuned.before / 5.0,
+        "{} {}",
+        tuned.before,
+        tuned.after
+    );
+    let moves = |name: &str| tuned.moved.iter().any(|moved| moved.of == name);
+    assert!(
+        moves("comfort.poor") && moves("speed.fast"),
+        "{:?}",
+        tuned.moved
+    );
+
+    let mut two = begun.clone();
+    two.rules.truncate(2);
+    assert_eq!(
+        tune(&two, &data, &settings, &mut go_on).unwrap_err(),
+        TuneError::Outputs { outputs: 2 }
+    );
 }

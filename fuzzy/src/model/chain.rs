@@ -75,6 +75,18 @@ impl Model {
         names.map(|output| output.variable.name.as_str()).collect()
     }
 
+    /// The indices of the outputs that no other output reads: the ends of chains, and outputs of no chain.
+    pub fn last_outputs(&self) -> Vec<usize> {
+        let read: BTreeSet<usize> = reads_of_all(self, &Spans::default())
+            .iter()
+            .flatten()
+            .map(|read| read.output)
+            .collect();
+        (0..self.outputs.len())
+            .filter(|output| !read.contains(output))
+            .collect()
+    }
+
     /// The inputs that an output depends on: those that its rules, linear functions and formulas read, and those of the
     /// outputs that it reads. All others change neither its value nor its coverage.
     ///

@@ -320,7 +320,7 @@ def _rows(
     skip_bad_rows: bool,
 ) -> dict[str, Any]:
     """The columns that the native half takes."""
-    names = [*model._input_names(), *model._output_names()]
+    names = model._measured_names()
     renamed = dict(columns or {})
     for name in renamed:
         if name not in names:

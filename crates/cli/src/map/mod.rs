@@ -16,7 +16,7 @@ use flagred::{
 };
 use flagred_authoring::slice::{Mapped, POINTS};
 use fuzzy::{
-    Engine, Model,
+    Engine,
     drawing::visible,
     drawing::{Colour, map_svg, map_text, rules_svg, rules_text, surface_svg},
 };
@@ -296,7 +296,7 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
     let profile = estimator.as_ref().map(Estimator::profile);
     let wanted = arguments.of.as_deref();
     let output = match wanted.or(profile.map(|profile| profile.output.as_str())) {
-        None => last(engine.model()),
+        None => engine.model().last_outputs().last().copied().unwrap_or(0),
         Some(wanted) => engine.output(wanted).ok_or_else(|| {
             let outputs = engine.output_names();
             let failure = Failure::usage(format!("`{file}` has no output `{wanted}`"));
@@ -326,18 +326,6 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
         engine,
         output,
     })
-}
-
-/// The last output that no other one reads.
-fn last(model: &Model) -> usize {
-    let names = || {
-        model
-            .outputs
-            .iter()
-            .map(|output| output.variable.name.as_str())
-    };
-    let read: Vec<&str> = names().flat_map(|name| model.reads(name)).collect();
-    names().rposition(|name| !read.contains(&name)).unwrap_or(0)
 }
 
 impl Evaluated {

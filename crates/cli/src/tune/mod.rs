@@ -281,7 +281,7 @@ fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failur
 fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
     let help = match error {
         TuneError::Outputs { .. } => {
-            "tune a rule set with this output alone; outputs that chain are tuned one by one"
+            "tune a rule set with one of these outputs and those that it reads"
         }
         TuneError::Unknown { .. } => "name a variable, or a term as `variable.term`",
         TuneError::NothingMoves => {
