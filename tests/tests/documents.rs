@@ -294,10 +294,7 @@ mod rust {
 
     /// The module of examples/09-on-board.md: `flagred export --rust`.
     mod profile {
-        include!(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/exported/flagred.rs"
-        ));
+        include!(concat!(env!("CARGO_MANIFEST_DIR"), "/exported/flagred.rs"));
     }
 
     include!(concat!(env!("OUT_DIR"), "/documents.rs"));
