@@ -1,26 +1,59 @@
 //! Estimates from motor commands alone how close a multirotor is to losing control.
 //!
-//! - [`flight::Assessor`]: samples of a flight in, its verdict and findings out; `log::assess` (feature `flightlog`) does it
-//!   for a flight log.
-//! - [`monitor::Monitor`]: a sample in, the risk and the level of the moment out; [`board::Monitor`] is the same without an
-//!   allocator.
-//! - [`shipped`]: the profiles and rule sets that come with the crate; [`profile::Profile`] and [`estimator::Estimator`]
-//!   make others usable; `loaded::load` (feature `flightlog`) reads both.
+//! What an embedder needs:
 //!
+//! | to | use | feature |
+//! |---|---|---|
+//! | assess a flight log | `log::assess`, with a `Flight` of `flagred_flightlog::open` | `flightlog` |
+//! | assess a flight from samples | [`flight::Assessor`]: samples in, verdict and findings out | |
+//! | follow a flight live | [`monitor::Monitor`]: a sample in, the risk and the level of the moment out | |
+//! | use the profiles that come with the crate | [`shipped`] | |
+//! | use a profile from a file, or a shipped one by its name | `loaded::load` | `flightlog` |
+//! | compile a profile and a rule set made in code | [`profile::Profile`], [`estimator::Estimator`] | |
+//! | run on board, without an allocator | [`board::Monitor`] | without `std` |
+//!
+//! The other modules define what these take and return.
+//!
+//! # Example: a live monitor
+//! ```
+//! use flagred::{monitor::{Craft, Monitor, Sample}, shipped, verdict::Level};
+//!
+//! let mut monitor = Monitor::new(&shipped::flagred(), Craft::new(4))?; // four motors
+//! let mut alarms = Vec::new();
+//! for i in 0..500 {
+//!     let t_s = f64::from(i) * 0.04;
+//!     // Commands as parts of the effective range: 0 and 1 are the limits. Here they reach them after 10 s.
+//!     let motors = if t_s < 10.0 { [0.4, 0.4, 0.41, 0.41] } else { [0.0, 1.0, 0.05, 1.0] };
+//!     let update = monitor.push(&Sample { t_s, motors: &motors, in_air: Some(true), signals: &[] });
+//!     alarms.extend(update.change); // GOOD, WARN or FAIL, when the level changes
+//! }
+//! assert_eq!(alarms.last(), Some(&Level::Fail));
+//! # Ok::<(), flagred::monitor::MonitorError>(())
+//! ```
+//!
+//! # Example: the verdict of a flight
 //! ```
 //! use flagred::{flight::{Assessor, Verdict}, monitor::{Craft, Sample}, shipped, verdict::Level};
 //!
 //! let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None)?;
 //! for i in 0..1000 {
-//!     let motors = [0.45, 0.5, 0.55, 0.5]; // of the effective range: 0 and 1 are the limits
+//!     let motors = [0.45, 0.5, 0.55, 0.5];
 //!     assessor.push(&Sample { t_s: f64::from(i) * 0.02, motors: &motors, in_air: Some(true), signals: &[] });
 //! }
 //! assert_eq!(assessor.finish().verdict, Verdict::Known(Level::Good));
 //! # Ok::<(), flagred::monitor::MonitorError>(())
 //! ```
 //!
-//! Features: `std` (default); `flightlog` for flight logs; `serde` to serialise what comes out. Without `std` there is only
-//! [`board`] and what it uses, which needs `core` alone.
+//! # Errors
+//! Every error type implements `Display` and `Error`. Errors of profiles and rule sets are
+//! [`fuzzy::Findings`](fuzzy::diagnostic::Findings): all of a text, each with its line and column.
+//!
+//! # Features
+//! - `std` (default): without it there are only [`board`] and what it uses, which need `core` alone.
+//! - `flightlog`: flight logs, read by `flagred_flightlog`; profiles from files.
+//! - `serde`: assessments, findings and updates as data for `serde`; `schema`: their JSON Schemas.
+//!
+//! The repository's docs/rust.md is a guide to this crate and to the engine, `fuzzy`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[cfg(feature = "std")]

@@ -219,21 +219,61 @@ fn every_block_runs_as_printed() {
     assert!(failures.is_empty(), "{}", failures.join("\n\n"));
 }
 
+/// The links of a document, outside of its blocks.
+fn links(text: &str) -> Vec<&str> {
+    text.split("```")
+        .step_by(2)
+        .flat_map(|prose| prose.split("](").skip(1))
+        .filter_map(|rest| rest.split(')').next())
+        .filter(|target| !target.contains("://") && !target.contains(' '))
+        .collect()
+}
+
+/// The anchors of a document's headings, as GitHub makes them.
+fn anchors(text: &str) -> Vec<String> {
+    let prose: String = text.split("```").step_by(2).collect();
+    let headings = prose.lines().filter(|line| line.starts_with('#'));
+    let anchor = |heading: &str| {
+        let title = heading.trim_start_matches('#').trim().to_lowercase();
+        title
+            .chars()
+            .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'))
+            .map(|c| if c == ' ' { '-' } else { c })
+            .collect()
+    };
+    headings.map(anchor).collect()
+}
+
 /// Links within the repository lead somewhere.
 #[test]
 fn every_link_to_a_file_leads_to_one() {
     let mut broken = Vec::new();
     for page in documents() {
         let text = fs::read_to_string(&page).unwrap();
-        let prose: String = text.split("```").step_by(2).collect();
-        for target in prose
-            .split("](")
-            .skip(1)
-            .filter_map(|rest| rest.split(')').next())
-        {
+        for target in links(&text) {
             let file = target.split('#').next().unwrap_or_default();
-            let outside = target.contains("://") || file.is_empty() || file.contains(' ');
-            if !outside && !page.parent().unwrap().join(file).exists() {
+            if !file.is_empty() && !page.parent().unwrap().join(file).exists() {
+                broken.push(format!("{}: {target}", page.display()));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn every_link_to_a_heading_leads_to_one() {
+    let mut broken = Vec::new();
+    for page in documents() {
+        let text = fs::read_to_string(&page).unwrap();
+        for target in links(&text) {
+            let Some((file, anchor)) = target.split_once('#') else {
+                continue;
+            };
+            let headings = match file {
+                "" => anchors(&text),
+                _ => anchors(&fs::read_to_string(page.parent().unwrap().join(file)).unwrap()),
+            };
+            if !headings.iter().any(|heading| heading == anchor) {
                 broken.push(format!("{}: {target}", page.display()));
             }
         }
@@ -243,5 +283,19 @@ fn every_link_to_a_file_leads_to_one() {
 
 mod rust {
     #![allow(unused, reason = "what a page shows need not be used")]
+
+    /// The module of docs/firmware.md: `flagred export --rust rules/tipper.yaml`.
+    mod tipper {
+        include!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/exported/rules_tipper.rs"
+        ));
+    }
+
+    /// The module of examples/09-on-board.md: `flagred export --rust`.
+    mod profile {
+        include!(concat!(env!("CARGO_MANIFEST_DIR"), "/exported/flagred.rs"));
+    }
+
     include!(concat!(env!("OUT_DIR"), "/documents.rs"));
 }

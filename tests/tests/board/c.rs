@@ -261,7 +261,7 @@ fn a_damaged_table_is_refused_or_evaluates_in_c() {
     }
 }
 
-/// The programs of examples/09-on-board.md and docs/export.md.
+/// The programs of examples/09-on-board.md and docs/firmware.md.
 #[test]
 fn the_pages_in_c_run() {
     let tipper = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/tipper.yaml");
@@ -273,7 +273,7 @@ fn the_pages_in_c_run() {
             "FAIL\n",
         ),
         (
-            include_str!("../../../docs/export.md"),
+            include_str!("../../../docs/firmware.md"),
             "tipper.h",
             tipper,
             "22.98\n",

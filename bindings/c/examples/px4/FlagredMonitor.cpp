@@ -1,5 +1,5 @@
 /* A PX4 module that says how close a multirotor is to losing control: FR_RISK and FR_ELEV as debug_key_value, which PX4 streams
- * as NAMED_VALUE_FLOAT, and a text when the level changes. See docs/export.md. */
+ * as NAMED_VALUE_FLOAT, and a text when the level changes. See docs/firmware.md. */
 #include <cmath>
 #include <cstdio>
 #include <cstring>

@@ -72,7 +72,9 @@ def identify(
     validation: bool = True,
     skip_bad_rows: bool = False,
 ) -> Identified:
-    """Finds inputs, terms and rules for a column of a table. ``flagred identify`` does the same: see docs/identify.md.
+    """Finds inputs, terms and rules for a column of a table. ``flagred identify`` does the same.
+
+    docs/rules-from-data.md describes the search.
 
     Parameters
     ----------

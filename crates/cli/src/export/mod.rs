@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     /// Write C for `flagred.h` and the library of `flagred-c`
     #[arg(long, group = "language")]
     c: bool,
-    /// Write a Lua script that ArduPilot runs from its card: docs/on-ardupilot.md
+    /// Write a Lua script that ArduPilot runs from its card: docs/firmware.md
     #[arg(long, group = "language")]
     lua: bool,
     /// Write a rule set as FIS, for MATLAB and Octave

@@ -2,7 +2,7 @@
 --
 -- Copy it to APM/scripts on the card. It reads the motor outputs and reports how close the vehicle is to losing control:
 -- FR_RISK and FR_ELEV in %, and a text when the level changes. It changes nothing on the vehicle. Installation, cost and
--- tests: docs/on-ardupilot.md of FLAGRED.
+-- tests: docs/firmware.md of FLAGRED.
 --
 -- An error while ArduPilot loads a script blocks arming. So ArduPilot compiles only this loader; the rest of the file is a
 -- comment to it. The loader reads the file again and compiles it part by part, which takes less memory than all at once, and
