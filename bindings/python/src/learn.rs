@@ -5,7 +5,7 @@ use flagred_evaluation::learning::{self, Row};
 use fuzzy::{
     Engine, Model,
     check::counterexamples,
-    learn::{Direction, Learner, Resolution, Settings},
+    learn::{Direction, LearnError, Learner, Resolution, Settings, Unchained},
     yaml,
 };
 use pyo3::prelude::*;
@@ -90,22 +90,28 @@ pub(crate) fn _learn(
 }
 
 fn learn_rules(
-    mut model: Model,
+    whole: Model,
     all: Vec<Row>,
     skip_bad_rows: bool,
     settings: Settings,
     options: &LearnOptions,
 ) -> Result<Learned, Failed> {
+    let wrong = |error: LearnError| Failed::Data(error.to_string(), Some(error.help().into()));
+    let chain = Unchained::new(&whole).map_err(wrong)?;
+    let mut model = chain.model().clone();
     if !options.keep_rules {
         model.rules.clear();
     }
-    let learner = Learner::new(&model, settings.clone());
-    let mut learner =
-        learner.map_err(|error| Failed::Data(error.to_string(), Some(error.help().into())))?;
+    let mut learner = Learner::new(&model, settings.clone()).map_err(wrong)?;
     let (mut rows, mut refused) = (Vec::with_capacity(all.len()), Vec::new());
     for (place, row) in all.into_iter().enumerate() {
-        match learner.add(&row.values, row.weight) {
-            Ok(()) => rows.push(row),
+        let values = chain.values(&row.values);
+        let added = values.and_then(|values| {
+            learner.add(&values, row.weight)?;
+            Ok(Row { values, ..row })
+        });
+        match added {
+            Ok(row) => rows.push(row),
             Err(refusal) => refused.push(format!("row {place}: {refusal}")),
         }
     }
@@ -124,11 +130,12 @@ fn learn_rules(
         false => None,
     };
     let learned = learner.finish();
+    let whole = chain.joined(&learned.model);
     let claims = claims(&options.rising, &options.falling);
     let broken = match claims.is_empty() || learned.model.rules.is_empty() {
         true => Vec::new(),
         false => {
-            let engine = Engine::new(&learned.model).map_err(Failed::Findings)?;
+            let engine = Engine::new(&whole).map_err(Failed::Findings)?;
             counterexamples(&engine, &claims).map_err(Failed::data)?
         }
     };
@@ -149,6 +156,6 @@ fn learn_rules(
             mean_absolute: errors.mean_absolute,
             bias: errors.bias,
         }),
-        model: yaml::to_string(&learned.model),
+        model: yaml::to_string(&whole),
     })
 }

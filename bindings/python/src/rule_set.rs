@@ -153,17 +153,15 @@ impl RuleSet {
         self.model(|model| model.outputs.iter().map(name).collect())
     }
 
-    /// The names of the variables whose values rows of data have: the inputs, and the outputs that no other output reads.
+    /// The names of the variables that rows of data have values of: the inputs, and the measured output.
     fn _measured_names(&self) -> Vec<String> {
         self.model(|model| {
-            let last = model
-                .last_outputs()
-                .into_iter()
-                .filter_map(|output| model.outputs.get(output));
+            let output = model.measured_output();
+            let output = output.and_then(|output| model.outputs.get(output));
             let measured = model
                 .inputs
                 .iter()
-                .chain(last.map(|output| &output.variable));
+                .chain(output.map(|output| &output.variable));
             measured.map(|variable| variable.name.clone()).collect()
         })
     }

@@ -116,33 +116,30 @@ pub(crate) struct Data {
     pub(crate) refused: Vec<String>,
 }
 
-/// The variables whose values rows have: the inputs, and the outputs that no other output reads.
-fn measured(model: &Model) -> impl Iterator<Item = &Variable> {
-    let last = model.last_outputs().into_iter();
-    let last = last.filter_map(|output| model.outputs.get(output));
-    model
+/// Reads the values of the inputs and of the measured output of a model from all tables.
+pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure> {
+    let output = model.measured_output();
+    let output = output.and_then(|output| model.outputs.get(output));
+    let variables = model
         .inputs
         .iter()
-        .chain(last.map(|output| &output.variable))
-}
-
-/// Reads the values of the inputs of a model, and of the outputs that no other output reads, from all tables.
-pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure> {
-    let names: Vec<&str> = measured(model).map(|v| v.name.as_str()).collect();
+        .chain(output.map(|output| &output.variable));
+    let variables: Vec<&Variable> = variables.collect();
+    let names: Vec<&str> = variables.iter().map(|v| v.name.as_str()).collect();
     let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
     let format = &arguments.rewrite.format;
     let mut data = columns(tables(&arguments.data, format), format, &names, optional)?;
     if arguments.clamp {
-        clamp(&mut data, model);
+        clamp(&mut data, &variables);
     }
     Ok(data)
 }
 
 /// Clamps the values of rows to the ranges of the variables, and reports how many were outside.
-fn clamp(data: &mut Data, model: &Model) {
+fn clamp(data: &mut Data, variables: &[&Variable]) {
     let rows = data.rows.len();
-    for (column, variable) in measured(model).enumerate() {
-        let Variable { low, high, .. } = *variable;
+    for (column, variable) in variables.iter().enumerate() {
+        let Variable { low, high, .. } = **variable;
         let mut first: Option<String> = None;
         let mut count = 0;
         for (row, place) in &mut data.rows {

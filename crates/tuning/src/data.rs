@@ -156,14 +156,12 @@ impl Data {
     }
 }
 
-/// The index of the output that is tuned: the one that no other output reads.
+/// The index of the output that is tuned.
 pub(crate) fn target(model: &Model) -> Result<usize, TuneError> {
-    match model.last_outputs()[..] {
-        [target] => Ok(target),
-        ref last => Err(TuneError::Outputs {
-            outputs: last.len(),
-        }),
-    }
+    let outputs = TuneError::Outputs {
+        outputs: model.last_outputs().len(),
+    };
+    model.measured_output().ok_or(outputs)
 }
 
 /// The least and the largest value.

@@ -24,12 +24,14 @@ mod settings;
 mod sum;
 #[cfg(test)]
 mod tests;
+mod unchained;
 
 use consequents::{Consequents, highest};
 #[doc(hidden)]
 pub use settings::bad_weight;
 pub use settings::{Direction, LearnError, Refusal, Resolution, Settings, WEIGHTS};
 use sum::Sum;
+pub use unchained::Unchained;
 
 /// Collects samples and derives rules from them.
 ///

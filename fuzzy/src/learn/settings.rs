@@ -114,6 +114,11 @@ pub enum LearnError {
     },
     /// The rule set has rule blocks.
     Blocks,
+    /// The outputs that the learned one reads cannot be computed.
+    Chain {
+        /// Why.
+        message: String,
+    },
     /// A term of the output is a function of inputs, which no value of the output belongs to.
     ReadsInputs {
         /// Its name.
@@ -137,7 +142,13 @@ impl core::fmt::Display for LearnError {
             LearnError::Outputs { outputs } => {
                 write!(
                     f,
-                    "the rule set has {outputs} outputs; learning needs exactly one"
+                    "the rule set has {outputs} outputs that no other output reads; learning needs exactly one"
+                )
+            }
+            LearnError::Chain { message } => {
+                write!(
+                    f,
+                    "the outputs before the last one cannot be computed: {message}"
                 )
             }
             LearnError::Blocks => f.write_str("learned rules stand in no rule block"),
@@ -158,8 +169,9 @@ impl LearnError {
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {
-            LearnError::Outputs { .. } => {
-                "learn from a rule set with this output alone; outputs that chain are learned one by one"
+            LearnError::Outputs { .. } => "learn with one of these outputs and those that it reads",
+            LearnError::Chain { .. } => {
+                "`flagred check` shows what is wrong with the rules of the other outputs"
             }
             LearnError::Blocks => "remove `blocks` and its rules; add blocks again after learning",
             LearnError::ReadsInputs { .. } => {
@@ -205,6 +217,11 @@ pub enum Refusal {
         /// The value.
         value: f64,
     },
+    /// An output that the learned one reads has no value.
+    NoValue {
+        /// The output.
+        variable: String,
+    },
     /// A weight that is not one of [`WEIGHTS`].
     Weight {
         /// The weight.
@@ -233,6 +250,9 @@ impl core::fmt::Display for Refusal {
             ),
             Refusal::NoTerm { variable, value } => {
                 write!(f, "every term of `{variable}` is 0 at {}", short(*value))
+            }
+            Refusal::NoValue { variable } => {
+                write!(f, "no rule gives `{variable}` a value")
             }
             Refusal::Weight { weight } => f.write_str(&bad_weight(*weight, "a number")),
         }

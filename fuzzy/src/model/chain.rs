@@ -87,6 +87,23 @@ impl Model {
             .collect()
     }
 
+    /// The index of the output that rows of data have values of: the one that no other output reads; of several the one that has
+    /// no rules yet. `None` where these are more than one.
+    pub fn measured_output(&self) -> Option<usize> {
+        let last = self.last_outputs();
+        let is_bare = |index: &&usize| {
+            let output = self.outputs.get(**index);
+            output.is_some_and(|output| !self.rules.iter().any(|rule| concludes(rule, output)))
+        };
+        match last[..] {
+            [one] => Some(one),
+            _ => {
+                let mut bare = last.iter().filter(is_bare);
+                bare.next().filter(|_| bare.next().is_none()).copied()
+            }
+        }
+    }
+
     /// The inputs that an output depends on: those that its rules, linear functions and formulas read, and those of the
     /// outputs that it reads. All others change neither its value nor its coverage.
     ///

@@ -9,12 +9,12 @@ use std::io::Write as _;
 use clap::ValueEnum;
 use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
 use flagred_evaluation::learning::{
-    Errors, ExamineError, GapComparison, cross_validate, leave_one_rule_out,
+    Errors, ExamineError, GapComparison, Row, cross_validate, leave_one_rule_out,
 };
 use fuzzy::{
     Engine, Model,
     check::{self, Counterexample},
-    learn::{Direction, Learned, Learner, Resolution, Settings},
+    learn::{Direction, LearnError, Learned, Learner, Resolution, Settings, Unchained},
     map::{DecisionMap, Grid},
     model::{Aggregation, Conjunction, Implication},
 };
@@ -68,6 +68,8 @@ enum Resolve {
 /// What the report tells.
 struct Outcome {
     learned: Learned,
+    /// The rule set with the learned rules.
+    model: Model,
     kept: usize,
     refused: Vec<String>,
     refused_count: usize,
@@ -82,19 +84,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (_, output) = arguments.rows.files()?;
     let name = arguments.rows.rewrite.model.display().to_string();
     let source = rule_set::read(&arguments.rows.rewrite.model)?;
-    let mut model = rule_set::document(&source, &name)?.model.clone();
+    let whole = &rule_set::document(&source, &name)?.model;
+    let wrong = |error: LearnError| Failure::usage(format!("`{name}`: {error}")).help(error.help());
+    let chain = Unchained::new(whole).map_err(wrong)?;
+    let mut model = chain.model().clone();
     if !arguments.keep_rules {
         model.rules.clear();
     }
     let settings = settings(arguments);
-    let mut learner = Learner::new(&model, settings.clone())
-        .map_err(|error| Failure::usage(format!("`{name}`: {error}")).help(error.help()))?;
-    let data = rows::read(&arguments.rows, &model)?;
+    let mut learner = Learner::new(&model, settings.clone()).map_err(wrong)?;
+    let data = rows::read(&arguments.rows, whole)?;
     let mut rows = Vec::with_capacity(data.rows.len());
     let mut refused = data.refused;
     for (row, place) in data.rows {
-        match learner.add(&row.values, row.weight) {
-            Ok(()) => rows.push(row),
+        let values = chain.values(&row.values);
+        let added = values.and_then(|values| {
+            learner.add(&values, row.weight)?;
+            Ok(Row { values, ..row })
+        });
+        match added {
+            Ok(row) => rows.push(row),
             Err(refusal) => refused.push(format!("{place}: {refusal}")),
         }
     }
@@ -105,8 +114,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let gap = GapSettings::default();
     let examined = |error: ExamineError| Failure::unreadable(error.to_string());
     let coverage = coverage(&learned.model, &gap)?;
-    let counterexamples = counterexamples(arguments, &learned.model)?;
+    let whole = chain.joined(&learned.model);
+    let counterexamples = counterexamples(arguments, &whole)?;
     let outcome = Outcome {
+        model: whole,
         kept: model.rules.len(),
         refused_count: refused.len(),
         refused,
@@ -163,13 +174,19 @@ fn settings(arguments: &Arguments) -> Settings {
 /// Where the learned rules contradict `--rising` and `--falling`, as `flagred check --monotone` finds it.
 fn counterexamples(arguments: &Arguments, model: &Model) -> Result<Vec<Counterexample>, Failure> {
     let engine = Engine::new(model).map_err(unusable)?;
-    check::counterexamples(&engine, &arguments.rows.claims()).map_err(unusable)
+    let output = model.measured_output();
+    let output = output.and_then(|output| engine.output_names().nth(output));
+    let mut claims = arguments.rows.claims();
+    for claim in &mut claims {
+        claim.output = output.map(Into::into);
+    }
+    check::counterexamples(&engine, &claims).map_err(unusable)
 }
 
 /// What would make the output monotone, where that is known: inference by product and sum does not bend monotone rules where
 /// every combination of terms has one.
 fn monotone_help(arguments: &Arguments, outcome: &Outcome) -> Option<&'static str> {
-    let mut model = outcome.learned.model.clone();
+    let mut model = outcome.model.clone();
     model.operators.and = Conjunction::Product;
     model.operators.implication = Implication::Product;
     model.operators.aggregation = Aggregation::Sum;

@@ -22,7 +22,7 @@ pub(super) fn rule_set(
 ) -> Result<String, Failure> {
     let learned = &outcome.learned;
     let round = |degree: f64| (degree * 1e6).round() / 1e6;
-    let mut model = learned.model.clone();
+    let mut model = outcome.model.clone();
     for rule in &mut model.rules {
         rule.confidence = rule.confidence.map(round);
         for beaten in &mut rule.against {

@@ -1,0 +1,197 @@
+//! Rules for the last output of a chain: the outputs that it reads are inputs to learn over.
+
+use alloc::{collections::BTreeSet, string::String, vec::Vec};
+
+use super::{LearnError, Refusal, check};
+use crate::{
+    engine::Engine,
+    model::{Model, Rule, Variable},
+};
+
+/// The last output of a chain on its own. The outputs that it reads are inputs, whose values are computed from those of the
+/// chain by the rules that it has. A model without a chain is its own.
+///
+/// # Example: a fan that follows a comfort, which no sample has
+/// ```
+/// use fuzzy::learn::{Learner, Settings, Unchained};
+///
+/// let model = fuzzy::yaml::parse("
+/// fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 40], partition: [cool, hot]}}
+/// outputs:
+///   comfort: {range: [0, 1], partition: [poor, good], defuzzifier: mean_of_maxima}
+///   speed: {range: [0, 9], partition: [slow, fast]}
+/// rules:
+///   - IF heat IS cool THEN comfort IS good
+///   - IF heat IS hot THEN comfort IS poor
+/// ")?.model;
+/// let chain = Unchained::new(&model)?;
+/// let mut learner = Learner::new(chain.model(), Settings::default())?;
+/// for sample in [[5.0, 1.0], [38.0, 8.5]] {
+///     learner.add(&chain.values(&sample)?, 1.0)?;
+/// }
+/// let whole = chain.joined(&learner.finish().model);
+/// assert_eq!(whole.rules[2].rule.to_string(), "IF comfort IS poor THEN speed IS fast");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Unchained {
+    whole: Model,
+    target: usize,
+    /// The other outputs and their rules.
+    before: Option<Engine>,
+    /// What each input of the model is: the index of an input of the chain, or, counted on, of an output of `before`.
+    picks: Vec<usize>,
+    model: Model,
+}
+
+impl Unchained {
+    /// Takes the measured output of a model, [`Model::measured_output`], out of its chain. It is learned over the variables that
+    /// its rules read. Where it has no rules, these are the outputs that no other output reads, and the inputs that they do not
+    /// depend on.
+    ///
+    /// # Errors
+    /// No output of several is the measured one, or the rules of the others cannot be used.
+    pub fn new(model: &Model) -> Result<Unchained, LearnError> {
+        let outputs = LearnError::Outputs {
+            outputs: model.last_outputs().len(),
+        };
+        let target = model.measured_output().ok_or(outputs)?;
+        let mut unchained = Unchained {
+            whole: model.clone(),
+            target,
+            before: None,
+            picks: (0..model.inputs.len()).collect(),
+            model: model.clone(),
+        };
+        if model.outputs.len() == 1 {
+            return Ok(unchained);
+        }
+        let name = model.outputs.get(target).map(|o| &o.variable.name);
+        let is_of_target = |output: &String| Some(output) == name;
+        let mut before = model.clone();
+        before.outputs.remove(target);
+        before.rules = of_outputs(&model.rules, |output| !is_of_target(output));
+        let own = of_outputs(&model.rules, is_of_target);
+
+        let read = read_by(&own, &before);
+        let variables = variables(&before).enumerate();
+        let (picks, inputs) = variables
+            .filter(|(_, variable)| read.contains(&variable.name))
+            .map(|(index, variable)| (index, variable.clone()))
+            .unzip();
+        unchained.picks = picks;
+        unchained.model.inputs = inputs;
+        unchained
+            .model
+            .outputs
+            .retain(|o| is_of_target(&o.variable.name));
+        unchained.model.rules = own;
+        let engine = Engine::new(&before).map_err(|findings| LearnError::Chain {
+            message: alloc::format!("{findings}"),
+        })?;
+        unchained.before = Some(engine);
+        Ok(unchained)
+    }
+
+    /// The model to learn with: the measured output, its rules, and what it is learned over.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The variables that samples have values of: the inputs of the chain, and the measured output.
+    pub fn variables(&self) -> impl Iterator<Item = &Variable> {
+        let target = self.whole.outputs.get(self.target);
+        self.whole
+            .inputs
+            .iter()
+            .chain(target.map(|output| &output.variable))
+    }
+
+    /// A sample for [`model`](Self::model) from a value for each of [`variables`](Self::variables).
+    ///
+    /// # Errors
+    /// A value is not finite or outside its range, or an output that is read has no value.
+    pub fn values(&self, sample: &[f64]) -> Result<Vec<f64>, Refusal> {
+        let Some(before) = &self.before else {
+            return Ok(sample.to_vec());
+        };
+        let wrong_number = || Refusal::WrongNumber {
+            expected: self.whole.inputs.len() + 1,
+            got: sample.len(),
+        };
+        let (target, inputs) = sample.split_last().ok_or_else(wrong_number)?;
+        for (variable, value) in self.whole.inputs.iter().zip(inputs) {
+            check(variable, *value)?;
+        }
+        let outcomes = before.evaluate(inputs).map_err(|_| wrong_number())?;
+        let value = |pick: &usize| match inputs.get(*pick) {
+            Some(value) => Ok(*value),
+            None => {
+                let output = *pick - inputs.len();
+                let value = outcomes.get(output).and_then(|outcome| outcome.value());
+                value.ok_or_else(|| Refusal::NoValue {
+                    variable: before.output_names().nth(output).unwrap_or_default().into(),
+                })
+            }
+        };
+        let values = self.picks.iter().map(value);
+        values.chain([Ok(*target)]).collect()
+    }
+
+    /// The chain with the rules of a learned model in place of those of the measured output.
+    #[must_use]
+    pub fn joined(&self, learned: &Model) -> Model {
+        if self.before.is_none() {
+            return learned.clone();
+        }
+        let mut whole = self.whole.clone();
+        let target = whole.outputs.get(self.target);
+        let target = target.map(|output| output.variable.name.clone());
+        whole.rules = of_outputs(&whole.rules, |output| Some(output) != target.as_ref());
+        whole.rules.extend(learned.rules.iter().cloned());
+        whole
+    }
+}
+
+/// The rules with the consequents of these outputs alone.
+fn of_outputs(rules: &[Rule], is_kept: impl Fn(&String) -> bool) -> Vec<Rule> {
+    let mut rules = rules.to_vec();
+    for rule in &mut rules {
+        rule.rule
+            .consequents
+            .retain(|consequent| is_kept(&consequent.output.text));
+    }
+    rules.retain(|rule| !rule.rule.consequents.is_empty());
+    rules
+}
+
+fn variables(model: &Model) -> impl Iterator<Item = &Variable> {
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    model.inputs.iter().chain(outputs)
+}
+
+/// The names of what an output with these rules is learned over.
+fn read_by(own: &[Rule], before: &Model) -> BTreeSet<String> {
+    let mut read = BTreeSet::new();
+    for rule in own {
+        rule.rule.condition.visit(&mut |proposition| {
+            read.insert(proposition.variable.text.clone());
+        });
+    }
+    if !read.is_empty() {
+        return read;
+    }
+    let last = before.last_outputs().into_iter();
+    let last: Vec<&str> = last
+        .filter_map(|output| Some(before.outputs.get(output)?.variable.name.as_str()))
+        .collect();
+    let behind: BTreeSet<&str> = last
+        .iter()
+        .flat_map(|output| before.inputs_of(output))
+        .collect();
+    let inputs = before.inputs.iter().map(|input| input.name.as_str());
+    let rest = inputs.filter(|input| !behind.contains(input));
+    rest.chain(last.iter().copied()).map(String::from).collect()
+}
