@@ -130,17 +130,27 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[Unreached]) 
         | Defuzzifier::WeightedSum
         | Defuzzifier::Tsukamoto => "centroid",
     };
-    let range = widened(model, output, unreached).map(|[low, high]| {
+    let wider = widened(model, output, unreached).map(|[low, high]| {
         let range = format!("range: [{}, {}]", shown(low), shown(high));
         match variable.partition_peaks() {
             // As a list, the terms would move with the range.
             Some(peaks) => {
                 let peaks = listed(variable, &peaks, shown);
-                format!("`{range}` with `partition: {peaks}`, or ")
+                format!("`{range}` with `partition: {peaks}`")
             }
-            None => format!("`{range}`, or "),
+            None => format!("`{range}`"),
         }
     });
+    let mut is_read = false;
+    for rule in &model.rules {
+        let condition = &rule.rule.condition;
+        condition.visit(&mut |proposition| is_read |= proposition.variable.text == variable.name);
+    }
+    if is_read {
+        // Conditions read fuzzy sets alone.
+        let wider = wider.as_deref().unwrap_or("a wider `range`");
+        return format!("the {method} of a term lies inside the term: write {wider}");
+    }
     let peaks: Vec<f64> = variable
         .terms
         .iter()
@@ -153,9 +163,10 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[Unreached]) 
     let numbers = listed(variable, &peaks, |peak| {
         format!("{{constant: {}}}", shown(peak))
     });
+    let wider = wider.map(|wider| format!("{wider}, or "));
     format!(
         "the {method} of a term lies inside the term: write {}numbers, `terms: {numbers}` with `defuzzifier: weighted_average`",
-        range.as_deref().unwrap_or_default()
+        wider.unwrap_or_default()
     )
 }
 

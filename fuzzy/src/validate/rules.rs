@@ -1,13 +1,13 @@
 //! Rules: names, weights, provenance.
 
-use alloc::{format, string::String};
+use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 use core::ops::Range;
 
 use super::{Validator, or};
 use crate::{
     diagnostic::{Diagnostic, nearest, suggest},
-    model::{Rule, Variable, document::RuleSpans},
-    rule::{Condition, DEEPEST_NESTING, Hedge, Name, Proposition},
+    model::{MembershipFunction, Rule, Term, Variable, document::RuleSpans},
+    rule::{Condition, DEEPEST_NESTING, Hedge, Name, Proposition, is_plain_name},
 };
 
 impl<'m> Validator<'m> {
@@ -115,7 +115,11 @@ impl<'m> Validator<'m> {
                     "`{}` is a Takagi-Sugeno output, whose terms are numbers; a condition reads fuzzy sets",
                     name.text
                 );
-                let help = "let a linear function read it, or give it another defuzzifier and fuzzy sets as terms";
+                let sets = as_partition(variable).map_or(
+                    "give it another defuzzifier and fuzzy sets as terms".to_owned(),
+                    |sets| format!("write `{sets}` in place of `terms` and `defuzzifier`"),
+                );
+                let help = format!("{sets}, or let a linear function read it");
                 self.error("output-in-condition", &name.span, message, help);
             }
             Some(term) => self.known_term(kind, variable, term),
@@ -193,4 +197,26 @@ fn unknown<'a>(
     let mut finding = Diagnostic::error("unknown-variable", span.clone(), message);
     finding.help = suggest(name, known).or_else(|| Some(format!("declare it under `{kind}s`")));
     finding
+}
+
+/// A partition with its peaks where the terms of a variable have their constants; `None` where they are not constants that
+/// differ.
+fn as_partition<'a>(variable: &'a Variable) -> Option<String> {
+    let constant = |term: &'a Term| {
+        let MembershipFunction::Constant { value } = term.membership_function else {
+            return None;
+        };
+        Some((value, term.name.as_str()))
+    };
+    let mut terms: Vec<(f64, &str)> = variable.terms.iter().map(constant).collect::<Option<_>>()?;
+    terms.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    if !terms.is_sorted_by(|(a, _), (b, _)| a < b) {
+        return None;
+    }
+    let peaks = terms.iter().map(|(value, name)| match is_plain_name(name) {
+        true => format!("{name}: {value}"),
+        false => format!("{name:?}: {value}"),
+    });
+    let peaks: Vec<String> = peaks.collect();
+    Some(format!("partition: {{{}}}", peaks.join(", ")))
 }
