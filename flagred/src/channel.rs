@@ -1,6 +1,8 @@
 //! Channels: one thing observed over one window, and the statistics taken of it. What is to be observed is plain data,
 //! which can lie in a table; what was seen is the caller's memory.
 
+use crate::verdict::NoticeSettings;
+
 mod code;
 mod seen;
 
@@ -213,22 +215,28 @@ pub struct Channel {
     pub exponential: bool,
 }
 
-/// The number of motors that a craft needs so that every motor that channels name is there.
-pub(crate) fn motors_needed(channels: &[Channel]) -> usize {
-    let needed = channels.iter().map(|channel| match channel.motors {
-        Motors::One(motor) => (motor as usize).saturating_add(1),
-        _ => 1,
-    });
-    needed.max().unwrap_or(1)
+impl Channel {
+    /// The number of motors that a craft needs so that every motor that the channel reads is there.
+    fn motors_needed(&self) -> usize {
+        match (self.observed, self.motors) {
+            (Observed::Named(_) | Observed::Difference { .. }, _) => 0,
+            (_, Motors::One(motor)) => (motor as usize).saturating_add(1),
+            _ => 1,
+        }
+    }
+}
+
+/// The number of motors that a craft needs for channels and for findings beside the risk.
+pub(crate) fn motors_needed(channels: &[Channel], notices: &NoticeSettings) -> usize {
+    let of_notices = usize::from(notices.any());
+    let needed = channels.iter().map(Channel::motors_needed);
+    needed.fold(of_notices, usize::max)
 }
 
 /// Whether an input reads the commands of the motors.
 pub(crate) fn reads_motors(channels: &[Channel], input: &Input) -> bool {
-    let observed = channels.get(input.channel).map(|channel| channel.observed);
-    !matches!(
-        observed,
-        None | Some(Observed::Named(_) | Observed::Difference { .. })
-    )
+    let channel = channels.get(input.channel);
+    channel.is_some_and(|channel| channel.motors_needed() > 0)
 }
 
 /// An input: a statistic of a channel.

@@ -466,7 +466,7 @@ impl Flight {
                         },
                         help: None,
                     },
-                    None => Reason::NoCommands,
+                    None => Reason::NoSamples,
                 })
             }
         }

@@ -95,6 +95,11 @@ impl Signal {
         first.into_iter().chain(second).map(String::as_str)
     }
 
+    /// Whether the signal is made of the motors' commands.
+    pub fn is_made_of_motors(&self) -> bool {
+        self.carried().next().is_none()
+    }
+
     /// Whether the signal has one value for each motor.
     pub fn is_of_motors(&self) -> bool {
         OF_MOTORS.iter().any(|(_, signal)| signal == self)

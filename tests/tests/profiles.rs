@@ -408,3 +408,99 @@ fn an_input_that_is_outvoted_is_a_warning_of_check() {
     assert_eq!(code, Some(1), "{told}");
     assert!(told.starts_with("FAIL"), "{told}");
 }
+
+/// A profile that reads no motor, its rule set, and a table of loads that rise to `last_kg`.
+fn forklift(folder: &Folder, last_kg: f64, step_s: f64) -> [String; 2] {
+    folder.file(
+        "forklift-rules.yaml",
+        "fuzzy: 1\nname: forklift\ninputs: {left: {range: [0, 2000], partition: {rated: 1000, over: 1400}}}\n\
+         outputs: {risk: {range: [0, 100], terms: {low: {constant: 5}, high: {constant: 95}}, defuzzifier: weighted_average}}\n\
+         rules: [IF left IS rated THEN risk IS low, IF left IS over THEN risk IS high]\n",
+    );
+    let profile =
+        "flagred: 1\nname: forklift\nrules: forklift-rules.yaml\ninputs: {left: {mean: left_kg}}\n";
+    let mut table = String::from("# vehicle_kind: other vehicle\nt_s,left_kg\n");
+    for i in 0..=400 {
+        let load_kg = if i < 200 { 900.0 } else { last_kg };
+        table += &format!("{},{load_kg}\n", f64::from(i) * step_s);
+    }
+    [
+        folder.file("forklift.yaml", profile),
+        folder.file("forklift.csv", table),
+    ]
+}
+
+#[test]
+fn a_profile_that_reads_no_motor_assesses_a_table_without_a_word_about_rotors() {
+    let folder = Folder::new();
+    let [profile, table] = forklift(&folder, 1500.0, 0.1);
+    let (code, told, _) = run(&["check", "--deny", "notes", &profile]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("reads no motor, and needs none"), "{told}");
+
+    let html = folder.at("forklift.html");
+    let arguments = ["assess", "-v", "--profile", &profile, "--html", &html];
+    let (code, text, _) = run(&[&arguments[..], &[&table]].concat());
+    assert_eq!(code, Some(1), "{text}");
+    assert!(
+        text.starts_with("FAIL ") && text.contains("in use 40.0 s"),
+        "{text}"
+    );
+    let compared = folder.at("compared.html");
+    run(&[
+        "assess",
+        "--profile",
+        &profile,
+        "--html",
+        &compared,
+        &table,
+        &table,
+    ]);
+    let page = |file: &str| -> String {
+        let html = fs::read_to_string(file).unwrap();
+        let (_, body) = html.split_once("</style>").unwrap();
+        body.split("<script>").next().unwrap().to_owned()
+    };
+    for shown in [&text, &page(&html), &page(&compared)] {
+        let shown = shown.to_lowercase();
+        for word in [
+            "motor",
+            "rotor",
+            "in the air",
+            "take-off",
+            "landing",
+            "land ",
+            "attitude",
+            "at a limit",
+        ] {
+            let found = shown
+                .find(word)
+                .map(|at| &shown[at.saturating_sub(80)..at + 20]);
+            assert_eq!(found, None, "{word}");
+        }
+    }
+    let (_, text, _) = run(&["assess", "--json", "--profile", &profile, &table]);
+    let document: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(document["verdict"], "FAIL");
+    assert_eq!(document["summary"]["in_air_s"], 40.0);
+    assert_eq!(document["vehicle"]["motors"], serde_json::json!([]));
+    assert_eq!(
+        schema::errors(&schema::schema("assess"), &document),
+        Vec::<String>::new()
+    );
+
+    let [_, table] = forklift(&folder, 900.0, 0.1);
+    let (code, text, _) = run(&["assess", "--profile", &profile, &table]);
+    assert!(code == Some(0) && text.starts_with("GOOD "), "{text}");
+    // The default profile needs motors, and says what does not.
+    let (code, text, _) = run(&["assess", &table]);
+    assert!(
+        code == Some(3) && text.contains("not a multirotor"),
+        "{text}"
+    );
+    // Each sample would be a flight of its own: milliseconds, for example.
+    let [_, table] = forklift(&folder, 1500.0, 100.0);
+    let (code, text, _) = run(&["assess", "--profile", &profile, &table]);
+    assert_eq!(code, Some(3), "{text}");
+    assert!(text.contains("the samples are 100 s apart"), "{text}");
+}

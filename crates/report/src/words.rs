@@ -57,14 +57,16 @@ pub fn write(
             .iter()
             .map(|s| format!("{:.1} to {:.1} s", s.start_s, s.end_s));
         let mut text = format!(
-            "in the air {:.1} s ({})",
+            "{} {:.1} s ({})",
+            in_the_air(flight),
             assessed.summary.in_air_s,
             first_spans(when)
         );
         if verbose {
-            let rate_hz = flight.command_rate_hz().unwrap_or(0.0);
-            let profile = &estimator.profile().name;
-            text += &format!(", motors at {rate_hz:.1} Hz; profile {profile}");
+            if let Some(rate_hz) = flight.command_rate_hz() {
+                text += &format!(", motors at {rate_hz:.1} Hz");
+            }
+            text += &format!("; profile {}", estimator.profile().name);
         }
         indented(out, &text)?;
     }
@@ -122,8 +124,10 @@ pub fn write_line(
     }
     if let Some(peak) = assessed.summary.risk_max {
         parts.push(format!(
-            "highest risk {:.0} % in {:.1} s in the air",
-            peak.value_pct, assessed.summary.in_air_s
+            "highest risk {:.0} % in {:.1} s {}",
+            peak.value_pct,
+            assessed.summary.in_air_s,
+            in_the_air(flight)
         ));
     }
     let teller = Teller {
@@ -154,6 +158,14 @@ fn line(out: &mut impl Write, level: Level, text: &str) -> io::Result<()> {
 
 fn indented(out: &mut impl Write, text: &str) -> io::Result<()> {
     writeln!(out, "     {}", visible(text))
+}
+
+/// Where a vehicle is when it is assessed. One without motors need not fly.
+pub(crate) fn in_the_air(flight: &Flight) -> &'static str {
+    match flight.motors.is_empty() {
+        true => "in use",
+        false => "in the air",
+    }
 }
 
 /// The vehicle in a line: firmware, frame, motors and ranges.

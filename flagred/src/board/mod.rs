@@ -104,7 +104,7 @@ pub struct Words<'a> {
 pub enum Refused {
     /// The memory does not have the sizes of the plan.
     Memory,
-    /// The number of motors is 0, or the profile names a motor that there is not.
+    /// The profile reads the motors and there are none, or it names a motor that there is not.
     NoMotors,
     /// The plan is damaged.
     Plan(Damaged),
@@ -117,7 +117,7 @@ impl core::fmt::Display for Refused {
         match self {
             Refused::Memory => f.write_str("the memory does not have the sizes of the plan"),
             Refused::NoMotors => f.write_str(
-                "the number of motors is 0, or the profile names a motor that there is not",
+                "the profile reads the motors and there are none, or it names a motor that there is not",
             ),
             Refused::Plan(damaged) => damaged.fmt(f),
             Refused::Geometry => f.write_str(
@@ -301,14 +301,14 @@ pub struct Monitor<'a> {
 }
 
 impl<'a> Monitor<'a> {
-    /// A monitor of a new flight, with as many motors as the memory holds.
+    /// A monitor of a new flight, with as many motors as the memory holds: none are enough for a profile that reads none.
     ///
     /// # Errors
     /// The memory does not have the sizes of the plan, motors are missing, or the plan is damaged.
     #[doc(hidden)] // For the C interface. Rust uses `Storage::monitor` or `OwnedMemory::monitor`.
     pub fn new(plan: &'a Plan<'a>, memory: Memory<'a>) -> Result<Monitor<'a>, Refused> {
         plan.check().map_err(Refused::Plan)?;
-        if memory.motors.len() < motors_needed(plan.channels) {
+        if memory.motors.len() < motors_needed(plan.channels, &plan.settings.verdict.notices) {
             return Err(Refused::NoMotors);
         }
         let monitor = Monitor::divide(plan, memory).ok_or(Refused::Memory)?;

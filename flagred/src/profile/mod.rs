@@ -7,7 +7,7 @@ use crate::{
     channel::{self, Channel, Input},
     follower::Settings,
     gap::GapSettings,
-    source::{Source, channels},
+    source::{Signal, Source, channels},
     verdict::{LevelSettings, NoticeSettings, VerdictSettings},
 };
 
@@ -198,6 +198,13 @@ impl Profile {
     pub(crate) fn is_part(&self, name: &str) -> bool {
         let mut ratios = self.inputs.iter().filter_map(|input| input.ratio.as_ref());
         ratios.any(|ratio| ratio.per == name)
+    }
+
+    /// Whether an input or a finding beside the risk is about the motors. A profile of which none is needs no motors: it can
+    /// assess any table of signals.
+    pub fn reads_motors(&self) -> bool {
+        let mut signals = self.inputs.iter().map(|input| &input.source.signal);
+        self.verdict.notices.any() || signals.any(Signal::is_made_of_motors)
     }
 
     /// The names of the signals beside the motors that it needs, each once.
