@@ -6,7 +6,7 @@ use crate::verdict::NoticeSettings;
 mod code;
 mod seen;
 
-pub(crate) use seen::{Now, push, restart, value};
+pub(crate) use seen::{Now, assumed, note, push, restart, value};
 pub use seen::{Observation, Seen};
 
 /// A statistic over time.
@@ -153,6 +153,24 @@ pub enum Observed {
     },
 }
 
+impl Observed {
+    /// The signals that it is made of, by their index.
+    pub fn signals(&self) -> impl Iterator<Item = usize> {
+        let [first, second] = match *self {
+            Observed::Named(signal) => [Some(signal), None],
+            Observed::Difference { a, b, .. } => [Some(a), Some(b)],
+            Observed::Command
+            | Observed::CommandLessYaw
+            | Observed::Margin
+            | Observed::LowSide
+            | Observed::HighSide
+            | Observed::Effort(_)
+            | Observed::CommandNoise => [None, None],
+        };
+        first.into_iter().chain(second)
+    }
+}
+
 /// A difference of angles, the short way around, in [-180, 180).
 pub(crate) fn short_way_deg(difference_deg: f64) -> f64 {
     let short_deg = libm::remainder(difference_deg, 360.0);
@@ -194,7 +212,7 @@ pub enum Threshold {
 /// use flagred::channel::{Channel, Input, Motors, Observed, Statistic};
 ///
 /// let plan = estimator.plan()?;
-/// assert_eq!(plan.inputs[1], Input { channel: 1, statistic: Statistic::Std, ratio: None });
+/// assert_eq!(plan.inputs[1], Input { channel: 1, statistic: Statistic::Std, ratio: None, if_missing: None });
 /// let spread = Channel { observed: Observed::Command, motors: Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false };
 /// assert_eq!(plan.channels[1], spread);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -218,10 +236,10 @@ pub struct Channel {
 impl Channel {
     /// The number of motors that a craft needs so that every motor that the channel reads is there.
     fn motors_needed(&self) -> usize {
-        match (self.observed, self.motors) {
-            (Observed::Named(_) | Observed::Difference { .. }, _) => 0,
-            (_, Motors::One(motor)) => (motor as usize).saturating_add(1),
-            _ => 1,
+        match self.motors {
+            _ if self.observed.signals().next().is_some() => 0,
+            Motors::One(motor) => (motor as usize).saturating_add(1),
+            Motors::Pooled | Motors::Mean | Motors::Std | Motors::Min | Motors::Max => 1,
         }
     }
 }
@@ -248,6 +266,8 @@ pub struct Input {
     pub statistic: Statistic,
     /// What it is divided by.
     pub ratio: Option<Ratio>,
+    /// Its value until its signals are known for the first time: a vehicle may never send them.
+    pub if_missing: Option<f64>,
 }
 
 impl Input {

@@ -178,6 +178,11 @@ fn compile(
             at.of(&["output"]),
             "write `when_no_rule_fires: undefined` in the rule set; `gap` of the profile says what fills gaps".into(),
         ),
+        EstimatorError::IfMissingOutside { input, low, high, .. } => (
+            "out-of-range",
+            at.of(&["inputs", input, "if_missing"]),
+            format!("write a number from {low} to {high}"),
+        ),
         EstimatorError::Rules(_) | EstimatorError::Evaluate(_) => (
             "rule-set",
             at.of(&["rules"]),

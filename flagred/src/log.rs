@@ -43,7 +43,10 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
         true => carried.clone(),
         false => needed,
     };
-    let mut assessor = match Assessor::new(estimator, craft(flight, &signals), step_s) {
+    let missing = signals.iter().filter(|name| !carried.contains(name));
+    let missing: Vec<&str> = missing.copied().collect();
+    let craft = craft(flight, &signals).with_optional(&missing);
+    let mut assessor = match Assessor::new(estimator, craft, step_s) {
         Ok(assessor) => assessor,
         Err(error) => return Assessment::not_available(error),
     };

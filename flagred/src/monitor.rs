@@ -3,7 +3,7 @@
 use alloc::{format, string::String, vec, vec::Vec};
 
 use crate::{
-    channel::{Channel, Input, Seen, motors_needed, restart},
+    channel::{Channel, Input, Seen, assumed, motors_needed, restart},
     estimator::{Estimator, Memory},
     follower::{Feed, Follower, Room, reading},
     motor::{Motor, set_geometry},
@@ -189,7 +189,7 @@ impl Monitor {
         });
         let always = if craft.motors > 0 { &always[..] } else { &[] };
         let (channels, inputs) = profile
-            .channels(always, craft.signals)
+            .channels(always, craft)
             .map_err(|signal| MonitorError::NoSignal { signal })?;
         let motor = motors_needed(&channels, &profile.verdict.notices);
         if motor > craft.motors {
@@ -283,6 +283,13 @@ impl Monitor {
     /// The values of the inputs after the latest sample, in the order of the profile; NaN is unknown.
     pub fn inputs(&self) -> &[f64] {
         &self.room.inputs
+    }
+
+    /// The inputs whose values are assumed after the latest sample, by their index in the profile: those with `if_missing` of
+    /// signals that have never come.
+    pub fn assumed(&self) -> impl Iterator<Item = usize> {
+        let all = 0..self.room.inputs.len();
+        all.filter(|input| assumed(&self.inputs, &self.room.seen, *input).is_some())
     }
 
     /// The finding behind the current level, as it stands so far; `None` while the level is good.

@@ -278,6 +278,7 @@ pub(crate) fn channels<'a>(
             channel: same.unwrap_or(channels.len()),
             statistic: source.statistic,
             ratio: None,
+            if_missing: None,
         });
         if same.is_none() {
             channels.push(channel);

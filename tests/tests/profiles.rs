@@ -504,3 +504,77 @@ fn a_profile_that_reads_no_motor_assesses_a_table_without_a_word_about_rotors() 
     assert_eq!(code, Some(3), "{text}");
     assert!(text.contains("the samples are 100 s apart"), "{text}");
 }
+
+#[test]
+fn a_missing_signal_is_assumed_and_every_reader_is_told() {
+    let folder = Folder::new();
+    let battery =
+        fs::read_to_string(format!("{ROOT}/rules/profiles/flagred-battery.yaml")).unwrap();
+    let plain = "battery: {last: battery_remaining_pct}";
+    let with = |value: &str| {
+        let input = format!("battery: {{last: battery_remaining_pct, if_missing: {value}}}");
+        assert!(battery.contains(plain));
+        folder.file("mine.yaml", battery.replace(plain, &input))
+    };
+    let profile = with("100");
+    let (code, told, _) = run(&["check", "--deny", "notes", &profile]);
+    assert_eq!(code, Some(0), "{told}");
+
+    // A hover: without the level, with it, and with a sensor that is lost.
+    let flight = |column: &str, level: &dyn Fn(u32) -> String| {
+        let mut table = format!("t_s,motor1,motor2,motor3,motor4{column}\n");
+        for i in 0..1500 {
+            let t_s = f64::from(i) * 0.02;
+            table += &format!("{t_s},0.5,0.51,0.49,0.5{}\n", level(i));
+        }
+        folder.file("flight.csv", table)
+    };
+    let missing = flight("", &|_| String::new());
+    let (code, text, _) = run(&["assess", "--profile", "flagred-battery", &missing]);
+    assert_eq!(code, Some(3), "{text}");
+    let html = folder.at("report.html");
+    let (code, text, _) = run(&["assess", "--profile", &profile, "--html", &html, &missing]);
+    assert_eq!(code, Some(0), "{text}");
+    let note = "is not in the log: input `battery` is assumed to be 100";
+    assert!(text.contains(note), "{text}");
+    assert!(fs::read_to_string(&html).unwrap().contains(note));
+    let (_, text, _) = run(&["assess", "--profile", &profile, &missing, &missing]);
+    assert!(text.contains("`battery` assumed to be 100"), "{text}");
+    let (_, text, _) = run(&["assess", "--json", "--profile", &profile, &missing]);
+    let document: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(
+        document["assumed_inputs"],
+        serde_json::json!([{"input": "battery", "value": 100.0, "signals": ["battery_remaining_pct"]}])
+    );
+    assert_eq!(
+        schema::errors(&schema::schema("assess"), &document),
+        Vec::<String>::new()
+    );
+
+    // A lost sensor is not a full battery, and neither is one that is empty from the beginning.
+    for lost in [0, 10] {
+        let level = |i: u32| {
+            if i < lost {
+                ",80".into()
+            } else {
+                ",".to_owned()
+            }
+        };
+        let log = flight(",battery_remaining_pct", &level);
+        let (code, text, _) = run(&["assess", "--profile", &profile, &log]);
+        assert_eq!(code, Some(3), "{text}");
+        assert!(!text.contains("assumed to be"), "{text}");
+    }
+    let log = flight(",battery_remaining_pct", &|_| ",2".to_owned());
+    let (code, text, _) = run(&["assess", "--profile", &profile, &log]);
+    assert!(code == Some(1) && text.starts_with("FAIL"), "{text}");
+
+    let outside = with("120");
+    let (code, told, _) = run(&["check", &outside]);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(
+        told.contains("`if_missing` of input `battery` is 120, and the input goes from 0 to 100")
+            && told.contains("help: write a number from 0 to 100"),
+        "{told}"
+    );
+}

@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_FORMAT 9
+#define FLAGRED_FORMAT 10
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -383,6 +383,7 @@ typedef struct flagred_stage {
 
 typedef struct flagred_source {
     double number, at_least;
+    double if_missing; /* until its signals are known for the first time; NAN: none */
     uint32_t channel, statistic;
     uint32_t per; /* a source; UINT32_MAX: none */
 } flagred_source;

@@ -33,6 +33,7 @@ struct CChannel {
 struct CSource {
     number: f64,
     at_least: f64,
+    if_missing: f64,
     channel: u32,
     statistic: u32,
     per: u32,
@@ -202,6 +203,7 @@ impl CSource {
                 per: self.per as usize,
                 at_least: self.at_least,
             }),
+            if_missing: known(self.if_missing),
         })
     }
 }

@@ -130,6 +130,10 @@ pub fn write_line(
             in_the_air(flight)
         ));
     }
+    for assumed in &assessed.assumed_inputs {
+        let value = number(assumed.value, 6);
+        parts.push(format!("`{}` assumed to be {value}", assumed.input));
+    }
     let teller = Teller {
         estimator,
         motors: &flight.motors,
@@ -223,6 +227,14 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
             "the log does not report everything, assumed: {assumed}"
         ));
     }
+    for assumed in &assessed.assumed_inputs {
+        notes.push(format!(
+            "`{}` is not in the log: input `{}` is assumed to be {} (`if_missing`)",
+            missing(flight, &assumed.signals),
+            assumed.input,
+            number(assumed.value, 6)
+        ));
+    }
     let left_out = &flight.report.left_out;
     if !left_out.is_empty() {
         notes.push(format!(
@@ -244,6 +256,14 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
         ));
     }
     notes
+}
+
+/// The first of the signals that a log lacks.
+fn missing<'a>(flight: &Flight, signals: &'a [String]) -> &'a str {
+    let mut signals = signals.iter();
+    signals
+        .find(|name| flight.signal(name).is_none())
+        .map_or("", String::as_str)
 }
 
 /// Most logs that are cut off inside a message, when the power goes, lose less than this.

@@ -160,6 +160,7 @@ impl Plan<'_> {
                     let other = self.inputs.get(other);
                     other.is_some_and(|other| other.ratio.is_none())
                 }) && input.ratio.is_none_or(|ratio| is_above_0(ratio.at_least))
+                    && input.if_missing.is_none_or(f64::is_finite)
             }),
             "inputs of the profile",
         )?;

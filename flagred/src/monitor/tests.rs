@@ -77,6 +77,7 @@ fn profile() -> Profile {
             name: "margin".into(),
             source: source("motor_margin"),
             ratio: None,
+            if_missing: None,
         }],
         output: "risk".into(),
         other_risks: Vec::new(),
@@ -523,4 +524,62 @@ fn a_motor_that_a_craft_does_not_have_is_told_when_the_monitor_is_made() {
     };
     assert_eq!(on_board(4), Err(Refused::NoMotors));
     assert_eq!(on_board(5), Ok(()));
+}
+
+#[test]
+fn a_missing_signal_has_its_value_until_it_comes_and_never_after() {
+    let mut profile = profile();
+    profile.inputs[0].source.signal = Signal::named("battery_v");
+    profile.inputs[0].source.statistic = Statistic::Last;
+    profile.inputs[0].if_missing = Some(0.4);
+    let estimator = Estimator::new(&profile, &rules(false)).unwrap();
+    let plan = estimator.plan().unwrap();
+    let names = ["battery_v"];
+    let known = Craft::new(2).with_signals(&names);
+    // By craft and the values of the samples, 2 on the ground and 4 in the air: which are assumed, and the input.
+    let nan = f64::NAN;
+    let cases: [(Craft<'_>, [f64; 6], [bool; 6], [f64; 6]); 4] = [
+        (
+            Craft::new(2),
+            [nan; 6],
+            [true; 6],
+            [nan, nan, 0.4, 0.4, 0.4, 0.4],
+        ),
+        (known, [nan; 6], [false; 6], [nan; 6]),
+        (
+            known.with_optional(&names),
+            [nan, nan, nan, 0.1, nan, 0.2],
+            [true, true, true, false, false, false],
+            [nan, nan, 0.4, 0.1, nan, 0.2],
+        ),
+        // A sensor that was there on the ground is lost.
+        (
+            known.with_optional(&names),
+            [nan, 0.1, nan, nan, nan, nan],
+            [true, false, false, false, false, false],
+            [nan; 6],
+        ),
+    ];
+    for (craft, values, assumed, inputs) in cases {
+        let mut monitor = Monitor::new(&estimator, craft).unwrap();
+        let mut memory = OwnedMemory::new(&plan, 2);
+        let mut on_board = memory.monitor(&plan).unwrap();
+        for (i, value) in values.into_iter().enumerate() {
+            let sample = Sample {
+                t_s: i as f64 * 0.1,
+                motors: &[0.5; 2],
+                in_air: Some(i > 1),
+                signals: &[value],
+            };
+            let update = monitor.push(&sample);
+            assert_eq!(monitor.assumed().count() == 1, assumed[i], "{i}");
+            let input = monitor.inputs()[0];
+            assert_eq!(input.to_bits(), inputs[i].to_bits(), "{i}: {input}");
+            assert_eq!(update.risk.is_ok(), input.is_finite(), "{i}");
+            let told = on_board.push(&sample);
+            if craft != known {
+                assert_eq!(told, update);
+            }
+        }
+    }
 }

@@ -209,6 +209,7 @@ fn source(input: &channel::Input) -> CSource {
     CSource {
         number,
         at_least: input.ratio.map_or(0.0, |ratio| ratio.at_least),
+        if_missing: input.if_missing.unwrap_or(f64::NAN),
         channel: input.channel as u32,
         statistic,
         per: place(input.ratio.map(|ratio| ratio.per)),

@@ -283,9 +283,10 @@ fn source(input: &Input) -> String {
         .ratio
         .map_or("UINT32_MAX".to_owned(), |ratio| ratio.per.to_string());
     format!(
-        "{{{}, {}, {}, {statistic}, {per}}}",
+        "{{{}, {}, {}, {}, {statistic}, {per}}}",
         number(parameter),
         number(at_least),
+        number(input.if_missing.unwrap_or(f64::NAN)),
         input.channel
     )
 }

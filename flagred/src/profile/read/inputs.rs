@@ -68,7 +68,7 @@ fn input(
     let keys: Vec<&str> = statistics
         .clone()
         .chain(with_number.clone())
-        .chain(["of", "window_s", "time_constant_s"])
+        .chain(["of", "window_s", "time_constant_s", "if_missing"])
         .chain(RATIO)
         .collect();
     let before = found.len();
@@ -138,6 +138,17 @@ fn input(
             return None;
         }
     }
+    let if_missing = fields
+        .get("if_missing")
+        .and_then(|node| node.finite("`if_missing`", found));
+    if let Some(entry) = fields.entry("if_missing")
+        && signal.is_made_of_motors()
+    {
+        let message =
+            "`if_missing` goes with a signal that a vehicle may lack, not with its motors";
+        let help = "remove it: without the commands of the motors the risk is unknown";
+        found.push(Diagnostic::error("if-missing", entry.key_span.clone(), message).help(help));
+    }
     let needs_one = statistic.is_of_bins() || statistic.is_of_slots();
     if needs_one && motors == Motors::Pooled && signal.is_of_motors() {
         let message = format!("`{key}` needs one value for all motors");
@@ -166,6 +177,7 @@ fn input(
             true => Some(ratio(&fields, entry, entries, found)?),
             false => None,
         },
+        if_missing,
     })
 }
 

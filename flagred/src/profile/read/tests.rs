@@ -36,7 +36,7 @@ inputs:
   a: {std: {std: motor_command}, window_s: 30}
   b: {share_below: 0.02, of: {min: motor_margin}}
   c: {share_above: 0.9, of: battery_v, window_s: 1}
-  d: {last: battery_v}
+  d: {last: battery_v, if_missing: 14}
   e: {rms: motor_margin_high_side}
   f: {std_less_noise: {std: motor_command_less_yaw}}
   g: {noise: roll_effort}
@@ -90,6 +90,9 @@ reliability:
         window_s,
         exponential: false,
     };
+    let missing = profile.inputs.iter().filter_map(|input| input.if_missing);
+    assert_eq!(missing.collect::<Vec<f64>>(), [14.0]);
+    assert_eq!(profile.inputs[3].if_missing, Some(14.0));
     let sources: Vec<&Source> = profile.inputs.iter().map(|i| &i.source).collect();
     assert_eq!(
         sources,
@@ -293,6 +296,8 @@ inputs:
   two: {mean: battery_v, window_s: 1, time_constant_s: 5}
   weightless: {max: battery_v, time_constant_s: 5}
   constant: {mean: battery_v, time_constant_s: 0}
+  engine: {mean: motor_margin, if_missing: 0.2}
+  full: {last: battery_v, if_missing: full}
 other_risks:
   risk: {}
   other: {verdict: {}, warn: {risk: 120}}
