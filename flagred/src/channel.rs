@@ -124,7 +124,7 @@ pub enum Motors {
 }
 
 /// What a sample gives to a channel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Observed {
     /// The effective command of each motor.
     Command,
@@ -151,6 +151,22 @@ pub enum Observed {
         /// Whether they are angles in degrees.
         circular: bool,
     },
+    /// The signal `a` divided by the signal `b`, by their indices.
+    Ratio {
+        /// The signal.
+        a: usize,
+        /// What it is divided by.
+        b: usize,
+        /// The ratio is unknown where `b` is nearer to 0 than this, and always where `b` is 0.
+        unknown_below: f64,
+    },
+    /// The signal `a` times the signal `b`, by their indices.
+    Product {
+        /// The signal.
+        a: usize,
+        /// The other one.
+        b: usize,
+    },
 }
 
 impl Observed {
@@ -158,7 +174,9 @@ impl Observed {
     pub fn signals(&self) -> impl Iterator<Item = usize> {
         let [first, second] = match *self {
             Observed::Named(signal) => [Some(signal), None],
-            Observed::Difference { a, b, .. } => [Some(a), Some(b)],
+            Observed::Difference { a, b, .. }
+            | Observed::Ratio { a, b, .. }
+            | Observed::Product { a, b } => [Some(a), Some(b)],
             Observed::Command
             | Observed::CommandLessYaw
             | Observed::Margin

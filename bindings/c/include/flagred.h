@@ -358,7 +358,7 @@ typedef struct flagred_knot {
 } flagred_knot;
 
 typedef struct flagred_channel {
-    double window_s, limit;
+    double window_s, limit, unknown_below;
     uint32_t observed, indices[2], motors, threshold, in_bins, exponential;
 } flagred_channel;
 

@@ -20,6 +20,7 @@ mod tests;
 struct CChannel {
     window_s: f64,
     limit: f64,
+    unknown_below: f64,
     observed: u32,
     indices: [u32; 2],
     motors: u32,
@@ -181,7 +182,7 @@ impl CChannel {
     fn read(&self) -> Result<Channel, Status> {
         let known = || {
             Some(Channel {
-                observed: Observed::from_code(self.observed, self.indices)?,
+                observed: Observed::from_code(self.observed, self.indices, self.unknown_below)?,
                 motors: Motors::from_code(self.motors),
                 threshold: channel::Threshold::from_code(self.threshold, self.limit)?,
                 in_bins: self.in_bins != 0,

@@ -168,12 +168,13 @@ impl Plan<'_> {
             self.channels.iter().all(|channel| {
                 let is_signal = |signal: usize| signal < self.signals as usize;
                 let is_known = match channel.observed {
-                    Observed::Named(signal) => is_signal(signal),
-                    Observed::Difference { a, b, .. } => is_signal(a) && is_signal(b),
                     Observed::Effort(axis) => axis < ROLL_PITCH_YAW_THRUST,
+                    Observed::Ratio { unknown_below, .. } => unknown_below.is_finite(),
                     _ => true,
                 };
-                is_known && is_above_0(channel.window_s)
+                is_known
+                    && channel.observed.signals().all(is_signal)
+                    && is_above_0(channel.window_s)
             }),
             "channels",
         )?;

@@ -301,6 +301,19 @@ impl Channel {
                     false => difference,
                 })
             }
+            Observed::Ratio {
+                a,
+                b,
+                unknown_below,
+            } => {
+                let (of, by) = (now.signal(a), now.signal(b));
+                // What is divided by 0 is not finite, which is unknown.
+                self.threshold(match by.abs() < unknown_below {
+                    true => f64::NAN,
+                    false => of / by,
+                })
+            }
+            Observed::Product { a, b } => self.threshold(now.signal(a) * now.signal(b)),
             Observed::Effort(axis) => {
                 let effort = now.together.efforts.get(axis).copied();
                 self.threshold(effort.unwrap_or(f64::NAN))

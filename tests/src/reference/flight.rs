@@ -176,7 +176,7 @@ fn mean(sample: &Sample) -> f64 {
 fn reads_motors(profile: &Profile) -> bool {
     profile.inputs.iter().any(|input| {
         let signal = &input.source.signal;
-        !matches!(signal, Signal::Named(_) | Signal::Difference { .. })
+        signal.carried().next().is_none()
     })
 }
 

@@ -189,11 +189,12 @@ macro_rules! copy {
 table::arrays!(copy!);
 
 fn channel(channel: &Channel) -> CChannel {
-    let (observed, indices) = channel.observed.code();
+    let (observed, indices, unknown_below) = channel.observed.code();
     let (threshold, limit) = channel::Threshold::code(channel.threshold);
     CChannel {
         window_s: channel.window_s,
         limit,
+        unknown_below,
         observed,
         indices,
         motors: channel.motors.code(),

@@ -264,12 +264,13 @@ fn value(word: &str) -> String {
 }
 
 fn channel(channel: &Channel) -> String {
-    let (observed, [first, second]) = channel.observed.code();
+    let (observed, [first, second], unknown_below) = channel.observed.code();
     let (threshold, limit) = Threshold::code(channel.threshold);
     format!(
-        "{{{}, {}, {observed}, {{{first}, {second}}}, {}, {threshold}, {}, {}}}",
+        "{{{}, {}, {}, {observed}, {{{first}, {second}}}, {}, {threshold}, {}, {}}}",
         number(channel.window_s),
         number(limit),
+        number(unknown_below),
         channel.motors.code(),
         u32::from(channel.in_bins),
         u32::from(channel.exponential)

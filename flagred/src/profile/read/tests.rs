@@ -47,6 +47,8 @@ inputs:
   l: {percentile: 90, of: {max: motor_command}}
   m: {median: battery_v, window_s: 8}
   n: {mean: battery_v, time_constant_s: 7}
+  o: {mean: {ratio: [battery_a, battery_v], unknown_below: 5}}
+  p: {max: {product: [battery_a, battery_v]}}
 gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
 elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
 verdict:
@@ -144,6 +146,21 @@ reliability:
             &Source {
                 exponential: true,
                 ..source(Statistic::Mean, Motors::Pooled, "battery_v", 7.0)
+            },
+            &Source {
+                signal: Signal::Ratio {
+                    a: "battery_a".into(),
+                    b: "battery_v".into(),
+                    unknown_below: 5.0,
+                },
+                ..source(Statistic::Mean, Motors::Pooled, "", 3.0)
+            },
+            &Source {
+                signal: Signal::Product {
+                    a: "battery_a".into(),
+                    b: "battery_v".into(),
+                },
+                ..source(Statistic::Max, Motors::Pooled, "", 3.0)
             },
         ]
     );
@@ -289,6 +306,11 @@ inputs:
   both: {mean: {motor: 1, min: motor_margin}}
   three: {mean: {difference: [roll_deg, pitch_deg, yaw_deg]}}
   motors: {mean: {difference: [motor_command, motor_margin]}}
+  parts: {mean: {ratio: [battery_a]}}
+  power: {mean: {product: [battery_a, motor_command]}}
+  floor: {mean: {product: [battery_a, battery_v], unknown_below: 1}}
+  below: {mean: {ratio: [battery_a, battery_v], unknown_below: -1}}
+  other: {mean: {ratio: [battery_a, battery_v], at_least: 1}}
   pooled: {rate: motor_command}
   most: {percentile: 101, of: battery_v}
   whose: {percentile: 90}

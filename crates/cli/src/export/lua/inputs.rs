@@ -27,7 +27,8 @@ enum Source {
     Effort,
     Noise,
     Signal(usize),
-    Difference(usize, usize),
+    Both(usize, usize),
+    Ratio(usize, usize, f64),
 }
 
 /// A window of the script: channels that bring values at the same times share it.
@@ -238,7 +239,14 @@ impl Window {
                 Observed::Effort(_) => Source::Effort,
                 Observed::CommandNoise => Source::Noise,
                 Observed::Named(signal) => Source::Signal(signal),
-                Observed::Difference { a, b, .. } => Source::Difference(a, b),
+                Observed::Difference { a, b, .. } | Observed::Product { a, b } => {
+                    Source::Both(a, b)
+                }
+                Observed::Ratio {
+                    a,
+                    b,
+                    unknown_below,
+                } => Source::Ratio(a, b, unknown_below),
                 Observed::Command
                 | Observed::CommandLessYaw
                 | Observed::Margin
