@@ -182,7 +182,7 @@ const SOURCES: [(f64, &str); 22] = [
     (20.0, "{last: battery_v}"),
     (
         2.0,
-        "{mean: {ratio: [battery_v, cells_v], unknown_below: 14.25}, window_s: 4}",
+        "{mean: {ratio: [battery_v, cells_v], unknown_below: 14.05}, window_s: 4}",
     ),
     (300.0, "{std: {product: [battery_v, cells_v]}}"),
     (2.0, "{rate: battery_v, window_s: 9}"),

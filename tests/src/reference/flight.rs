@@ -2,7 +2,6 @@
 
 use flagred::{
     profile::Profile,
-    source::Signal,
     verdict::{Level, VerdictSettings},
 };
 use fuzzy::Model;
