@@ -59,6 +59,7 @@ fn by_the_monitor(estimator: &Estimator, geometry: &[Factors], flight: &[Moment]
         estimator,
         Craft::new(flight[0].motors.len())
             .with_signals(&signals)
+            .with_optional(&signals)
             .with_geometry(geometry),
     )
     .unwrap();
@@ -233,7 +234,7 @@ pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
 
 /// A profile with every statistic that only plans have.
 fn profile_of_every_statistic(folder: &Folder) -> (Estimator, String) {
-    const SOURCES: [&str; 13] = [
+    const SOURCES: [&str; 16] = [
         "{rate: {max: motor_command}}",
         "{rate: {difference: [yaw_des_deg, yaw_deg]}, window_s: 9}",
         "{rms: {difference: [yaw_des_deg, yaw_deg]}}",
@@ -247,6 +248,9 @@ fn profile_of_every_statistic(folder: &Folder) -> (Estimator, String) {
         "{std: {motor: 1, of: motor_command}, time_constant_s: 8}",
         "{share_above: 5, of: {difference: [ground_speed_m_s, ekf_wind_m_s]}, time_constant_s: 0.5}",
         "{std: {difference: [ground_speed_m_s, ekf_wind_m_s]}, per: x9, at_least: 0.3}",
+        "{mean: {ratio: [ekf_wind_m_s, ground_speed_m_s], unknown_below: 0.01}, window_s: 9}",
+        "{std: {product: [yaw_des_deg, ground_speed_m_s]}}",
+        "{last: no_such_signal, if_missing: 0.2}",
     ];
     profile_of(folder, &SOURCES)
 }
@@ -314,6 +318,7 @@ fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String
                 &estimator,
                 Craft::new(geometry.len())
                     .with_signals(&signals)
+                    .with_optional(&signals)
                     .with_geometry(&geometry),
             )
             .unwrap();

@@ -262,9 +262,12 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         }
         _ => {
             if found.len() == before {
-                let message = format!(
-                    "{over} is one of `mean`, `std`, `min`, `max`, `motor`, `difference`, `ratio` and `product`"
-                );
+                let message = match given.contains(&"unknown_below") {
+                    true => format!("`unknown_below` of {what} goes with `ratio` alone"),
+                    false => format!(
+                        "{over} is one of `mean`, `std`, `min`, `max`, `motor`, `difference`, `ratio` and `product`"
+                    ),
+                };
                 found.push(
                     Diagnostic::error("statistic", node.span.clone(), message).help(
                         "write for example `{min: motor_margin}` or `{motor: 1, of: motor_margin}`",
