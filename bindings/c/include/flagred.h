@@ -169,7 +169,8 @@ size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 /* Makes a monitor of a new flight in `memory`; there is nothing to free. `plan` and `memory` must outlive it. `limits`,
  * one for each motor, are copied, and commands are clamped to them; a command that lies outside by more than ten times
  * the width of the range, such as 65535, is unknown. If `limits` is NULL, commands are from 0 to 1: commands
- * from -0.5 to 1.5 are clamped to this range, and others are unknown. While a motor is unknown, so is the risk. */
+ * from -0.5 to 1.5 are clamped to this range, and others are unknown. While a motor is unknown, so is the risk. A profile that
+ * reads no motor needs none: then `motors` may be 0, and the commands of samples be NULL. */
 int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_limits *limits, void *memory, size_t size,
                       flagred_monitor **monitor);
 

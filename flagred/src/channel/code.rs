@@ -86,11 +86,10 @@ impl Observed {
             Observed::Ratio { a, b, .. } => (10, [a as u32, b as u32]),
             Observed::Product { a, b } => (11, [a as u32, b as u32]),
         };
-        let number = match self {
-            Observed::Ratio { unknown_below, .. } => unknown_below,
-            _ => 0.0,
-        };
-        (code, indices, number)
+        if let Observed::Ratio { unknown_below, .. } = self {
+            return (code, indices, unknown_below);
+        }
+        (code, indices, 0.0)
     }
 
     /// What is observed, from its code.

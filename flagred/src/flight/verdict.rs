@@ -169,9 +169,9 @@ impl Reason {
         match self {
             #[cfg(feature = "flightlog")]
             Reason::Log(gap) => gap.help(),
-            Reason::Monitor(MonitorError::NoSignal { .. }) => {
-                Some("`flagred inspect` lists the signals that a log carries")
-            }
+            Reason::Monitor(MonitorError::NoSignal { .. }) => Some(
+                "`flagred inspect` lists the signals that a log carries; `if_missing` of an input is its value on a vehicle that never sends it",
+            ),
             Reason::RiskUnknown { help, .. } => *help,
             Reason::MotorUnknown { command, .. } => Some(match command {
                 Some(_) => {

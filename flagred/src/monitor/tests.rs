@@ -538,7 +538,8 @@ fn a_missing_signal_has_its_value_until_it_comes_and_never_after() {
     let known = Craft::new(2).with_signals(&names);
     // By craft and the values of the samples, 2 on the ground and 4 in the air: which are assumed, and the input.
     let nan = f64::NAN;
-    let cases: [(Craft<'_>, [f64; 6], [bool; 6], [f64; 6]); 4] = [
+    type Case<'a> = (Craft<'a>, [f64; 6], [bool; 6], [f64; 6]);
+    let cases: [Case<'_>; 4] = [
         (
             Craft::new(2),
             [nan; 6],

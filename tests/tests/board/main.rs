@@ -301,6 +301,40 @@ fn every_statistic_is_the_same_lent_and_in_c() {
     same_lent_and_in_c(profile_of_every_statistic(&folder));
 }
 
+#[test]
+fn a_profile_that_reads_no_motor_is_the_same_with_none_lent_and_in_c() {
+    let folder = Folder::new();
+    let rules = "fuzzy: 1\nname: loads\ninputs:\n  load: {range: [0, 2], partition: {rated: 1, over: 1.5}}\n\
+                 outputs:\n  risk: {range: [0, 100], partition: [low, medium, high]}\nrules:\n\
+                 - IF load IS rated THEN risk IS low\n- IF load IS over THEN risk IS high\n";
+    let profile = "flagred: 1\nname: no-motors\nrules: loads.yaml\ninputs: {load: {mean: load_t}}\n\
+                   verdict: {warn: {risk: 50}, fail: {risk: 75}}\n";
+    let model = fuzzy::yaml::parse(rules).unwrap().model;
+    let estimator = Estimator::new(&profile.parse().unwrap(), &model).unwrap();
+    folder.file("loads.yaml", rules);
+    let file = folder.file("no-motors.yaml", profile);
+    let moment = |i: u32| Moment {
+        t_s: f64::from(i) * 0.1,
+        motors: Vec::new(),
+        in_air: i < 550,
+        signals: vec![f64::from(i) / 300.0],
+    };
+    let flight: Vec<Moment> = (0..600).map(moment).collect();
+    let expected = by_the_monitor(&estimator, &[], &flight);
+    let plan = estimator.plan().unwrap();
+    assert_same(&expected, &on_board(&plan, &[], &flight), "no motors");
+    let (_, built) = c::program("tests/c/follow.c", "no-motors", (&file, "no_motors"));
+    let mut command = Command::new(built.at("no-motors"));
+    command.arg("0");
+    let found = c::written(command, &c::doubles(&[], &flight));
+    assert_same(&expected, &found, "no motors in C");
+    // FAIL has the code 3.
+    assert!(
+        expected.iter().any(|told| told.contains(" [3 ")),
+        "{expected:?}"
+    );
+}
+
 /// Holds the bits of a plan and of its export to C against those of the monitor; gives what was found of the flights.
 fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String> {
     let signals = estimator.profile().signals();
