@@ -1,10 +1,12 @@
 //! Channels: one thing observed over one window, and the statistics taken of it. What is to be observed is plain data,
 //! which can lie in a table; what was seen is the caller's memory.
 
+use crate::verdict::NoticeSettings;
+
 mod code;
 mod seen;
 
-pub(crate) use seen::{Now, push, restart, value};
+pub(crate) use seen::{Now, assumed, note, push, restart, value};
 pub use seen::{Observation, Seen};
 
 /// A statistic over time.
@@ -122,7 +124,7 @@ pub enum Motors {
 }
 
 /// What a sample gives to a channel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Observed {
     /// The effective command of each motor.
     Command,
@@ -149,6 +151,42 @@ pub enum Observed {
         /// Whether they are angles in degrees.
         circular: bool,
     },
+    /// The signal `a` divided by the signal `b`, by their indices.
+    Ratio {
+        /// The signal.
+        a: usize,
+        /// What it is divided by.
+        b: usize,
+        /// The ratio is unknown where `b` is nearer to 0 than this, and always where `b` is 0.
+        unknown_below: f64,
+    },
+    /// The signal `a` times the signal `b`, by their indices.
+    Product {
+        /// The signal.
+        a: usize,
+        /// The other one.
+        b: usize,
+    },
+}
+
+impl Observed {
+    /// The signals that it is made of, by their index.
+    pub fn signals(&self) -> impl Iterator<Item = usize> {
+        let [first, second] = match *self {
+            Observed::Named(signal) => [Some(signal), None],
+            Observed::Difference { a, b, .. }
+            | Observed::Ratio { a, b, .. }
+            | Observed::Product { a, b } => [Some(a), Some(b)],
+            Observed::Command
+            | Observed::CommandLessYaw
+            | Observed::Margin
+            | Observed::LowSide
+            | Observed::HighSide
+            | Observed::Effort(_)
+            | Observed::CommandNoise => [None, None],
+        };
+        first.into_iter().chain(second)
+    }
 }
 
 /// A difference of angles, the short way around, in [-180, 180).
@@ -192,7 +230,7 @@ pub enum Threshold {
 /// use flagred::channel::{Channel, Input, Motors, Observed, Statistic};
 ///
 /// let plan = estimator.plan()?;
-/// assert_eq!(plan.inputs[1], Input { channel: 1, statistic: Statistic::Std, ratio: None });
+/// assert_eq!(plan.inputs[1], Input { channel: 1, statistic: Statistic::Std, ratio: None, if_missing: None });
 /// let spread = Channel { observed: Observed::Command, motors: Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false };
 /// assert_eq!(plan.channels[1], spread);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -213,22 +251,28 @@ pub struct Channel {
     pub exponential: bool,
 }
 
-/// The number of motors that a craft needs so that every motor that channels name is there.
-pub(crate) fn motors_needed(channels: &[Channel]) -> usize {
-    let needed = channels.iter().map(|channel| match channel.motors {
-        Motors::One(motor) => (motor as usize).saturating_add(1),
-        _ => 1,
-    });
-    needed.max().unwrap_or(1)
+impl Channel {
+    /// The number of motors that a craft needs so that every motor that the channel reads is there.
+    fn motors_needed(&self) -> usize {
+        match self.motors {
+            _ if self.observed.signals().next().is_some() => 0,
+            Motors::One(motor) => (motor as usize).saturating_add(1),
+            Motors::Pooled | Motors::Mean | Motors::Std | Motors::Min | Motors::Max => 1,
+        }
+    }
+}
+
+/// The number of motors that a craft needs for channels and for findings beside the risk.
+pub(crate) fn motors_needed(channels: &[Channel], notices: &NoticeSettings) -> usize {
+    let of_notices = usize::from(notices.any());
+    let needed = channels.iter().map(Channel::motors_needed);
+    needed.fold(of_notices, usize::max)
 }
 
 /// Whether an input reads the commands of the motors.
 pub(crate) fn reads_motors(channels: &[Channel], input: &Input) -> bool {
-    let observed = channels.get(input.channel).map(|channel| channel.observed);
-    !matches!(
-        observed,
-        None | Some(Observed::Named(_) | Observed::Difference { .. })
-    )
+    let channel = channels.get(input.channel);
+    channel.is_some_and(|channel| channel.motors_needed() > 0)
 }
 
 /// An input: a statistic of a channel.
@@ -240,6 +284,8 @@ pub struct Input {
     pub statistic: Statistic,
     /// What it is divided by.
     pub ratio: Option<Ratio>,
+    /// Its value until its signals are known for the first time: a vehicle may never send them.
+    pub if_missing: Option<f64>,
 }
 
 impl Input {

@@ -178,6 +178,11 @@ fn compile(
             at.of(&["output"]),
             "write `when_no_rule_fires: undefined` in the rule set; `gap` of the profile says what fills gaps".into(),
         ),
+        EstimatorError::IfMissingOutside { input, low, high, .. } => (
+            "out-of-range",
+            at.of(&["inputs", input, "if_missing"]),
+            format!("write a number from {low} to {high}"),
+        ),
         EstimatorError::Rules(_) | EstimatorError::Evaluate(_) => (
             "rule-set",
             at.of(&["rules"]),
@@ -346,7 +351,12 @@ fn signal(
                 .help(format!("did you mean `{meant}`?")),
         );
     }
-    let first = input.source.signal.carried().next();
+    let mut first = input.source.signal.carried().next();
+    // The unit of a ratio or a product is none of its signals'.
+    first = first.filter(|_| {
+        let signal = &input.source.signal;
+        !matches!(signal, Signal::Ratio { .. } | Signal::Product { .. })
+    });
     let first = first.and_then(|name| Some((name, unit_of(name)?)));
     if let (Some((name, unit)), Some(wanted)) = (first, variable.unit.as_deref()) {
         let is_share = matches!(

@@ -12,6 +12,7 @@ use crate::{
     board::Plan,
     cause::{Asked, Cause, Proposition, Propositions},
     channel::{Channel, Input},
+    craft::Craft,
     gap::Filling,
     lookup::{Lookup, UNREAD},
     plan::{NoPlan, rules_for},
@@ -89,6 +90,18 @@ pub enum EstimatorError {
         /// The upper end of its range.
         high: f64,
     },
+    /// An input has a value for a vehicle without its signal that is not one of the input.
+    #[error("`if_missing` of input `{input}` is {value}, and the input goes from {low} to {high}")]
+    IfMissingOutside {
+        /// The input.
+        input: String,
+        /// That value.
+        value: f64,
+        /// The lower end of the input's range.
+        low: f64,
+        /// The upper end of its range.
+        high: f64,
+    },
     /// An output keeps its previous value, but filling takes the place of rules that do not fire.
     #[error(
         "output `{output}` keeps its previous value where no rule fires, which a risk does not"
@@ -161,6 +174,21 @@ impl Estimator {
                     })
             })
             .collect::<Result<Vec<u32>, EstimatorError>>()?;
+        for (variable, place) in model.inputs.iter().zip(&fed) {
+            let (low, high) = (variable.low, variable.high);
+            let input = profile.inputs.get(*place as usize);
+            if let Some(value) = input.and_then(|input| input.if_missing)
+                && !(low..=high).contains(&value)
+            {
+                let input = variable.name.clone();
+                return Err(EstimatorError::IfMissingOutside {
+                    input,
+                    value,
+                    low,
+                    high,
+                });
+            }
+        }
         let read = model.inputs_of(&profile.output);
         let order = model.inputs.iter().zip(&fed).map(|(input, place)| {
             match read.contains(&input.name.as_str()) {
@@ -169,8 +197,11 @@ impl Estimator {
             }
         });
         let order = order.collect();
+        let signals = profile.signals();
+        // What a vehicle on board sends is not known here.
+        let craft = Craft::new(0).with_signals(&signals);
         let (channels, inputs) = profile
-            .channels(&[], &profile.signals())
+            .channels(&[], craft.with_optional(&signals))
             .map_err(|input| EstimatorError::NoSource { input })?;
         let said = engine.propositions();
         let propositions = said.iter().map(|said| Proposition {

@@ -12,7 +12,7 @@ use crate::{
 };
 
 mod assessment;
-pub use assessment::{Assessment, Peak, Step, Summary};
+pub use assessment::{Assessment, AssumedInput, Peak, Step, Summary};
 
 mod finding;
 pub use finding::{Cause, Finding};
@@ -101,6 +101,8 @@ struct Flight {
     /// For how long the risk was unknown, by reason.
     unknown: Vec<(Unknown, f64)>,
     losses: Losses,
+    /// The inputs whose values were assumed in the air, by their index.
+    assumed: Vec<usize>,
     /// Judged risks that a landing would still take back, in order of time.
     pending: VecDeque<Pending>,
 }
@@ -164,6 +166,11 @@ impl Assessor {
             self.flight.add(&update, sample, profile, unknown);
             if !sample.is_on_ground() {
                 self.keep_step(&update);
+                for input in self.monitor.assumed() {
+                    if !self.flight.assumed.contains(&input) {
+                        self.flight.assumed.push(input);
+                    }
+                }
             }
         }
         update
@@ -269,6 +276,7 @@ impl Flight {
             saturated: 0,
             unknown: Vec::new(),
             losses: Losses::default(),
+            assumed: Vec::new(),
             pending: VecDeque::new(),
         }
     }
@@ -436,6 +444,7 @@ impl Flight {
             findings_left_out: self.findings_left_out,
             summary,
             inputs: profile.inputs.iter().map(|i| i.name.clone()).collect(),
+            assumed_inputs: AssumedInput::of(&self.assumed, profile),
             steps: self.steps,
             widened_step_s: self.widened_step_s,
         }
@@ -466,7 +475,7 @@ impl Flight {
                         },
                         help: None,
                     },
-                    None => Reason::NoCommands,
+                    None => Reason::NoSamples,
                 })
             }
         }

@@ -3,7 +3,7 @@
 use crate::{
     accumulator::{Accumulator, AccumulatorSettings},
     cause::{Cause, is_of_limits},
-    channel::{Channel, Input, Now, Seen, push, reads_motors, value},
+    channel::{Channel, Input, Now, Seen, assumed, note, push, reads_motors, value},
     motor::{self, Bin, Motor},
     sample::{Estimate, Sample, Sampling, Unknown, Update},
     verdict::{self, Alert, Ended, Finding, Level, Notices, ROUNDING_S, VerdictSettings},
@@ -204,6 +204,7 @@ impl Follower {
             Some(last_s) => t_s - last_s,
         };
         self.last_s = Some(t_s);
+        note((feed.channels, feed.inputs), room.seen, sample.signals);
         let together = motor::take(room.motors, &mut self.bin, t_s, sample.motors);
         let rests = self.rests(sample, room.motors);
         // A risk that does not read the motors is estimated in a fall, too.
@@ -405,7 +406,10 @@ impl Follower {
     ) -> Result<Estimate, Unknown> {
         let plan = (feed.channels, feed.inputs);
         for (input, kept) in room.inputs.iter_mut().enumerate() {
-            let value = reading(plan, room.seen, &self.settings.sampling, input);
+            let value = match assumed(feed.inputs, room.seen, input) {
+                Some(value) => Ok(value),
+                None => reading(plan, room.seen, &self.settings.sampling, input),
+            };
             *kept = value.unwrap_or_else(|unknown| {
                 if feed.needs(input) {
                     reason.get_or_insert(unknown);
@@ -415,6 +419,7 @@ impl Follower {
         }
         for (input, of) in feed.inputs.iter().enumerate() {
             if let Some(ratio) = of.ratio
+                && assumed(feed.inputs, room.seen, input).is_none()
                 && let Some(value) = ratio.of(room.inputs, input)
                 && let Some(kept) = room.inputs.get_mut(input)
             {

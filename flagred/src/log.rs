@@ -27,10 +27,15 @@ use crate::{
 pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> Assessment {
     let gaps = flight.gaps();
     let is_needed = |gap: &&Gap| !matches!(gap, Gap::NoAttitude | Gap::TooSlow { .. });
-    if let Some(gap) = gaps.iter().find(is_needed) {
-        return Assessment::not_available(Reason::Log(gap.clone()));
-    }
     let profile = estimator.profile();
+    let missing = match profile.reads_motors() {
+        true => gaps.iter().find(is_needed).cloned(),
+        // Whatever the vehicle is.
+        false => flight.gap_of_air(),
+    };
+    if let Some(gap) = missing {
+        return Assessment::not_available(Reason::Log(gap));
+    }
     let needed = profile.signals();
     let carried = carried(flight, &needed);
     // A signal that one of several risks needs does not keep the others from being assessed.
@@ -38,7 +43,10 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
         true => carried.clone(),
         false => needed,
     };
-    let mut assessor = match Assessor::new(estimator, craft(flight, &signals), step_s) {
+    let missing = signals.iter().filter(|name| !carried.contains(name));
+    let missing: Vec<&str> = missing.copied().collect();
+    let craft = craft(flight, &signals).with_optional(&missing);
+    let mut assessor = match Assessor::new(estimator, craft, step_s) {
         Ok(assessor) => assessor,
         Err(error) => return Assessment::not_available(error),
     };
@@ -59,7 +67,7 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     }
     let reads_motors = |input: usize| {
         let input = profile.inputs.get(input);
-        input.is_none_or(|input| input.source.signal.carried().next().is_none())
+        input.is_none_or(|input| input.source.signal.is_made_of_motors())
     };
     let slow = gaps.iter().find(|gap| matches!(gap, Gap::TooSlow { .. }));
     if let (Verdict::NotAvailable(Reason::RiskUnknown { unknown, help, .. }), Some(slow)) =
@@ -79,20 +87,34 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     {
         *motor = logged.number.into();
     }
+    if is_in_doubt(&assessment.verdict)
+        && let Some(step_s) = step_s_of(flight, &signals)
+        && step_s > profile.sampling.longest_gap_s
+    {
+        assessment.verdict = Verdict::NotAvailable(Reason::SamplesFarApart {
+            step_s,
+            longest_gap_s: profile.sampling.longest_gap_s,
+        });
+    }
     // As for a vehicle that is lost on a live link: what was seen of the flight is not GOOD for that. What is unknown then is
     // unknown for that, too.
     if let Some(&at_s) = flight.rebooted_in_air_s.first()
-        && matches!(
-            assessment.verdict,
-            Verdict::Known(Level::Good)
-                | Verdict::NotAvailable(
-                    Reason::MotorUnknown { .. } | Reason::RiskUnknown { .. } | Reason::NoCommands
-                )
-        )
+        && is_in_doubt(&assessment.verdict)
     {
         assessment.verdict = Verdict::NotAvailable(Reason::SetBackInAir { at_s });
     }
     assessment
+}
+
+/// Whether a verdict is GOOD, or unknown for what was seen of the flight.
+fn is_in_doubt(verdict: &Verdict) -> bool {
+    matches!(
+        verdict,
+        Verdict::Known(Level::Good)
+            | Verdict::NotAvailable(
+                Reason::MotorUnknown { .. } | Reason::RiskUnknown { .. } | Reason::NoSamples
+            )
+    )
 }
 
 /// The craft that flew, with samples that carry the named signals.
@@ -109,19 +131,20 @@ pub fn carried<'a>(flight: &Flight, names: &[&'a str]) -> Vec<&'a str> {
     names.filter(|name| flight.signal(name).is_some()).collect()
 }
 
-/// Calls `take` with every motor sample of a flight in turn, with the latest value of each named signal.
+/// Calls `take` with every motor sample of a flight in turn, with the latest value of each named signal; without motor commands,
+/// with every sample of these signals.
 pub fn for_each_sample(flight: &Flight, signals: &[&str], mut take: impl FnMut(&Sample<'_>)) {
     let mut holds: Vec<_> = signals
         .iter()
         .map(|name| flight.signal(name).map(|signal| signal.hold()))
         .collect();
     let mut motors = vec![f64::NAN; flight.motors.len()];
-    let mut signals = vec![f64::NAN; holds.len()];
-    for (t_s, row) in flight.commands.rows() {
+    let mut values = vec![f64::NAN; holds.len()];
+    let mut sample = |t_s: f64, row: &[f64]| {
         for (effective, &raw) in motors.iter_mut().zip(row) {
             *effective = flight.effective_command(raw).unwrap_or(f64::NAN);
         }
-        for (value, hold) in signals.iter_mut().zip(&mut holds) {
+        for (value, hold) in values.iter_mut().zip(&mut holds) {
             let held = hold.as_mut().and_then(|hold| hold.at(t_s));
             *value = held.unwrap_or(f64::NAN);
         }
@@ -129,9 +152,39 @@ pub fn for_each_sample(flight: &Flight, signals: &[&str], mut take: impl FnMut(&
             t_s,
             motors: &motors,
             in_air: in_air(flight, t_s),
-            signals: &signals,
+            signals: &values,
         });
+    };
+    match flight.commands.is_empty() {
+        true => times_of(flight, signals)
+            .iter()
+            .for_each(|t_s| sample(*t_s, &[])),
+        false => flight
+            .commands
+            .rows()
+            .for_each(|(t_s, row)| sample(t_s, row)),
     }
+}
+
+/// The times of the named signals, in order, each once.
+fn times_of(flight: &Flight, signals: &[&str]) -> Vec<f64> {
+    let signals = signals.iter().filter_map(|name| flight.signal(name));
+    let mut times: Vec<f64> = signals.flat_map(|signal| signal.t_s).copied().collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
+/// How far apart most samples of a flight without motor commands are.
+fn step_s_of(flight: &Flight, signals: &[&str]) -> Option<f64> {
+    if !flight.commands.is_empty() {
+        return None;
+    }
+    let times = times_of(flight, signals);
+    let later = times.iter().skip(1);
+    let mut steps: Vec<f64> = later.zip(&times).map(|(to, from)| to - from).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied()
 }
 
 /// Whether the autopilot reports at a time that the vehicle is in the air; `None` where that is assumed.

@@ -3,7 +3,7 @@
 use alloc::{format, string::String, vec, vec::Vec};
 
 use crate::{
-    channel::{Channel, Input, Seen, motors_needed, restart},
+    channel::{Channel, Input, Seen, assumed, motors_needed, restart},
     estimator::{Estimator, Memory},
     follower::{Feed, Follower, Room, reading},
     motor::{Motor, set_geometry},
@@ -45,8 +45,12 @@ impl Unknown {
             Unknown::TooFewSamples { input, samples } => {
                 let (name, window_s) = name(input);
                 let rate = f64::from(profile.sampling.min_samples) / window_s;
+                let what = match profile.reads_motors() {
+                    true => "the motors",
+                    false => "its signal",
+                };
                 format!(
-                    "input `{name}` has {samples} samples in {window_s} s and needs {}: log the motors at {rate} Hz or more",
+                    "input `{name}` has {samples} samples in {window_s} s and needs {}: log {what} at {rate} Hz or more",
                     profile.sampling.min_samples
                 )
             }
@@ -75,8 +79,8 @@ pub enum MonitorError {
         /// The signal.
         signal: String,
     },
-    /// There is no motor to watch.
-    #[error("the flight has no motors")]
+    /// The profile reads the motors, and there are none.
+    #[error("the flight has no motors, and the profile reads them")]
     NoMotors,
     /// The profile names a motor that the flight does not have.
     #[error("the profile needs motor {motor}, and the flight has {motors} motors")]
@@ -142,16 +146,36 @@ struct OwnRoom {
 }
 
 impl Monitor {
-    /// A monitor of a craft.
+    /// A monitor of a craft. For a profile that reads no motor the craft may have none: then samples with an empty `motors`
+    /// are of a vehicle in use, unless they say that it is on the ground.
     ///
     /// # Errors
     ///
     /// The profile needs a signal that samples do not carry, or a motor that the craft does not have.
+    ///
+    /// # Example: a load, and no motors
+    /// ```
+    /// use flagred::{estimator::Estimator, monitor::{Craft, Monitor, Sample}, verdict::Level};
+    ///
+    /// let rules = "fuzzy: 1\nname: load\ninputs: {load: {range: [0, 2], partition: {light: 0.5, heavy: 1}}}\n\
+    ///     outputs: {risk: {range: [0, 100], terms: {none: {constant: 0}, high: {constant: 90}}, defuzzifier: weighted_average}}\n\
+    ///     rules: [IF load IS light THEN risk IS none, IF load IS heavy THEN risk IS high]";
+    /// let profile = "flagred: 1\nname: load\nrules: load\ninputs: {load: {last: load_t}}";
+    /// let estimator = Estimator::new(&profile.parse()?, &fuzzy::yaml::parse(rules)?.model)?;
+    /// let mut monitor = Monitor::new(&estimator, Craft::new(0).with_signals(&["load_t"]))?;
+    /// let mut level = None;
+    /// for i in 0..100 {
+    ///     let update = monitor.push(&Sample { t_s: f64::from(i) * 0.1, motors: &[], in_air: None, signals: &[1.2] });
+    ///     level = update.level.max(level);
+    /// }
+    /// assert_eq!(level, Some(Level::Fail));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(estimator: &Estimator, craft: Craft<'_>) -> Result<Monitor, MonitorError> {
-        if craft.motors == 0 {
+        let profile = estimator.profile();
+        if craft.motors == 0 && profile.reads_motors() {
             return Err(MonitorError::NoMotors);
         }
-        let profile = estimator.profile();
         let always = [
             (Statistic::Mean, Signal::MotorMargin),
             (Statistic::Std, Signal::MotorCommand),
@@ -163,10 +187,11 @@ impl Monitor {
             window_s: profile.window_s,
             exponential: false,
         });
+        let always = if craft.motors > 0 { &always[..] } else { &[] };
         let (channels, inputs) = profile
-            .channels(&always, craft.signals)
+            .channels(always, craft)
             .map_err(|signal| MonitorError::NoSignal { signal })?;
-        let motor = motors_needed(&channels);
+        let motor = motors_needed(&channels, &profile.verdict.notices);
         if motor > craft.motors {
             let motors = craft.motors;
             return Err(MonitorError::FewMotors { motor, motors });
@@ -258,6 +283,13 @@ impl Monitor {
     /// The values of the inputs after the latest sample, in the order of the profile; NaN is unknown.
     pub fn inputs(&self) -> &[f64] {
         &self.room.inputs
+    }
+
+    /// The inputs whose values are assumed after the latest sample, by their index in the profile: those with `if_missing` of
+    /// signals that have never come.
+    pub fn assumed(&self) -> impl Iterator<Item = usize> {
+        let all = 0..self.room.inputs.len();
+        all.filter(|input| assumed(&self.inputs, &self.room.seen, *input).is_some())
     }
 
     /// The finding behind the current level, as it stands so far; `None` while the level is good.

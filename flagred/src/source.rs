@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// What is observed.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Signal {
     /// The effective command `e` of each motor: 0 at its lower limit, 1 at its upper one.
     MotorCommand,
@@ -42,6 +42,22 @@ pub enum Signal {
         /// The signal.
         a: String,
         /// What is taken from it.
+        b: String,
+    },
+    /// One such signal divided by another one.
+    Ratio {
+        /// The signal.
+        a: String,
+        /// What it is divided by.
+        b: String,
+        /// The ratio is unknown where `b` is nearer to 0 than this, and always where `b` is 0.
+        unknown_below: f64,
+    },
+    /// One such signal times another one.
+    Product {
+        /// The signal.
+        a: String,
+        /// The other one.
         b: String,
     },
 }
@@ -89,10 +105,16 @@ impl Signal {
     pub fn carried(&self) -> impl Iterator<Item = &str> {
         let (first, second) = match self {
             Signal::Named(name) => (Some(name), None),
-            Signal::Difference { a, b } => (Some(a), Some(b)),
+            Signal::Difference { a, b } | Signal::Product { a, b } => (Some(a), Some(b)),
+            Signal::Ratio { a, b, .. } => (Some(a), Some(b)),
             _ => (None, None),
         };
         first.into_iter().chain(second).map(String::as_str)
+    }
+
+    /// Whether the signal is made of the motors' commands.
+    pub fn is_made_of_motors(&self) -> bool {
+        self.carried().next().is_none()
     }
 
     /// Whether the signal has one value for each motor.
@@ -255,6 +277,19 @@ pub(crate) fn channels<'a>(
                 a: place(a)?,
                 b: place(b)?,
             },
+            Signal::Ratio {
+                a,
+                b,
+                unknown_below,
+            } => Observed::Ratio {
+                a: place(a)?,
+                b: place(b)?,
+                unknown_below: *unknown_below,
+            },
+            Signal::Product { a, b } => Observed::Product {
+                a: place(a)?,
+                b: place(b)?,
+            },
         };
         let channel = Channel {
             observed,
@@ -273,6 +308,7 @@ pub(crate) fn channels<'a>(
             channel: same.unwrap_or(channels.len()),
             statistic: source.statistic,
             ratio: None,
+            if_missing: None,
         });
         if same.is_none() {
             channels.push(channel);
@@ -422,6 +458,46 @@ mod tests {
             Observer::new(&sources, craft(&names[..3])).unwrap_err(),
             "wind_m_s"
         );
+    }
+
+    #[test]
+    fn a_ratio_of_signals_is_unknown_near_a_divisor_of_0_and_never_infinite() {
+        let (a, b) = (String::from("battery_a"), String::from("battery_v"));
+        let of = |signal| Source {
+            signal,
+            ..source(Statistic::Last, Motors::Pooled, "")
+        };
+        let ratio = |unknown_below| {
+            let (a, b) = (a.clone(), b.clone());
+            of(Signal::Ratio {
+                a,
+                b,
+                unknown_below,
+            })
+        };
+        let (first, second) = (a.clone(), b.clone());
+        let product = of(Signal::Product {
+            a: first,
+            b: second,
+        });
+        let sources = [ratio(0.0), ratio(0.5), product];
+        let nan = f64::NAN;
+        for (a, b, found) in [
+            (3.0, 2.0, [Some(1.5), Some(1.5), Some(6.0)]),
+            (3.0, -0.5, [Some(-6.0), Some(-6.0), Some(-1.5)]),
+            (3.0, -0.25, [Some(-12.0), None, Some(-0.75)]),
+            (3.0, 0.0, [None, None, Some(0.0)]),
+            (0.0, -0.0, [None, None, Some(0.0)]),
+            (1e300, 1e-300, [None, None, Some(1.0)]),
+            (1e300, 1e300, [Some(1.0), Some(1.0), None]),
+            (nan, 2.0, [None; 3]),
+            (3.0, nan, [None; 3]),
+        ] {
+            let mut observer = Observer::new(&sources, craft(&["battery_a", "battery_v"])).unwrap();
+            observer.push(1.0, 0.1, &[], &[a, b]);
+            let values = [0, 1, 2].map(|i| observer.value(i).map(|o| o.value));
+            assert_eq!(values, found, "{a} {b}");
+        }
     }
 
     #[test]

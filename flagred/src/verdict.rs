@@ -205,6 +205,13 @@ pub struct NoticeSettings {
     pub imbalance: Option<Limit>,
 }
 
+impl NoticeSettings {
+    /// Whether anything is told. All of it is about motors.
+    pub(crate) fn any(&self) -> bool {
+        *self != NoticeSettings::default()
+    }
+}
+
 impl VerdictSettings {
     /// Calibrated on flights; see docs/validation.md.
     pub const DEFAULT: VerdictSettings = {

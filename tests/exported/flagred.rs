@@ -1,5 +1,5 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4216 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123152 bytes of memory.
+// 4360 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123344 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -186,12 +186,12 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: Some(channel::Threshold::Below(0.006)), in_bins: false, window_s: 2.0, exponential: false },
         ],
         inputs: &[
-            channel::Input { channel: 0, statistic: channel::Statistic::StdLessNoise, ratio: None },
-            channel::Input { channel: 1, statistic: channel::Statistic::StdLessNoise, ratio: None },
-            channel::Input { channel: 2, statistic: channel::Statistic::StdLessNoise, ratio: None },
-            channel::Input { channel: 3, statistic: channel::Statistic::StdLessNoise, ratio: Some(channel::Ratio { per: 4, at_least: 0.02 }) },
-            channel::Input { channel: 4, statistic: channel::Statistic::Mean, ratio: None },
-            channel::Input { channel: 5, statistic: channel::Statistic::ShareBelow(0.006), ratio: None },
+            channel::Input { channel: 0, statistic: channel::Statistic::StdLessNoise, ratio: None, if_missing: None },
+            channel::Input { channel: 1, statistic: channel::Statistic::StdLessNoise, ratio: None, if_missing: None },
+            channel::Input { channel: 2, statistic: channel::Statistic::StdLessNoise, ratio: None, if_missing: None },
+            channel::Input { channel: 3, statistic: channel::Statistic::StdLessNoise, ratio: Some(channel::Ratio { per: 4, at_least: 0.02 }), if_missing: None },
+            channel::Input { channel: 4, statistic: channel::Statistic::Mean, ratio: None, if_missing: None },
+            channel::Input { channel: 5, statistic: channel::Statistic::ShareBelow(0.006), ratio: None, if_missing: None },
         ],
         signals: 0,
         settings: Settings { sampling: Sampling { min_samples: 5, warm_up_s: 0.5, longest_gap_s: 2.0, take_off_s: 3.0 }, elevated_risk: AccumulatorSettings { window_s: 3.0, high_pct: 50.0, low_pct: 46.0, rise_pct_per_s: 14.0, fall_pct_per_s: 28.0 }, verdict: VerdictSettings { warn: LevelSettings { raise: Threshold { risk_pct: Some(62.0), elevated_risk_pct: Some(60.0) }, after_s: 0.2, until: Threshold { risk_pct: Some(43.0), elevated_risk_pct: Some(20.0) } }, fail: LevelSettings { raise: Threshold { risk_pct: Some(80.0), elevated_risk_pct: None }, after_s: 0.3, until: Threshold { risk_pct: Some(65.0), elevated_risk_pct: None } }, clear_after_s: 5.0, quiet_after_take_off_s: 3.0, quiet_before_landing_s: 2.0, idle_below: 0.1, notices: NoticeSettings { noise: Some(Limit { value: 0.08, after_s: 5.0 }), reserve: Some(Limit { value: 0.1, after_s: 3.0 }), imbalance: Some(Limit { value: 0.15, after_s: 3.0 }) } } },

@@ -1,5 +1,5 @@
 // The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 3828 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 55144 bytes of memory.
+// 3876 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 55208 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -153,8 +153,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
         ],
         inputs: &[
-            channel::Input { channel: 0, statistic: channel::Statistic::Mean, ratio: None },
-            channel::Input { channel: 1, statistic: channel::Statistic::Std, ratio: None },
+            channel::Input { channel: 0, statistic: channel::Statistic::Mean, ratio: None, if_missing: None },
+            channel::Input { channel: 1, statistic: channel::Statistic::Std, ratio: None, if_missing: None },
         ],
         signals: 0,
         settings: Settings { sampling: Sampling { min_samples: 5, warm_up_s: 1.0, longest_gap_s: 2.0, take_off_s: 0.0 }, elevated_risk: AccumulatorSettings { window_s: 10.0, high_pct: 50.0, low_pct: 20.0, rise_pct_per_s: 2.0, fall_pct_per_s: 3.0 }, verdict: VerdictSettings { warn: LevelSettings { raise: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(50.0) }, after_s: 0.2, until: Threshold { risk_pct: Some(25.0), elevated_risk_pct: Some(30.0) } }, fail: LevelSettings { raise: Threshold { risk_pct: Some(85.0), elevated_risk_pct: Some(90.0) }, after_s: 0.4, until: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(70.0) } }, clear_after_s: 10.0, quiet_after_take_off_s: 5.0, quiet_before_landing_s: 1.0, idle_below: 0.1, notices: NoticeSettings { noise: None, reserve: None, imbalance: None } } },

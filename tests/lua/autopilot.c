@@ -136,6 +136,16 @@ static int capacity_remaining_pct(lua_State *L) {
     return 1;
 }
 
+/* Between 16 and 18 V. */
+static int voltage(lua_State *L) {
+    luaL_argcheck(L, luaL_checkinteger(L, 2) == 0, 2, "no such battery");
+    if (isnan(now[2 + motors])) {
+        return 0;
+    }
+    lua_pushnumber(L, (lua_Number)(16 + now[2 + motors] / 50));
+    return 1;
+}
+
 static int param_get(lua_State *L) {
     const char *name = luaL_checkstring(L, 2);
     size_t length = strlen(name);
@@ -199,7 +209,7 @@ static int log_write(lua_State *L) {
 static const luaL_Reg TIME[] = {{"__sub", time_sub}, {"toint", time_toint}, {NULL, NULL}};
 static const luaL_Reg SERVOS[] = {{"get_output_pwm", get_output_pwm}, {NULL, NULL}};
 static const luaL_Reg VEHICLE[] = {{"get_likely_flying", get_likely_flying}, {NULL, NULL}};
-static const luaL_Reg BATTERY[] = {{"capacity_remaining_pct", capacity_remaining_pct}, {NULL, NULL}};
+static const luaL_Reg BATTERY[] = {{"capacity_remaining_pct", capacity_remaining_pct}, {"voltage", voltage}, {NULL, NULL}};
 static const luaL_Reg PARAM[] = {{"get", param_get}, {"add_table", add_table}, {"add_param", add_param}, {NULL, NULL}};
 static const luaL_Reg GCS[] = {{"send_text", send_text}, {"send_named_float", send_named_float}, {NULL, NULL}};
 static const luaL_Reg LOGGER[] = {{"write", log_write}, {NULL, NULL}};

@@ -24,8 +24,9 @@ fn estimators() -> [Estimator; 3] {
 fn all(estimator: &Estimator) -> Vec<Words> {
     let causes = estimator.propositions();
     let causes = causes.map(|(input, term)| Words::of_cause(estimator, input, term));
+    let measures = Measure::ALL.into_iter();
     causes
-        .chain(Measure::ALL.into_iter().map(Words::of_measure))
+        .chain(measures.map(|measure| Words::of_measure(estimator.profile(), measure)))
         .collect()
 }
 

@@ -408,3 +408,173 @@ fn an_input_that_is_outvoted_is_a_warning_of_check() {
     assert_eq!(code, Some(1), "{told}");
     assert!(told.starts_with("FAIL"), "{told}");
 }
+
+/// A profile that reads no motor, its rule set, and a table of loads that rise to `last_kg`.
+fn forklift(folder: &Folder, last_kg: f64, step_s: f64) -> [String; 2] {
+    folder.file(
+        "forklift-rules.yaml",
+        "fuzzy: 1\nname: forklift\ninputs: {left: {range: [0, 2000], partition: {rated: 1000, over: 1400}}}\n\
+         outputs: {risk: {range: [0, 100], terms: {low: {constant: 5}, high: {constant: 95}}, defuzzifier: weighted_average}}\n\
+         rules: [IF left IS rated THEN risk IS low, IF left IS over THEN risk IS high]\n",
+    );
+    let profile =
+        "flagred: 1\nname: forklift\nrules: forklift-rules.yaml\ninputs: {left: {mean: left_kg}}\n";
+    let mut table = String::from("# vehicle_kind: other vehicle\nt_s,left_kg\n");
+    for i in 0..=400 {
+        let load_kg = if i < 200 { 900.0 } else { last_kg };
+        table += &format!("{},{load_kg}\n", f64::from(i) * step_s);
+    }
+    [
+        folder.file("forklift.yaml", profile),
+        folder.file("forklift.csv", table),
+    ]
+}
+
+#[test]
+fn a_profile_that_reads_no_motor_assesses_a_table_without_a_word_about_rotors() {
+    let folder = Folder::new();
+    let [profile, table] = forklift(&folder, 1500.0, 0.1);
+    let (code, told, _) = run(&["check", "--deny", "notes", &profile]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("reads no motor, and needs none"), "{told}");
+
+    let html = folder.at("forklift.html");
+    let arguments = ["assess", "-v", "--profile", &profile, "--html", &html];
+    let (code, text, _) = run(&[&arguments[..], &[&table]].concat());
+    assert_eq!(code, Some(1), "{text}");
+    assert!(
+        text.starts_with("FAIL ") && text.contains("in use 40.0 s"),
+        "{text}"
+    );
+    let compared = folder.at("compared.html");
+    run(&[
+        "assess",
+        "--profile",
+        &profile,
+        "--html",
+        &compared,
+        &table,
+        &table,
+    ]);
+    let page = |file: &str| -> String {
+        let html = fs::read_to_string(file).unwrap();
+        let (_, body) = html.split_once("</style>").unwrap();
+        body.split("<script>").next().unwrap().to_owned()
+    };
+    for shown in [&text, &page(&html), &page(&compared)] {
+        let shown = shown.to_lowercase();
+        for word in [
+            "motor",
+            "rotor",
+            "in the air",
+            "take-off",
+            "landing",
+            "land ",
+            "attitude",
+            "at a limit",
+        ] {
+            let found = shown
+                .find(word)
+                .map(|at| &shown[at.saturating_sub(80)..at + 20]);
+            assert_eq!(found, None, "{word}");
+        }
+    }
+    let (_, text, _) = run(&["assess", "--json", "--profile", &profile, &table]);
+    let document: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(document["verdict"], "FAIL");
+    assert_eq!(document["summary"]["in_air_s"], 40.0);
+    assert_eq!(document["vehicle"]["motors"], serde_json::json!([]));
+    assert_eq!(
+        schema::errors(&schema::schema("assess"), &document),
+        Vec::<String>::new()
+    );
+
+    let [_, table] = forklift(&folder, 900.0, 0.1);
+    let (code, text, _) = run(&["assess", "--profile", &profile, &table]);
+    assert!(code == Some(0) && text.starts_with("GOOD "), "{text}");
+    // The default profile needs motors, and says what does not.
+    let (code, text, _) = run(&["assess", &table]);
+    assert!(
+        code == Some(3) && text.contains("not a multirotor"),
+        "{text}"
+    );
+    // Each sample would be a flight of its own: milliseconds, for example.
+    let [_, table] = forklift(&folder, 1500.0, 100.0);
+    let (code, text, _) = run(&["assess", "--profile", &profile, &table]);
+    assert_eq!(code, Some(3), "{text}");
+    assert!(text.contains("the samples are 100 s apart"), "{text}");
+}
+
+#[test]
+fn a_missing_signal_is_assumed_and_every_reader_is_told() {
+    let folder = Folder::new();
+    let battery =
+        fs::read_to_string(format!("{ROOT}/rules/profiles/flagred-battery.yaml")).unwrap();
+    let plain = "battery: {last: battery_remaining_pct}";
+    let with = |value: &str| {
+        let input = format!("battery: {{last: battery_remaining_pct, if_missing: {value}}}");
+        assert!(battery.contains(plain));
+        folder.file("mine.yaml", battery.replace(plain, &input))
+    };
+    let profile = with("100");
+    let (code, told, _) = run(&["check", "--deny", "notes", &profile]);
+    assert_eq!(code, Some(0), "{told}");
+
+    // A hover: without the level, with it, and with a sensor that is lost.
+    let flight = |column: &str, level: &dyn Fn(u32) -> String| {
+        let mut table = format!("t_s,motor1,motor2,motor3,motor4{column}\n");
+        for i in 0..1500 {
+            let t_s = f64::from(i) * 0.02;
+            table += &format!("{t_s},0.5,0.51,0.49,0.5{}\n", level(i));
+        }
+        folder.file("flight.csv", table)
+    };
+    let missing = flight("", &|_| String::new());
+    let (code, text, _) = run(&["assess", "--profile", "flagred-battery", &missing]);
+    assert_eq!(code, Some(3), "{text}");
+    let html = folder.at("report.html");
+    let (code, text, _) = run(&["assess", "--profile", &profile, "--html", &html, &missing]);
+    assert_eq!(code, Some(0), "{text}");
+    let note = "is not in the log: input `battery` is assumed to be 100";
+    assert!(text.contains(note), "{text}");
+    assert!(fs::read_to_string(&html).unwrap().contains(note));
+    let (_, text, _) = run(&["assess", "--profile", &profile, &missing, &missing]);
+    assert!(text.contains("`battery` assumed to be 100"), "{text}");
+    let (_, text, _) = run(&["assess", "--json", "--profile", &profile, &missing]);
+    let document: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(
+        document["assumed_inputs"],
+        serde_json::json!([{"input": "battery", "value": 100.0, "signals": ["battery_remaining_pct"]}])
+    );
+    assert_eq!(
+        schema::errors(&schema::schema("assess"), &document),
+        Vec::<String>::new()
+    );
+
+    // A lost sensor is not a full battery, and neither is one that is empty from the beginning.
+    for lost in [0, 10] {
+        let level = |i: u32| {
+            if i < lost {
+                ",80".into()
+            } else {
+                ",".to_owned()
+            }
+        };
+        let log = flight(",battery_remaining_pct", &level);
+        let (code, text, _) = run(&["assess", "--profile", &profile, &log]);
+        assert_eq!(code, Some(3), "{text}");
+        assert!(!text.contains("assumed to be"), "{text}");
+    }
+    let log = flight(",battery_remaining_pct", &|_| ",2".to_owned());
+    let (code, text, _) = run(&["assess", "--profile", &profile, &log]);
+    assert!(code == Some(1) && text.starts_with("FAIL"), "{text}");
+
+    let outside = with("120");
+    let (code, told, _) = run(&["check", &outside]);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(
+        told.contains("`if_missing` of input `battery` is 120, and the input goes from 0 to 100")
+            && told.contains("help: write a number from 0 to 100"),
+        "{told}"
+    );
+}

@@ -163,7 +163,7 @@ fn push_all(assessor: &mut Assessor, samples: &[Sample]) {
 }
 
 /// Statistics of signals: the end of the range of the input in the rule set, and its source.
-const SOURCES: [(f64, &str); 20] = [
+const SOURCES: [(f64, &str); 22] = [
     (0.5, "{mean: {motor: 3, of: motor_margin}}"),
     (0.2, "{std: {motor: 8, of: motor_command_less_yaw}}"),
     (1.0, "{mean: {min: motor_command}}"),
@@ -180,6 +180,11 @@ const SOURCES: [(f64, &str); 20] = [
     (5.0, "{max: {difference: [battery_v, cells_v]}}"),
     (20.0, "{min: battery_v, window_s: 5}"),
     (20.0, "{last: battery_v}"),
+    (
+        2.0,
+        "{mean: {ratio: [battery_v, cells_v], unknown_below: 14.05}, window_s: 4}",
+    ),
+    (300.0, "{std: {product: [battery_v, cells_v]}}"),
     (2.0, "{rate: battery_v, window_s: 9}"),
     (1.0, "{rate: {mean: motor_command}}"),
     (

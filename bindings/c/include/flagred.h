@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_FORMAT 9
+#define FLAGRED_FORMAT 10
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -33,7 +33,7 @@ typedef enum flagred_status {
     FLAGRED_NULL_POINTER = 1,   /* a required pointer is NULL */
     FLAGRED_OTHER_FORMAT = 2,   /* another version exported the plan: export it again */
     FLAGRED_DAMAGED_PLAN = 3,   /* an index in the plan is out of bounds, or a window has no length */
-    FLAGRED_NO_MOTORS = 4,      /* the number of motors is 0, or the profile names a motor that there is not */
+    FLAGRED_NO_MOTORS = 4,      /* the profile reads the motors and there are none, or it names a motor that there is not */
     FLAGRED_MEMORY_SIZE = 5,    /* less memory than flagred_memory_size returns, or not aligned to 16 bytes */
     FLAGRED_BAD_LIMITS = 6,     /* the lower limit of a motor is not below its upper limit */
     FLAGRED_BAD_GEOMETRY = 7,   /* the geometry does not tell roll, pitch, yaw and thrust of all motors apart */
@@ -169,7 +169,8 @@ size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 /* Makes a monitor of a new flight in `memory`; there is nothing to free. `plan` and `memory` must outlive it. `limits`,
  * one for each motor, are copied, and commands are clamped to them; a command that lies outside by more than ten times
  * the width of the range, such as 65535, is unknown. If `limits` is NULL, commands are from 0 to 1: commands
- * from -0.5 to 1.5 are clamped to this range, and others are unknown. While a motor is unknown, so is the risk. */
+ * from -0.5 to 1.5 are clamped to this range, and others are unknown. While a motor is unknown, so is the risk. A profile that
+ * reads no motor needs none: then `motors` may be 0, and the commands of samples be NULL. */
 int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_limits *limits, void *memory, size_t size,
                       flagred_monitor **monitor);
 
@@ -358,7 +359,7 @@ typedef struct flagred_knot {
 } flagred_knot;
 
 typedef struct flagred_channel {
-    double window_s, limit;
+    double window_s, limit, unknown_below;
     uint32_t observed, indices[2], motors, threshold, in_bins, exponential;
 } flagred_channel;
 
@@ -383,6 +384,7 @@ typedef struct flagred_stage {
 
 typedef struct flagred_source {
     double number, at_least;
+    double if_missing; /* until its signals are known for the first time; NAN: none */
     uint32_t channel, statistic;
     uint32_t per; /* a source; UINT32_MAX: none */
 } flagred_source;

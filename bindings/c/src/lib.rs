@@ -137,9 +137,6 @@ unsafe fn start(
     let plan: &'static Plan = unsafe { plan.as_ref() }.ok_or(Status::NullPointer)?;
     // SAFETY: the caller's promise: nothing else uses the memory, and it outlives the monitor.
     let mut block = unsafe { Block::new(memory, size) }?;
-    if motors == 0 {
-        return Err(Status::NoMotors);
-    }
     // SAFETY: the caller's promise on the plan's arrays, which are used in this call only.
     if size < unsafe { plan.bytes(motors) }? {
         return Err(Status::MemorySize);

@@ -20,6 +20,7 @@ mod tests;
 struct CChannel {
     window_s: f64,
     limit: f64,
+    unknown_below: f64,
     observed: u32,
     indices: [u32; 2],
     motors: u32,
@@ -33,6 +34,7 @@ struct CChannel {
 struct CSource {
     number: f64,
     at_least: f64,
+    if_missing: f64,
     channel: u32,
     statistic: u32,
     per: u32,
@@ -180,7 +182,7 @@ impl CChannel {
     fn read(&self) -> Result<Channel, Status> {
         let known = || {
             Some(Channel {
-                observed: Observed::from_code(self.observed, self.indices)?,
+                observed: Observed::from_code(self.observed, self.indices, self.unknown_below)?,
                 motors: Motors::from_code(self.motors),
                 threshold: channel::Threshold::from_code(self.threshold, self.limit)?,
                 in_bins: self.in_bins != 0,
@@ -202,6 +204,7 @@ impl CSource {
                 per: self.per as usize,
                 at_least: self.at_least,
             }),
+            if_missing: known(self.if_missing),
         })
     }
 }

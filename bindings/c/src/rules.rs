@@ -13,7 +13,7 @@ use flagred::board::{
 use crate::{array::Array, status::Status};
 
 /// The version of the data that this library reads.
-pub(crate) const FORMAT: u32 = 9;
+pub(crate) const FORMAT: u32 = 10;
 
 macro_rules! define {
     ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {

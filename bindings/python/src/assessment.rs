@@ -118,6 +118,7 @@ pub(crate) fn said(assessed: &Assessment, teller: Teller<'_>) -> String {
         "findings": findings,
         "findings_left_out": assessed.findings_left_out,
         "summary": assessed.summary,
+        "assumed_inputs": assessed.assumed_inputs,
         "widened_step_s": assessed.widened_step_s,
     })
     .to_string()

@@ -1,5 +1,15 @@
 // Written by `UPDATE_DOCUMENTS=1 cargo test --workspace --test bindings` from the types in Rust.
 
+/** An input with a value that nobody measured: `ProfileInput::if_missing`. */
+export interface AssumedInput {
+  /** Its name. */
+  input: string;
+  /** Its value. */
+  value: number;
+  /** The signals that it is made of; at least one was missing. */
+  signals: string[];
+}
+
 /** What raised the risk when a level was reached: `verdict::Cause` by name. */
 export interface Cause {
   /** The input of the rule that distinguishes it: of the propositions of its antecedent, that of the fewest rules. */
@@ -130,6 +140,8 @@ export interface FlightDocument {
   /** How many findings were left out. */
   findings_left_out: number;
   summary: Summary;
+  /** The inputs whose values were assumed because the log lacks their signals. */
+  assumed_inputs: AssumedInput[];
   /** The risk over time. The npm package can leave it out; `flagred assess` never does. */
   steps?: Step[];
   /** Seconds between the steps, where they are further apart than was asked for: 250,000 are kept at most. */

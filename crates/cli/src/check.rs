@@ -93,10 +93,10 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         let file = path.display().to_string();
         let source = flagred_interchange::source(text);
         let text = source.text();
-        let (profile, examined) = if is_profile(&source) {
-            let (name, findings, alone) = examine_profile(path, &source)?;
+        let (of_profile, examined) = if is_profile(&source) {
+            let (profile, findings, alone) = examine_profile(path, &source)?;
             let analysed = None;
-            (Some((name, alone)), Examined { findings, analysed })
+            (Some((profile, alone)), Examined { findings, analysed })
         } else {
             (None, examine(&source, arguments)?)
         };
@@ -126,15 +126,20 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                         visible(&file)
                     )?;
                 }
-                if let Some((_, alone)) = &profile {
+                if let Some((profile, alone)) = &of_profile {
                     write_alone(&mut out, &file, alone)?;
+                    let reads_motors = profile.as_ref().is_none_or(Profile::reads_motors);
+                    if !reads_motors {
+                        writeln!(out, "{}: reads no motor, and needs none", visible(&file))?;
+                    }
                 }
                 writeln!(out, "{}: {}", visible(&file), summary(findings))?;
             }
             Format::Json => {
-                let json = match &profile {
-                    Some((name, alone)) => {
-                        Checked::profile(&file, name.as_deref(), &findings.0, alone)
+                let json = match &of_profile {
+                    Some((profile, alone)) => {
+                        let name = profile.as_ref().map(|profile| profile.name.as_str());
+                        Checked::profile(&file, name, &findings.0, alone)
                     }
                     None => Checked::rules(&file, &examined),
                 };
@@ -168,12 +173,12 @@ fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>
     })
 }
 
-/// The name of a profile, all findings about it and the rule set that it names, and what its inputs reach alone. A rule set with
+/// A profile, all findings about it and the rule set that it names, and what its inputs reach alone. A rule set with
 /// errors is refused: they are in another file.
 fn examine_profile(
     path: &Path,
     source: &Source,
-) -> Result<(Option<String>, Findings, Vec<Alone>), Failure> {
+) -> Result<(Option<Profile>, Findings, Vec<Alone>), Failure> {
     let profile = match Profile::from_source(source) {
         Ok(profile) => profile,
         Err(findings) => return Ok((None, findings, Vec::new())),
@@ -183,7 +188,7 @@ fn examine_profile(
     let rules = profile::rule_set(&profile, folder)?;
     let (findings, estimator) = profile::examine(source, &rules);
     let alone = estimator.as_ref().map(alone).unwrap_or_default();
-    Ok((Some(profile.name), findings, alone))
+    Ok((Some(profile), findings, alone))
 }
 
 /// A line for each input: `battery  0 (empty)  battery_risk 95 %, FAIL`.

@@ -116,7 +116,7 @@ impl Gap {
                     "let the ground station load all parameters while it records, or use the log on the vehicle"
                 }
                 Csv => {
-                    "name the columns of the motors pwm1.. (us) or motor1.. (0 to 1), in small letters"
+                    "name the columns of the motors pwm1.. (us) or motor1.. (0 to 1), in small letters; a profile that reads no motor needs none"
                 }
             },
             Self::NoCommands {
@@ -224,13 +224,7 @@ impl Flight {
         if self.range.is_none() && !self.motors.is_empty() {
             gaps.push(Gap::NoRange { format });
         }
-        let never = |intervals: &crate::Intervals| intervals.spans.is_empty();
-        match (&self.armed, &self.in_air) {
-            (Some(armed), _) if never(armed) => gaps.push(Gap::NeverArmed),
-            (_, Some(in_air)) if never(in_air) => gaps.push(Gap::NeverInAir),
-            (_, None) => gaps.push(Gap::AirUnknown { format }),
-            _ => {}
-        }
+        gaps.extend(self.gap_of_air());
         if crate::ATTITUDE
             .iter()
             .any(|name| self.signal(name).is_none())
@@ -241,5 +235,24 @@ impl Flight {
             gaps.push(Gap::TooSlow { rate_hz, format });
         }
         gaps
+    }
+
+    /// Why no time is known in which the vehicle was in the air: all that a profile lacks which reads no motor.
+    ///
+    /// ```
+    /// let log = "t_s,load_kg\n0,900\n0.1,950\n";
+    /// let flight = flagred_flightlog::read(log.as_bytes(), &flagred_flightlog::Options::default())?;
+    /// assert_eq!(flight.gap_of_air(), None); // without a column `in_air` every row counts
+    /// # Ok::<(), flagred_flightlog::ReadError>(())
+    /// ```
+    pub fn gap_of_air(&self) -> Option<Gap> {
+        let format = self.format;
+        let never = |intervals: &crate::Intervals| intervals.spans.is_empty();
+        match (&self.armed, &self.in_air) {
+            (Some(armed), _) if never(armed) => Some(Gap::NeverArmed),
+            (_, Some(in_air)) if never(in_air) => Some(Gap::NeverInAir),
+            (_, None) => Some(Gap::AirUnknown { format }),
+            _ => None,
+        }
     }
 }

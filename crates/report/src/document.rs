@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use flagred::{
     estimator::Estimator,
-    flight::{Assessment, Finding, Steps, Summary, Verdict, Words},
+    flight::{Assessment, AssumedInput, Finding, Steps, Summary, Verdict, Words},
     profile::Reliability,
     verdict::VerdictSettings,
 };
@@ -36,6 +36,8 @@ pub struct Document<'a> {
     /// How many findings were left out.
     findings_left_out: u64,
     summary: &'a Summary,
+    /// The inputs whose values were assumed because the log lacks their signals.
+    assumed_inputs: &'a [AssumedInput],
     /// The risk over time. The npm package can leave it out; `flagred assess` never does.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Steps<'_>"))]
@@ -179,6 +181,7 @@ pub fn document<'a>(
             .collect(),
         findings_left_out: assessed.findings_left_out,
         summary: &assessed.summary,
+        assumed_inputs: &assessed.assumed_inputs,
         steps: Some(assessed.steps_by_name()),
         widened_step_s: assessed.widened_step_s,
     }

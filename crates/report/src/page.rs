@@ -8,7 +8,7 @@ use crate::{
     charts,
     curve::Stretch,
     panel::panel,
-    parts::{badge, findings, percent, share, shown, texts, verdict_class},
+    parts::{badge, findings, in_the_air, percent, share, shown, texts, verdict_class},
     timeline::{CSS, Timeline},
     words,
 };
@@ -74,6 +74,8 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
     });
     let timelines: Vec<Timeline> = timelines.collect();
     let peak = |peak: Option<Peak>| percent(peak.map(|peak| peak.value_pct));
+    let mut flights = subjects.iter().map(|subject| &subject.flight);
+    let has_motors = flights.any(|flight| !flight.motors.is_empty());
     html! {
         h1 { (together(subjects)) }
         p.soft {
@@ -82,8 +84,8 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
         }
         .scroll { table {
             thead { tr {
-                th { "Verdict" } th { "Flight" } th.n { "In the air" } th.n { "Mean risk" }
-                th.n { "Highest" } th.n { "Elevated" } th.n { "At a limit" } th.n { "Findings" }
+                th { "Verdict" } th { "Flight" } th.n { (in_the_air(has_motors)) } th.n { "Mean risk" }
+                th.n { "Highest" } th.n { "Elevated" } @if has_motors { th.n { "At a limit" } } th.n { "Findings" }
             } }
             tbody {
                 @for (i, subject) in subjects.iter().enumerate() {
@@ -95,7 +97,7 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
                         td.n { (percent(summary.risk_mean_pct)) }
                         td.n { (peak(summary.risk_max)) }
                         td.n { (peak(summary.elevated_risk_max)) }
-                        td.n { (share(summary.saturated_share)) }
+                        @if has_motors { td.n { (share(summary.saturated_share)) } }
                         td.n { (subject.assessed.findings.len()) }
                     }
                 }

@@ -236,6 +236,14 @@ pub(crate) fn badge(verdict: &Verdict) -> Markup {
     html! { span.badge.(verdict_class(verdict)) { (verdict) } }
 }
 
+/// The heading of the time in which vehicles are assessed.
+pub(crate) fn in_the_air(has_motors: bool) -> &'static str {
+    match has_motors {
+        true => "In the air",
+        false => "In use",
+    }
+}
+
 pub(crate) fn percent(value: Option<f64>) -> String {
     value.map_or("unknown".into(), |value| format!("{value:.0} %"))
 }
@@ -287,20 +295,28 @@ fn figures(subject: &Subject) -> Markup {
         })
     };
     let of_air = |part_s: f64| share((summary.in_air_s > 0.0).then(|| part_s / summary.in_air_s));
+    let has_motors = !subject.flight.motors.is_empty();
     let figures = [
         ("Highest risk", at(summary.risk_max)),
         ("Mean risk", percent(summary.risk_mean_pct)),
         ("Highest elevated risk", at(summary.elevated_risk_max)),
-        ("In the air", format!("{:.1} s", subject.in_air_s())),
+        (
+            in_the_air(has_motors),
+            format!("{:.1} s", subject.in_air_s()),
+        ),
         ("Risk known", of_air(summary.assessed_s)),
         ("Risk interpolated", of_air(summary.filled_s)),
-        ("Motors at a limit", share(summary.saturated_share)),
     ];
+    let at_limit = has_motors.then(|| ("Motors at a limit", share(summary.saturated_share)));
     html! {
         dl.figures {
-            @for (name, value) in figures { div { dt { (name) } dd { (value) } } }
+            @for (name, value) in figures.into_iter().chain(at_limit) { div { dt { (name) } dd { (value) } } }
         }
-        p.soft { "The highest and mean values are without the seconds around take-off and landing." }
+        @if has_motors {
+            p.soft { "The highest and mean values are without the seconds around take-off and landing." }
+        } @else {
+            p.soft { "The highest and mean values are without the first seconds in use and the last ones before a stop." }
+        }
     }
 }
 
@@ -425,12 +441,16 @@ fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
         format!("{low} to {high} {unit} ({})", range.source)
     };
     add("range", flight.range.as_ref().map(range));
-    add("effective range", Some(range(&flight.effective_range)));
+    let has_motors = !flight.motors.is_empty();
+    let effective = has_motors.then(|| range(&flight.effective_range));
+    add("effective range", effective);
     for parameter in &flight.parameters {
         let value = format!("{} ({})", number(parameter.value, 6), parameter.source);
         add(&parameter.name, Some(value));
     }
-    for (name, spans) in [("armed", &flight.armed), ("in the air", &flight.in_air)] {
+    let armed = has_motors.then_some(("armed", &flight.armed));
+    let air = (words::in_the_air(flight), &flight.in_air);
+    for (name, spans) in armed.into_iter().chain([air]) {
         let value = spans.as_ref();
         let value = value.map(|spans| format!("{:.1} s ({})", spans.duration_s(), spans.rule));
         add(
@@ -439,7 +459,9 @@ fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
         );
     }
     let signals = loaded.estimator.profile().signals();
-    for name in signals.into_iter().chain(charts::SIGNALS) {
+    let drawn = charts::SIGNALS.into_iter();
+    let drawn = drawn.filter(|name| has_motors || flight.signal(name).is_some());
+    for name in signals.into_iter().chain(drawn) {
         let value = flight.signal(name).map(|signal| {
             let rate = signal.rate_hz().map(|hz| format!(", {hz:.1} Hz"));
             format!("{}{}", signal.label.source, rate.unwrap_or_default())

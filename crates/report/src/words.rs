@@ -57,14 +57,16 @@ pub fn write(
             .iter()
             .map(|s| format!("{:.1} to {:.1} s", s.start_s, s.end_s));
         let mut text = format!(
-            "in the air {:.1} s ({})",
+            "{} {:.1} s ({})",
+            in_the_air(flight),
             assessed.summary.in_air_s,
             first_spans(when)
         );
         if verbose {
-            let rate_hz = flight.command_rate_hz().unwrap_or(0.0);
-            let profile = &estimator.profile().name;
-            text += &format!(", motors at {rate_hz:.1} Hz; profile {profile}");
+            if let Some(rate_hz) = flight.command_rate_hz() {
+                text += &format!(", motors at {rate_hz:.1} Hz");
+            }
+            text += &format!("; profile {}", estimator.profile().name);
         }
         indented(out, &text)?;
     }
@@ -122,9 +124,15 @@ pub fn write_line(
     }
     if let Some(peak) = assessed.summary.risk_max {
         parts.push(format!(
-            "highest risk {:.0} % in {:.1} s in the air",
-            peak.value_pct, assessed.summary.in_air_s
+            "highest risk {:.0} % in {:.1} s {}",
+            peak.value_pct,
+            assessed.summary.in_air_s,
+            in_the_air(flight)
         ));
+    }
+    for assumed in &assessed.assumed_inputs {
+        let value = number(assumed.value, 6);
+        parts.push(format!("`{}` assumed to be {value}", assumed.input));
     }
     let teller = Teller {
         estimator,
@@ -154,6 +162,14 @@ fn line(out: &mut impl Write, level: Level, text: &str) -> io::Result<()> {
 
 fn indented(out: &mut impl Write, text: &str) -> io::Result<()> {
     writeln!(out, "     {}", visible(text))
+}
+
+/// Where a vehicle is when it is assessed. One without motors need not fly.
+pub(crate) fn in_the_air(flight: &Flight) -> &'static str {
+    match flight.motors.is_empty() {
+        true => "in use",
+        false => "in the air",
+    }
 }
 
 /// The vehicle in a line: firmware, frame, motors and ranges.
@@ -211,6 +227,14 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
             "the log does not report everything, assumed: {assumed}"
         ));
     }
+    for assumed in &assessed.assumed_inputs {
+        notes.push(format!(
+            "`{}` is not in the log: input `{}` is assumed to be {} (`if_missing`)",
+            missing(flight, &assumed.signals),
+            assumed.input,
+            number(assumed.value, 6)
+        ));
+    }
     let left_out = &flight.report.left_out;
     if !left_out.is_empty() {
         notes.push(format!(
@@ -232,6 +256,14 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
         ));
     }
     notes
+}
+
+/// The first of the signals that a log lacks.
+fn missing<'a>(flight: &Flight, signals: &'a [String]) -> &'a str {
+    let mut signals = signals.iter();
+    signals
+        .find(|name| flight.signal(name).is_none())
+        .map_or("", String::as_str)
 }
 
 /// Most logs that are cut off inside a message, when the power goes, lose less than this.

@@ -104,7 +104,7 @@ pub struct Words<'a> {
 pub enum Refused {
     /// The memory does not have the sizes of the plan.
     Memory,
-    /// The number of motors is 0, or the profile names a motor that there is not.
+    /// The profile reads the motors and there are none, or it names a motor that there is not.
     NoMotors,
     /// The plan is damaged.
     Plan(Damaged),
@@ -117,7 +117,7 @@ impl core::fmt::Display for Refused {
         match self {
             Refused::Memory => f.write_str("the memory does not have the sizes of the plan"),
             Refused::NoMotors => f.write_str(
-                "the number of motors is 0, or the profile names a motor that there is not",
+                "the profile reads the motors and there are none, or it names a motor that there is not",
             ),
             Refused::Plan(damaged) => damaged.fmt(f),
             Refused::Geometry => f.write_str(
@@ -160,6 +160,7 @@ impl Plan<'_> {
                     let other = self.inputs.get(other);
                     other.is_some_and(|other| other.ratio.is_none())
                 }) && input.ratio.is_none_or(|ratio| is_above_0(ratio.at_least))
+                    && input.if_missing.is_none_or(f64::is_finite)
             }),
             "inputs of the profile",
         )?;
@@ -167,12 +168,13 @@ impl Plan<'_> {
             self.channels.iter().all(|channel| {
                 let is_signal = |signal: usize| signal < self.signals as usize;
                 let is_known = match channel.observed {
-                    Observed::Named(signal) => is_signal(signal),
-                    Observed::Difference { a, b, .. } => is_signal(a) && is_signal(b),
                     Observed::Effort(axis) => axis < ROLL_PITCH_YAW_THRUST,
+                    Observed::Ratio { unknown_below, .. } => unknown_below.is_finite(),
                     _ => true,
                 };
-                is_known && is_above_0(channel.window_s)
+                is_known
+                    && channel.observed.signals().all(is_signal)
+                    && is_above_0(channel.window_s)
             }),
             "channels",
         )?;
@@ -301,14 +303,14 @@ pub struct Monitor<'a> {
 }
 
 impl<'a> Monitor<'a> {
-    /// A monitor of a new flight, with as many motors as the memory holds.
+    /// A monitor of a new flight, with as many motors as the memory holds: none are enough for a profile that reads none.
     ///
     /// # Errors
     /// The memory does not have the sizes of the plan, motors are missing, or the plan is damaged.
     #[doc(hidden)] // For the C interface. Rust uses `Storage::monitor` or `OwnedMemory::monitor`.
     pub fn new(plan: &'a Plan<'a>, memory: Memory<'a>) -> Result<Monitor<'a>, Refused> {
         plan.check().map_err(Refused::Plan)?;
-        if memory.motors.len() < motors_needed(plan.channels) {
+        if memory.motors.len() < motors_needed(plan.channels, &plan.settings.verdict.notices) {
             return Err(Refused::NoMotors);
         }
         let monitor = Monitor::divide(plan, memory).ok_or(Refused::Memory)?;

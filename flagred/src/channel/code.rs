@@ -68,9 +68,10 @@ impl Motors {
 }
 
 impl Observed {
-    /// Its code, and the indices that belong to it: of signals, or of an effort; 0 where there is none.
-    pub const fn code(self) -> (u32, [u32; 2]) {
-        match self {
+    /// Its code, the indices that belong to it, of signals or of an effort, and its number: what a divisor may not be nearer to 0
+    /// than. 0 where there is none.
+    pub const fn code(self) -> (u32, [u32; 2], f64) {
+        let (code, indices) = match self {
             Observed::Command => (0, [0; 2]),
             Observed::Margin => (1, [0; 2]),
             Observed::LowSide => (2, [0; 2]),
@@ -82,11 +83,17 @@ impl Observed {
             Observed::Difference { a, b, circular } => {
                 (if circular { 9 } else { 8 }, [a as u32, b as u32])
             }
+            Observed::Ratio { a, b, .. } => (10, [a as u32, b as u32]),
+            Observed::Product { a, b } => (11, [a as u32, b as u32]),
+        };
+        if let Observed::Ratio { unknown_below, .. } = self {
+            return (code, indices, unknown_below);
         }
+        (code, indices, 0.0)
     }
 
     /// What is observed, from its code.
-    pub const fn from_code(code: u32, indices: [u32; 2]) -> Option<Observed> {
+    pub const fn from_code(code: u32, indices: [u32; 2], number: f64) -> Option<Observed> {
         let [first, second] = indices;
         Some(match code {
             0 => Observed::Command,
@@ -101,6 +108,15 @@ impl Observed {
                 a: first as usize,
                 b: second as usize,
                 circular: code == 9,
+            },
+            10 => Observed::Ratio {
+                a: first as usize,
+                b: second as usize,
+                unknown_below: number,
+            },
+            11 => Observed::Product {
+                a: first as usize,
+                b: second as usize,
             },
             _ => return None,
         })
@@ -150,15 +166,15 @@ mod tests {
         for code in all.clone().chain([u32::MAX]) {
             assert_eq!(Motors::from_code(code).code(), code);
         }
-        let observed = all.map_while(|code| Observed::from_code(code, [3, 2]));
+        let observed = all.map_while(|code| Observed::from_code(code, [3, 2], 0.5));
         let codes: Vec<u32> = observed
             .map(|observed| {
-                let (code, indices) = observed.code();
-                assert_eq!(Observed::from_code(code, indices), Some(observed));
+                let (code, indices, number) = observed.code();
+                assert_eq!(Observed::from_code(code, indices, number), Some(observed));
                 code
             })
             .collect();
-        assert_eq!(codes, (0..10).collect::<Vec<u32>>());
+        assert_eq!(codes, (0..12).collect::<Vec<u32>>());
         for threshold in [
             None,
             Some(Threshold::Below(0.5)),

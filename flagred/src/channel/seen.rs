@@ -18,6 +18,8 @@ pub struct Seen {
     /// The latest value; over motors, their mean.
     last: Option<f64>,
     bin: Bin,
+    /// Whether all signals were known at one time, on the ground or in the air, in this flight or before.
+    has_come: bool,
 }
 
 /// The values of the latest bin.
@@ -70,12 +72,14 @@ impl Seen {
         exponential: Exponential::IDLE,
         last: None,
         bin: Bin::IDLE,
+        has_come: false,
     };
 
     /// Nothing yet, over a window of so many seconds, where it is.
     fn restart(&mut self, window_s: f64) {
         self.window.restart(window_s);
         self.exponential = Exponential::new(window_s);
+        self.has_come = false;
         self.clear_latest();
     }
 
@@ -142,6 +146,27 @@ impl Now<'_> {
     }
 }
 
+/// Notes the signals of inputs that a vehicle may lack, in the air and on the ground.
+pub(crate) fn note((channels, inputs): (&[Channel], &[Input]), seen: &mut [Seen], named: &[f64]) {
+    for input in inputs.iter().filter(|input| input.if_missing.is_some()) {
+        let place = input.channel;
+        if let (Some(channel), Some(seen)) = (channels.get(place), seen.get_mut(place)) {
+            let is_known = |signal: usize| named.get(signal).is_some_and(|value| value.is_finite());
+            seen.has_come |= channel.observed.signals().all(is_known);
+        }
+    }
+}
+
+/// The value of an input whose signals have not come, where it has one.
+pub(crate) fn assumed(inputs: &[Input], seen: &[Seen], input: usize) -> Option<f64> {
+    let Input {
+        channel,
+        if_missing,
+        ..
+    } = *inputs.get(input)?;
+    if_missing.filter(|_| seen.get(channel).is_some_and(|seen| !seen.has_come))
+}
+
 /// Adds a sample, of a time and the seconds before it that it stands for, to all channels.
 pub(crate) fn push(
     channels: &[Channel],
@@ -192,6 +217,7 @@ pub(crate) fn value(
         exponential,
         last,
         bin,
+        ..
     } = seen.get(channel)?;
     let is_exponential = channels.get(channel)?.exponential;
     let (mut total, mut samples) = match is_exponential {
@@ -275,6 +301,19 @@ impl Channel {
                     false => difference,
                 })
             }
+            Observed::Ratio {
+                a,
+                b,
+                unknown_below,
+            } => {
+                let (of, by) = (now.signal(a), now.signal(b));
+                // What is divided by 0 is not finite, which is unknown.
+                self.threshold(match by.abs() < unknown_below {
+                    true => f64::NAN,
+                    false => of / by,
+                })
+            }
+            Observed::Product { a, b } => self.threshold(now.signal(a) * now.signal(b)),
             Observed::Effort(axis) => {
                 let effort = now.together.efforts.get(axis).copied();
                 self.threshold(effort.unwrap_or(f64::NAN))

@@ -15,7 +15,6 @@ use super::{Places, is_above, shown};
 use crate::{
     estimator::{Estimator, Memory},
     profile::{Profile, ProfileInput},
-    source::Signal,
     verdict::{Level, Threshold},
 };
 
@@ -83,12 +82,7 @@ pub fn alone(estimator: &Estimator) -> Vec<Alone> {
 pub(super) fn outvoted(estimator: &Estimator, at: &Places) -> Vec<Diagnostic> {
     let profile = estimator.profile();
     let alone = alone(estimator);
-    let is_other = |input: &&ProfileInput| {
-        matches!(
-            input.source.signal,
-            Signal::Named(_) | Signal::Difference { .. }
-        )
-    };
+    let is_other = |input: &&ProfileInput| !input.source.signal.is_made_of_motors();
     let others = profile.inputs.iter().filter(is_other);
     let found = others.filter_map(|input| {
         let one = alone.iter().find(|one| one.input == input.name)?;

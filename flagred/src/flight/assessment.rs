@@ -3,7 +3,7 @@
 use alloc::{string::String, vec::Vec};
 
 use super::{Finding, Reason, Verdict};
-use crate::monitor::Estimate;
+use crate::{monitor::Estimate, profile::Profile};
 
 /// What is said about a flight.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,10 +19,42 @@ pub struct Assessment {
     pub summary: Summary,
     /// The names of the inputs of the rule set, in the order of [`Step::inputs`].
     pub inputs: Vec<String>,
+    /// The inputs whose values were assumed, at least until their signals came.
+    pub assumed_inputs: Vec<AssumedInput>,
     /// The risk over time.
     pub steps: Vec<Step>,
     /// Seconds between the steps, where they are further apart than was asked for: 250,000 are kept at most.
     pub widened_step_s: Option<f64>,
+}
+
+/// An input with a value that nobody measured: [`ProfileInput::if_missing`](crate::profile::ProfileInput::if_missing).
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct AssumedInput {
+    /// Its name.
+    pub input: String,
+    /// Its value.
+    pub value: f64,
+    /// The signals that it is made of; at least one was missing.
+    pub signals: Vec<String>,
+}
+
+impl AssumedInput {
+    pub(super) fn of(assumed: &[usize], profile: &Profile) -> Vec<AssumedInput> {
+        let inputs = profile.inputs.iter().enumerate();
+        let assumed = inputs.filter(|(place, _)| assumed.contains(place));
+        assumed
+            .filter_map(|(_, input)| {
+                Some(AssumedInput {
+                    input: input.name.clone(),
+                    value: input.if_missing?,
+                    signals: input.source.signal.carried().map(String::from).collect(),
+                })
+            })
+            .collect()
+    }
 }
 
 /// A flight in a few numbers. The risks are those of judged time ([`Update::judged`](crate::monitor::Update::judged)).
@@ -94,6 +126,7 @@ impl Assessment {
             findings_left_out: 0,
             summary: Summary::default(),
             inputs: Vec::new(),
+            assumed_inputs: Vec::new(),
             steps: Vec::new(),
             widened_step_s: None,
         }

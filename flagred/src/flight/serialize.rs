@@ -4,7 +4,7 @@ use alloc::string::{String, ToString};
 
 use serde::{Serialize, Serializer};
 
-use super::{Assessment, Finding, Reason, Step, Summary, Verdict};
+use super::{Assessment, AssumedInput, Finding, Reason, Step, Summary, Verdict};
 use crate::{sample::RiskFields, verdict::Level};
 
 /// A verdict in one word.
@@ -83,6 +83,7 @@ impl Serialize for Assessment {
             findings: &'a [Finding],
             findings_left_out: u64,
             summary: &'a Summary,
+            assumed_inputs: &'a [AssumedInput],
             steps: Steps<'a>,
             widened_step_s: Option<f64>,
         }
@@ -91,6 +92,7 @@ impl Serialize for Assessment {
             findings: &self.findings,
             findings_left_out: self.findings_left_out,
             summary: &self.summary,
+            assumed_inputs: &self.assumed_inputs,
             steps: self.steps_by_name(),
             widened_step_s: self.widened_step_s,
         };

@@ -72,7 +72,7 @@ fn a_flight_of_unknown_motors_has_no_verdict() {
         "the command of motor 1 is unknown in the air from 0.0 to 20.0 s"
     );
     let never = fly(&[(20.0, false, HOVER)]);
-    assert_eq!(never.verdict, Verdict::NotAvailable(Reason::NoCommands));
+    assert_eq!(never.verdict, Verdict::NotAvailable(Reason::NoSamples));
 }
 
 #[test]

@@ -27,7 +27,7 @@ impl Verdict {
     /// use flagred::{flight::{Reason, Verdict}, verdict::Level};
     ///
     /// let good = Verdict::Known(Level::Good);
-    /// let short = Verdict::NotAvailable(Reason::NoCommands);
+    /// let short = Verdict::NotAvailable(Reason::NoSamples);
     /// assert_eq!(good.clone().worst(short), good);
     /// assert_eq!(good.clone().worst(good.clone().lost_in_air()).to_string(), "NA");
     /// ```
@@ -106,9 +106,19 @@ pub enum Reason {
         /// For how long in that time, in seconds.
         unknown_s: f64,
     },
-    /// There was hardly a motor command in the air.
-    #[error("hardly any motor command was known in the air")]
-    NoCommands,
+    /// There was hardly a sample in the air.
+    #[error("there is hardly any sample of the flight")]
+    NoSamples,
+    /// The samples of a flight without motors are farther apart than the profile's `longest_gap_s`, so that each is alone.
+    #[error(
+        "the samples are {step_s} s apart, and the profile takes more than {longest_gap_s} s for a gap"
+    )]
+    SamplesFarApart {
+        /// How far apart most of them are, in seconds.
+        step_s: f64,
+        /// The longest time without a gap, in seconds.
+        longest_gap_s: f64,
+    },
     /// The vehicle was in the air when it was last heard, or rebooted there.
     #[error("the vehicle was lost in the air")]
     LostInAir,
@@ -159,9 +169,9 @@ impl Reason {
         match self {
             #[cfg(feature = "flightlog")]
             Reason::Log(gap) => gap.help(),
-            Reason::Monitor(MonitorError::NoSignal { .. }) => {
-                Some("`flagred inspect` lists the signals that a log carries")
-            }
+            Reason::Monitor(MonitorError::NoSignal { .. }) => Some(
+                "`flagred inspect` lists the signals that a log carries; `if_missing` of an input is its value on a vehicle that never sends it",
+            ),
             Reason::RiskUnknown { help, .. } => *help,
             Reason::MotorUnknown { command, .. } => Some(match command {
                 Some(_) => {
@@ -181,7 +191,10 @@ impl Reason {
             Reason::SamplesIgnored { .. } => {
                 Some("give each sample a time after that of the one before, in seconds")
             }
-            Reason::Monitor(_) | Reason::NoCommands | Reason::NoFlight => None,
+            Reason::SamplesFarApart { .. } => Some(
+                "`longest_gap_s` of the profile has to be longer than the time between samples; if `t_s` is in milliseconds, divide it by 1000",
+            ),
+            Reason::Monitor(_) | Reason::NoSamples | Reason::NoFlight => None,
         }
     }
 }

@@ -17,6 +17,7 @@ use super::Finding;
 use crate::{
     estimator::Estimator,
     margin::Side,
+    profile::Profile,
     verdict::{Measure, MotorFinding},
 };
 
@@ -60,7 +61,7 @@ impl Finding {
             advice,
         } = match &self.cause {
             Some(cause) => Words::of_cause(estimator, &cause.input, &cause.term),
-            None => Words::of_measure(self.measure),
+            None => Words::of_measure(estimator.profile(), self.measure),
         };
         let mut text = self.filled(&text);
         if self.is_of_risk() {
@@ -142,19 +143,26 @@ impl Words {
             code: code(input),
             brief: [input.into(), format!(" {term}")],
             text: format!("{input} was {term}: {{value}}{unit}{description}."),
-            advice: "Reduce speed or land until the risk falls.".into(),
+            advice: advice(estimator.profile()).into(),
         }
     }
 
     /// The words of a finding beside the risk, and of a risk that no rule raised, before numbers are filled in: `{peak}`,
     /// `{threshold}`, `{motor}` and `{side}`.
-    pub fn of_measure(measure: Measure) -> Words {
+    pub fn of_measure(profile: &Profile, measure: Measure) -> Words {
         let (code, brief, text, advice) = match measure {
             Measure::Risk | Measure::ElevatedRisk => (
                 "risk_interpolated",
                 ["interpolated", ""],
-                "No rule applies to what the motors did, so the risk is interpolated between rules.",
-                "Reduce speed or land until the risk falls.",
+                match profile.reads_motors() {
+                    true => {
+                        "No rule applies to what the motors did, so the risk is interpolated between rules."
+                    }
+                    false => {
+                        "No rule applies to the inputs, so the risk is interpolated between rules."
+                    }
+                },
+                advice(profile),
             ),
             Measure::CommandNoise => (
                 "command_noise",
@@ -203,6 +211,14 @@ impl Words {
             text: text.into(),
             advice: advice.into(),
         }
+    }
+}
+
+/// What helps against a risk whose input has no words of its own.
+fn advice(profile: &Profile) -> &'static str {
+    match profile.reads_motors() {
+        true => "Reduce speed or land until the risk falls.",
+        false => "Reduce speed or stop until the risk falls.",
     }
 }
 

@@ -11,7 +11,7 @@ use crate::{
     gap::GapSettings,
     profile::{ProfileInput, Sampling},
     source::{Motors, Signal, Source, Statistic},
-    verdict::{Finding, Level, VerdictSettings},
+    verdict::{Finding, Level, Limit, VerdictSettings},
 };
 
 /// The risk falls from 100 % at a mean margin of 0 to 0 % at 0.5, by two rules; `without_low` leaves out the first.
@@ -77,6 +77,7 @@ fn profile() -> Profile {
             name: "margin".into(),
             source: source("motor_margin"),
             ratio: None,
+            if_missing: None,
         }],
         output: "risk".into(),
         other_risks: Vec::new(),
@@ -431,21 +432,52 @@ fn a_profile_that_reads_no_motor_needs_none() {
     let mut profile = profile();
     profile.inputs[0].source.signal = Signal::named("battery_v");
     let estimator = Estimator::new(&profile, &rules(false)).unwrap();
-    let craft = Craft::new(2).with_signals(&["battery_v"]);
-    let mut monitor = Monitor::new(&estimator, craft).unwrap();
-    let mut push = |i: u32| {
-        monitor.push(&Sample {
-            t_s: f64::from(i) * 0.04,
-            motors: &[f64::NAN; 2],
-            in_air: Some(true),
-            signals: &[0.3],
-        })
-    };
-    for i in 0..99 {
-        push(i);
+    let plan = estimator.plan().unwrap();
+    for (motors, in_air) in [(0, None), (0, Some(true)), (2, Some(true))] {
+        let craft = Craft::new(motors).with_signals(&["battery_v"]);
+        let mut monitor = Monitor::new(&estimator, craft).unwrap();
+        let mut memory = OwnedMemory::new(&plan, motors);
+        let mut on_board = memory.monitor(&plan).unwrap();
+        let unknown = vec![f64::NAN; motors];
+        let mut last = None;
+        for i in 0..100 {
+            let sample = Sample {
+                t_s: f64::from(i) * 0.04,
+                motors: &unknown,
+                in_air,
+                signals: &[0.05],
+            };
+            let update = monitor.push(&sample);
+            assert_eq!(on_board.push(&sample), update);
+            last = Some(update);
+        }
+        let last = last.unwrap();
+        assert!(last.risk.is_ok() && last.level.is_some(), "{last:?}");
+        assert!(monitor.margin().is_none() && monitor.spread().is_none());
     }
-    let last = push(99);
-    assert!(last.risk.is_ok(), "{last:?}");
+    // Where the vehicle is parked there is no risk.
+    let craft = Craft::new(0).with_signals(&["battery_v"]);
+    let mut monitor = Monitor::new(&estimator, craft).unwrap();
+    let update = monitor.push(&Sample {
+        t_s: 0.0,
+        motors: &[],
+        in_air: Some(false),
+        signals: &[0.05],
+    });
+    assert_eq!(update.risk, Err(Unknown::OnGround));
+    // A finding beside the risk is about motors, too.
+    profile.verdict.notices.reserve = Some(Limit {
+        value: 0.1,
+        after_s: 1.0,
+    });
+    let estimator = Estimator::new(&profile, &rules(false)).unwrap();
+    assert_eq!(
+        Monitor::new(&estimator, craft).unwrap_err(),
+        MonitorError::NoMotors
+    );
+    let plan = estimator.plan().unwrap();
+    let refused = OwnedMemory::new(&plan, 0).monitor(&plan).map(|_| ());
+    assert_eq!(refused, Err(Refused::NoMotors));
 }
 
 #[test]
@@ -459,8 +491,9 @@ fn what_a_flight_lacks_is_told_when_the_monitor_is_made() {
             signal: "battery_v".into()
         }
     );
+    let of_motors = Estimator::new(&self::profile(), &rules(false)).unwrap();
     assert_eq!(
-        Monitor::new(&estimator, Craft::new(0).with_signals(&["battery_v"])).unwrap_err(),
+        Monitor::new(&of_motors, Craft::new(0)).unwrap_err(),
         MonitorError::NoMotors
     );
     assert!(
@@ -491,4 +524,63 @@ fn a_motor_that_a_craft_does_not_have_is_told_when_the_monitor_is_made() {
     };
     assert_eq!(on_board(4), Err(Refused::NoMotors));
     assert_eq!(on_board(5), Ok(()));
+}
+
+#[test]
+fn a_missing_signal_has_its_value_until_it_comes_and_never_after() {
+    let mut profile = profile();
+    profile.inputs[0].source.signal = Signal::named("battery_v");
+    profile.inputs[0].source.statistic = Statistic::Last;
+    profile.inputs[0].if_missing = Some(0.4);
+    let estimator = Estimator::new(&profile, &rules(false)).unwrap();
+    let plan = estimator.plan().unwrap();
+    let names = ["battery_v"];
+    let known = Craft::new(2).with_signals(&names);
+    // By craft and the values of the samples, 2 on the ground and 4 in the air: which are assumed, and the input.
+    let nan = f64::NAN;
+    type Case<'a> = (Craft<'a>, [f64; 6], [bool; 6], [f64; 6]);
+    let cases: [Case<'_>; 4] = [
+        (
+            Craft::new(2),
+            [nan; 6],
+            [true; 6],
+            [nan, nan, 0.4, 0.4, 0.4, 0.4],
+        ),
+        (known, [nan; 6], [false; 6], [nan; 6]),
+        (
+            known.with_optional(&names),
+            [nan, nan, nan, 0.1, nan, 0.2],
+            [true, true, true, false, false, false],
+            [nan, nan, 0.4, 0.1, nan, 0.2],
+        ),
+        // A sensor that was there on the ground is lost.
+        (
+            known.with_optional(&names),
+            [nan, 0.1, nan, nan, nan, nan],
+            [true, false, false, false, false, false],
+            [nan; 6],
+        ),
+    ];
+    for (craft, values, assumed, inputs) in cases {
+        let mut monitor = Monitor::new(&estimator, craft).unwrap();
+        let mut memory = OwnedMemory::new(&plan, 2);
+        let mut on_board = memory.monitor(&plan).unwrap();
+        for (i, value) in values.into_iter().enumerate() {
+            let sample = Sample {
+                t_s: i as f64 * 0.1,
+                motors: &[0.5; 2],
+                in_air: Some(i > 1),
+                signals: &[value],
+            };
+            let update = monitor.push(&sample);
+            assert_eq!(monitor.assumed().count() == 1, assumed[i], "{i}");
+            let input = monitor.inputs()[0];
+            assert_eq!(input.to_bits(), inputs[i].to_bits(), "{i}: {input}");
+            assert_eq!(update.risk.is_ok(), input.is_finite(), "{i}");
+            let told = on_board.push(&sample);
+            if craft != known {
+                assert_eq!(told, update);
+            }
+        }
+    }
 }

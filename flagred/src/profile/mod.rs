@@ -5,9 +5,10 @@ use alloc::{string::String, vec::Vec};
 use crate::{
     accumulator::AccumulatorSettings,
     channel::{self, Channel, Input},
+    craft::Craft,
     follower::Settings,
     gap::GapSettings,
-    source::{Source, channels},
+    source::{Signal, Source, channels},
     verdict::{LevelSettings, NoticeSettings, VerdictSettings},
 };
 
@@ -147,7 +148,8 @@ pub struct OtherRisk {
 ///
 /// let text = "flagred: 1\nname: windy\nrules: my.yaml\ninputs: {wind: {last: wind_m_s}}";
 /// let source = Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 2.0, exponential: false };
-/// assert_eq!(text.parse::<Profile>()?.inputs, [ProfileInput { name: "wind".into(), source, ratio: None }]);
+/// let wind = ProfileInput { name: "wind".into(), source, ratio: None, if_missing: None };
+/// assert_eq!(text.parse::<Profile>()?.inputs, [wind]);
 /// # Ok::<(), fuzzy::diagnostic::Findings>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -158,6 +160,8 @@ pub struct ProfileInput {
     pub source: Source,
     /// What that is divided by.
     pub ratio: Option<Ratio>,
+    /// Its value on a vehicle that does not send its signal.
+    pub if_missing: Option<f64>,
 }
 
 /// What makes an input a ratio: `x / max(per, at_least)` of the value `x` of its source and of another input of the profile,
@@ -171,20 +175,33 @@ pub struct Ratio {
 }
 
 impl Profile {
-    /// What is observed where samples carry these signals, in their order, and the inputs of the profile, then those of `more`.
-    /// The error is the name of a signal, or of an input of a ratio, that there is not.
+    /// What is observed of samples of a craft, and the inputs of the profile, then those of `more`. The error is the name of a
+    /// signal, or of an input of a ratio, that there is not.
     pub(crate) fn channels<'a>(
         &'a self,
         more: &'a [Source],
-        signals: &[&str],
+        craft: Craft<'a>,
     ) -> Result<(Vec<Channel>, Vec<Input>), String> {
+        let mut names = craft.signals.to_vec();
+        for input in &self.inputs {
+            for name in input.source.signal.carried() {
+                match input.if_missing {
+                    _ if names.contains(&name) => {}
+                    // It has a place that no sample fills.
+                    Some(_) => names.push(name),
+                    None => return Err(name.into()),
+                }
+            }
+        }
         let sources = self.inputs.iter().map(|input| &input.source);
-        let (channels, mut inputs) = channels(sources.chain(more), signals)?;
+        let (channels, mut inputs) = channels(sources.chain(more), &names)?;
         let place = |name: &String| {
             let place = self.inputs.iter().position(|input| input.name == *name);
             place.ok_or_else(|| name.clone())
         };
         for (input, of) in inputs.iter_mut().zip(&self.inputs) {
+            let is_sent = of.source.signal.carried().all(|name| craft.sends(name));
+            input.if_missing = of.if_missing.filter(|_| !is_sent);
             let Some(ratio) = &of.ratio else { continue };
             input.ratio = Some(channel::Ratio {
                 per: place(&ratio.per)?,
@@ -198,6 +215,13 @@ impl Profile {
     pub(crate) fn is_part(&self, name: &str) -> bool {
         let mut ratios = self.inputs.iter().filter_map(|input| input.ratio.as_ref());
         ratios.any(|ratio| ratio.per == name)
+    }
+
+    /// Whether an input or a finding beside the risk is about the motors. A profile of which none is needs no motors: it can
+    /// assess any table of signals.
+    pub fn reads_motors(&self) -> bool {
+        let mut signals = self.inputs.iter().map(|input| &input.source.signal);
+        self.verdict.notices.any() || signals.any(Signal::is_made_of_motors)
     }
 
     /// The names of the signals beside the motors that it needs, each once.

@@ -120,7 +120,7 @@ impl<'m> Validator<'m> {
                     |sets| format!("write `{sets}` in place of `terms` and `defuzzifier`"),
                 );
                 let help = format!("{sets}, or let a linear function read it");
-                self.error("output-in-condition", &name.span, message, help);
+                self.error("output-in-condition", &name.span, message, &help);
             }
             Some(term) => self.known_term(kind, variable, term),
             // What a rule without a term reads back as.

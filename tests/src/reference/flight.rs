@@ -2,7 +2,6 @@
 
 use flagred::{
     profile::Profile,
-    source::Signal,
     verdict::{Level, VerdictSettings},
 };
 use fuzzy::Model;
@@ -176,7 +175,7 @@ fn mean(sample: &Sample) -> f64 {
 fn reads_motors(profile: &Profile) -> bool {
     profile.inputs.iter().any(|input| {
         let signal = &input.source.signal;
-        !matches!(signal, Signal::Named(_) | Signal::Difference { .. })
+        signal.carried().next().is_none()
     })
 }
 

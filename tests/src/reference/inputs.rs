@@ -62,6 +62,15 @@ impl Observed {
                 return one(sin.atan2(cos).to_degrees());
             }
             Signal::Difference { a, b } => return one(signal(a) - signal(b)),
+            Signal::Product { a, b } => return one(signal(a) * signal(b)),
+            Signal::Ratio {
+                a,
+                b,
+                unknown_below,
+            } => {
+                let by = Some(signal(b)).filter(|by| *by != 0.0 && by.abs() >= *unknown_below);
+                return one(by.map_or(f64::NAN, |by| signal(a) / by));
+            }
             other => panic!("{other:?} has no reference"),
         };
         if let Motors::One(motor) = source.motors {

@@ -23,6 +23,7 @@ fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) 
     let signals = estimator.profile().signals();
     let craft = Craft::new(vehicle.factors.len())
         .with_signals(&signals)
+        .with_optional(&signals)
         .with_geometry(&vehicle.factors);
     let mut monitor = Monitor::new(estimator, craft).unwrap();
     let (mut said, mut bin) = (Vec::new(), None);
@@ -32,7 +33,11 @@ fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) 
             .iter()
             .map(|pwm| vehicle.effective(*pwm))
             .collect();
-        let battery = vec![record.battery_pct; signals.len()];
+        let battery = signals.iter().map(|name| match *name {
+            "battery_v" => 16.0 + record.battery_pct / 50.0,
+            _ => record.battery_pct,
+        });
+        let battery: Vec<f64> = battery.collect();
         let t_us = record.t_us - records[0].t_us;
         let update = monitor.push(&Sample {
             t_s: t_us as f64 / 1e6,
@@ -433,6 +438,41 @@ fn every_signal_and_statistic_is_the_same_in_the_script() {
     let run = run(&script, &vehicle, records, &[]);
     eprintln!("every signal: instructions {:?}", run.instructions);
     let (risk, elevated) = differ(&expected, &run.logged, "every signal");
+    assert!(
+        risk <= TOLERANCE_PCT && elevated <= TOLERANCE_PCT,
+        "{risk} {elevated}"
+    );
+}
+
+/// The battery is heard of after a minute, and its ratio is unknown below 80 %.
+#[test]
+fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
+    let folder = Folder::new();
+    let (estimator, file) = super::profile_of(
+        &folder,
+        &[
+            "{mean: {ratio: [battery_v, battery_remaining_pct], unknown_below: 80}, if_missing: 0.03}",
+            "{last: {product: [battery_v, battery_remaining_pct]}, if_missing: 0.1}",
+            "{max: battery_remaining_pct, per: x0, at_least: 0.1, if_missing: 0.2}",
+        ],
+    );
+    let script = script(&file, &folder);
+    let vehicle = Vehicle::named("QUAD/X");
+    let mut records = eventful(&vehicle)[..4000].to_vec();
+    for record in &mut records[..1500] {
+        record.battery_pct = f64::NAN;
+    }
+    let expected = by_the_monitor(&estimator, &vehicle, &records);
+    let [first, .., last] = expected.as_slice() else {
+        panic!("{expected:?}")
+    };
+    // Its ratio is unknown when the battery has 79 %.
+    assert!(
+        first.0 < 500 && (1900..2200).contains(&last.0),
+        "{first:?} {last:?}"
+    );
+    let run = run(&script, &vehicle, &records, &[]);
+    let (risk, elevated) = differ(&expected, &run.logged, "missing");
     assert!(
         risk <= TOLERANCE_PCT && elevated <= TOLERANCE_PCT,
         "{risk} {elevated}"

@@ -59,6 +59,7 @@ fn by_the_monitor(estimator: &Estimator, geometry: &[Factors], flight: &[Moment]
         estimator,
         Craft::new(flight[0].motors.len())
             .with_signals(&signals)
+            .with_optional(&signals)
             .with_geometry(geometry),
     )
     .unwrap();
@@ -233,7 +234,7 @@ pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
 
 /// A profile with every statistic that only plans have.
 fn profile_of_every_statistic(folder: &Folder) -> (Estimator, String) {
-    const SOURCES: [&str; 13] = [
+    const SOURCES: [&str; 16] = [
         "{rate: {max: motor_command}}",
         "{rate: {difference: [yaw_des_deg, yaw_deg]}, window_s: 9}",
         "{rms: {difference: [yaw_des_deg, yaw_deg]}}",
@@ -247,6 +248,9 @@ fn profile_of_every_statistic(folder: &Folder) -> (Estimator, String) {
         "{std: {motor: 1, of: motor_command}, time_constant_s: 8}",
         "{share_above: 5, of: {difference: [ground_speed_m_s, ekf_wind_m_s]}, time_constant_s: 0.5}",
         "{std: {difference: [ground_speed_m_s, ekf_wind_m_s]}, per: x9, at_least: 0.3}",
+        "{mean: {ratio: [ekf_wind_m_s, ground_speed_m_s], unknown_below: 0.01}, window_s: 9}",
+        "{std: {product: [yaw_des_deg, ground_speed_m_s]}}",
+        "{last: no_such_signal, if_missing: 0.2}",
     ];
     profile_of(folder, &SOURCES)
 }
@@ -297,6 +301,40 @@ fn every_statistic_is_the_same_lent_and_in_c() {
     same_lent_and_in_c(profile_of_every_statistic(&folder));
 }
 
+#[test]
+fn a_profile_that_reads_no_motor_is_the_same_with_none_lent_and_in_c() {
+    let folder = Folder::new();
+    let rules = "fuzzy: 1\nname: loads\ninputs:\n  load: {range: [0, 2], partition: {rated: 1, over: 1.5}}\n\
+                 outputs:\n  risk: {range: [0, 100], partition: [low, medium, high]}\nrules:\n\
+                 - IF load IS rated THEN risk IS low\n- IF load IS over THEN risk IS high\n";
+    let profile = "flagred: 1\nname: no-motors\nrules: loads.yaml\ninputs: {load: {mean: load_t}}\n\
+                   verdict: {warn: {risk: 50}, fail: {risk: 75}}\n";
+    let model = fuzzy::yaml::parse(rules).unwrap().model;
+    let estimator = Estimator::new(&profile.parse().unwrap(), &model).unwrap();
+    folder.file("loads.yaml", rules);
+    let file = folder.file("no-motors.yaml", profile);
+    let moment = |i: u32| Moment {
+        t_s: f64::from(i) * 0.1,
+        motors: Vec::new(),
+        in_air: i < 550,
+        signals: vec![f64::from(i) / 300.0],
+    };
+    let flight: Vec<Moment> = (0..600).map(moment).collect();
+    let expected = by_the_monitor(&estimator, &[], &flight);
+    let plan = estimator.plan().unwrap();
+    assert_same(&expected, &on_board(&plan, &[], &flight), "no motors");
+    let (_, built) = c::program("tests/c/follow.c", "no-motors", (&file, "no_motors"));
+    let mut command = Command::new(built.at("no-motors"));
+    command.arg("0");
+    let found = c::written(command, &c::doubles(&[], &flight));
+    assert_same(&expected, &found, "no motors in C");
+    // FAIL has the code 3.
+    assert!(
+        expected.iter().any(|told| told.contains(" [3 ")),
+        "{expected:?}"
+    );
+}
+
 /// Holds the bits of a plan and of its export to C against those of the monitor; gives what was found of the flights.
 fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String> {
     let signals = estimator.profile().signals();
@@ -314,6 +352,7 @@ fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String
                 &estimator,
                 Craft::new(geometry.len())
                     .with_signals(&signals)
+                    .with_optional(&signals)
                     .with_geometry(&geometry),
             )
             .unwrap();

@@ -189,11 +189,12 @@ macro_rules! copy {
 table::arrays!(copy!);
 
 fn channel(channel: &Channel) -> CChannel {
-    let (observed, indices) = channel.observed.code();
+    let (observed, indices, unknown_below) = channel.observed.code();
     let (threshold, limit) = channel::Threshold::code(channel.threshold);
     CChannel {
         window_s: channel.window_s,
         limit,
+        unknown_below,
         observed,
         indices,
         motors: channel.motors.code(),
@@ -209,6 +210,7 @@ fn source(input: &channel::Input) -> CSource {
     CSource {
         number,
         at_least: input.ratio.map_or(0.0, |ratio| ratio.at_least),
+        if_missing: input.if_missing.unwrap_or(f64::NAN),
         channel: input.channel as u32,
         statistic,
         per: place(input.ratio.map(|ratio| ratio.per)),

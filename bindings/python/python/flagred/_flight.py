@@ -281,6 +281,11 @@ class Assessment(AssessmentData):
         """The flight in a few numbers."""
         return _data.summary(self._data["summary"])
 
+    @property
+    def assumed_inputs(self) -> dict[str, float]:
+        """The inputs whose values were assumed because the log lacks their signals (``if_missing`` of the profile)."""
+        return {assumed["input"]: assumed["value"] for assumed in self._data["assumed_inputs"]}
+
     @cached_property
     def steps(self) -> Table:
         """The risk over time, a row each step: ``t_s``, ``risk`` and ``elevated_risk`` in %, ``coverage``, ``filled``,
@@ -295,6 +300,7 @@ class Assessment(AssessmentData):
         if self.reason is not None:
             lines.append(f"  no verdict: {self.reason}")
             lines.extend([f"  help: {self.help}"] if self.help else [])
+        lines.extend(f"  {name} is assumed to be {value:g}" for name, value in self.assumed_inputs.items())
         lines.extend(f"  {finding.severity} {finding}" for finding in self.findings)
         return "\n".join(lines)
 

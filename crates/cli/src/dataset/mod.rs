@@ -216,6 +216,7 @@ fn with_margin_and_spread(mut profile: Profile, cut: Cut) -> Profile {
                 name,
                 source,
                 ratio: None,
+                if_missing: None,
             };
             profile
                 .inputs

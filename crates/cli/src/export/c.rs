@@ -264,12 +264,13 @@ fn value(word: &str) -> String {
 }
 
 fn channel(channel: &Channel) -> String {
-    let (observed, [first, second]) = channel.observed.code();
+    let (observed, [first, second], unknown_below) = channel.observed.code();
     let (threshold, limit) = Threshold::code(channel.threshold);
     format!(
-        "{{{}, {}, {observed}, {{{first}, {second}}}, {}, {threshold}, {}, {}}}",
+        "{{{}, {}, {}, {observed}, {{{first}, {second}}}, {}, {threshold}, {}, {}}}",
         number(channel.window_s),
         number(limit),
+        number(unknown_below),
         channel.motors.code(),
         u32::from(channel.in_bins),
         u32::from(channel.exponential)
@@ -283,9 +284,10 @@ fn source(input: &Input) -> String {
         .ratio
         .map_or("UINT32_MAX".to_owned(), |ratio| ratio.per.to_string());
     format!(
-        "{{{}, {}, {}, {statistic}, {per}}}",
+        "{{{}, {}, {}, {}, {statistic}, {per}}}",
         number(parameter),
         number(at_least),
+        number(input.if_missing.unwrap_or(f64::NAN)),
         input.channel
     )
 }

@@ -159,7 +159,8 @@ struct FindingWords {
 impl FindingWords {
     fn of(estimator: &Estimator) -> FindingWords {
         let causes = estimator.propositions();
-        let notices = Measure::ALL.into_iter().map(Words::of_measure);
+        let notices = Measure::ALL.into_iter();
+        let notices = notices.map(|measure| Words::of_measure(estimator.profile(), measure));
         FindingWords {
             causes: causes
                 .map(|(input, term)| Words::of_cause(estimator, input, term))

@@ -252,6 +252,7 @@ fn input(input: &Input) -> String {
         channel,
         statistic,
         ratio,
+        if_missing,
     } = input;
     let statistic: &Statistic = statistic;
     let ratio = match ratio {
@@ -259,7 +260,7 @@ fn input(input: &Input) -> String {
         None => "None".to_owned(),
     };
     format!(
-        "channel::Input {{ channel: {channel}, statistic: channel::Statistic::{statistic:?}, ratio: {ratio} }}"
+        "channel::Input {{ channel: {channel}, statistic: channel::Statistic::{statistic:?}, ratio: {ratio}, if_missing: {if_missing:?} }}"
     )
 }
 

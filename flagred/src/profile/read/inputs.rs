@@ -68,7 +68,7 @@ fn input(
     let keys: Vec<&str> = statistics
         .clone()
         .chain(with_number.clone())
-        .chain(["of", "window_s", "time_constant_s"])
+        .chain(["of", "window_s", "time_constant_s", "if_missing"])
         .chain(RATIO)
         .collect();
     let before = found.len();
@@ -138,6 +138,17 @@ fn input(
             return None;
         }
     }
+    let if_missing = fields
+        .get("if_missing")
+        .and_then(|node| node.finite("`if_missing`", found));
+    if let Some(entry) = fields.entry("if_missing")
+        && signal.is_made_of_motors()
+    {
+        let message =
+            "`if_missing` goes with a signal that a vehicle may lack, not with its motors";
+        let help = "remove it: without the commands of the motors the risk is unknown";
+        found.push(Diagnostic::error("if-missing", entry.key_span.clone(), message).help(help));
+    }
     let needs_one = statistic.is_of_bins() || statistic.is_of_slots();
     if needs_one && motors == Motors::Pooled && signal.is_of_motors() {
         let message = format!("`{key}` needs one value for all motors");
@@ -166,6 +177,7 @@ fn input(
             true => Some(ratio(&fields, entry, entries, found)?),
             false => None,
         },
+        if_missing,
     })
 }
 
@@ -196,10 +208,13 @@ fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Op
         Some(_) => format!("`{name}` is a ratio itself"),
         None => format!("`{name}` is no input of this profile"),
     };
-    let help = "name another input, which is a statistic alone; the rule set need not have it";
+    let help = "name another input, which is a statistic alone; the rule set need not have it. Of two signals, write `{mean: {ratio: [A, B]}}`";
     found.push(Diagnostic::error("ratio", node.span.clone(), message).help(help));
     None
 }
+
+/// Signals made of two others.
+const PAIRS: [&str; 3] = ["difference", "ratio", "product"];
 
 /// `motor_margin`, `{min: motor_margin}`, `{motor: 3, of: motor_margin}` or `{difference: [yaw_des_deg, yaw_deg]}`.
 fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)> {
@@ -208,7 +223,11 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         return Some((Motors::Pooled, Signal::named(&name.text)));
     }
     let statistics = MOTORS.iter().map(|(name, _)| *name);
-    let keys: Vec<&str> = statistics.chain(["motor", "of", "difference"]).collect();
+    let keys: Vec<&str> = statistics
+        .chain(["motor", "of"])
+        .chain(PAIRS)
+        .chain(["unknown_below"])
+        .collect();
     let over = format!("the statistic over motors of {what}");
     let before = found.len();
     let fields = node.fields(&over, &keys, found)?;
@@ -227,15 +246,28 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
             let motor = u32::try_from(number - 1).unwrap_or(u32::MAX);
             (Motors::One(motor), fields.get("of")?)
         }
-        (None, ["difference"]) => {
-            let signal = difference(fields.get("difference")?, found)?;
+        (None, [key] | [key @ "ratio", "unknown_below"]) if PAIRS.contains(key) => {
+            let [a, b] = pair(key, fields.get(key)?, found)?;
+            let unknown_below = number(&fields, "unknown_below", 0.0, Least::From0, found);
+            let signal = match *key {
+                "difference" => Signal::Difference { a, b },
+                "product" => Signal::Product { a, b },
+                _ => Signal::Ratio {
+                    a,
+                    b,
+                    unknown_below,
+                },
+            };
             return Some((Motors::Pooled, signal));
         }
         _ => {
             if found.len() == before {
-                let message = format!(
-                    "{over} is one of `mean`, `std`, `min`, `max`, `motor` and `difference`"
-                );
+                let message = match given.contains(&"unknown_below") {
+                    true => format!("`unknown_below` of {what} goes with `ratio` alone"),
+                    false => format!(
+                        "{over} is one of `mean`, `std`, `min`, `max`, `motor`, `difference`, `ratio` and `product`"
+                    ),
+                };
                 found.push(
                     Diagnostic::error("statistic", node.span.clone(), message).help(
                         "write for example `{min: motor_margin}` or `{motor: 1, of: motor_margin}`",
@@ -264,19 +296,24 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
 }
 
 /// `[yaw_des_deg, yaw_deg]`.
-fn difference(node: &Node, found: &mut Found) -> Option<Signal> {
-    let [a, b] = node.items("`difference`", found)? else {
-        let message = "`difference` takes two signals, the second from the first";
+fn pair(key: &str, node: &Node, found: &mut Found) -> Option<[String; 2]> {
+    let [a, b] = node.items(&format!("`{key}`"), found)? else {
+        let (what, example) = match key {
+            "difference" => ("the second from the first", "yaw_des_deg, yaw_deg"),
+            "ratio" => ("the first divided by the second", "battery_a, battery_v"),
+            _ => ("which are multiplied", "battery_a, battery_v"),
+        };
+        let message = format!("`{key}` takes two signals, {what}");
         found.push(
             Diagnostic::error("signal", node.span.clone(), message)
-                .help("write for example `{difference: [yaw_des_deg, yaw_deg]}`"),
+                .help(format!("write for example `{{{key}: [{example}]}}`")),
         );
         return None;
     };
     let mut name = |node: &Node| {
-        let name = &node.words("a signal of `difference`", found)?.text;
+        let name = &node.words(&format!("a signal of `{key}`"), found)?.text;
         if Signal::names().any(|known| known == name) {
-            let message = format!("`difference` takes signals of the vehicle, not `{name}`");
+            let message = format!("`{key}` takes signals of the vehicle, not `{name}`");
             found.push(
                 Diagnostic::error("signal", node.span.clone(), message)
                     .help("write the names of two signals of the log"),
@@ -286,5 +323,5 @@ fn difference(node: &Node, found: &mut Found) -> Option<Signal> {
         Some(name.clone())
     };
     let (a, b) = (name(a), name(b));
-    Some(Signal::Difference { a: a?, b: b? })
+    Some([a?, b?])
 }

@@ -36,7 +36,7 @@ inputs:
   a: {std: {std: motor_command}, window_s: 30}
   b: {share_below: 0.02, of: {min: motor_margin}}
   c: {share_above: 0.9, of: battery_v, window_s: 1}
-  d: {last: battery_v}
+  d: {last: battery_v, if_missing: 14}
   e: {rms: motor_margin_high_side}
   f: {std_less_noise: {std: motor_command_less_yaw}}
   g: {noise: roll_effort}
@@ -47,6 +47,8 @@ inputs:
   l: {percentile: 90, of: {max: motor_command}}
   m: {median: battery_v, window_s: 8}
   n: {mean: battery_v, time_constant_s: 7}
+  o: {mean: {ratio: [battery_a, battery_v], unknown_below: 5}}
+  p: {max: {product: [battery_a, battery_v]}}
 gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
 elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
 verdict:
@@ -90,6 +92,9 @@ reliability:
         window_s,
         exponential: false,
     };
+    let missing = profile.inputs.iter().filter_map(|input| input.if_missing);
+    assert_eq!(missing.collect::<Vec<f64>>(), [14.0]);
+    assert_eq!(profile.inputs[3].if_missing, Some(14.0));
     let sources: Vec<&Source> = profile.inputs.iter().map(|i| &i.source).collect();
     assert_eq!(
         sources,
@@ -141,6 +146,21 @@ reliability:
             &Source {
                 exponential: true,
                 ..source(Statistic::Mean, Motors::Pooled, "battery_v", 7.0)
+            },
+            &Source {
+                signal: Signal::Ratio {
+                    a: "battery_a".into(),
+                    b: "battery_v".into(),
+                    unknown_below: 5.0,
+                },
+                ..source(Statistic::Mean, Motors::Pooled, "", 3.0)
+            },
+            &Source {
+                signal: Signal::Product {
+                    a: "battery_a".into(),
+                    b: "battery_v".into(),
+                },
+                ..source(Statistic::Max, Motors::Pooled, "", 3.0)
             },
         ]
     );
@@ -286,6 +306,11 @@ inputs:
   both: {mean: {motor: 1, min: motor_margin}}
   three: {mean: {difference: [roll_deg, pitch_deg, yaw_deg]}}
   motors: {mean: {difference: [motor_command, motor_margin]}}
+  parts: {mean: {ratio: [battery_a]}}
+  power: {mean: {product: [battery_a, motor_command]}}
+  floor: {mean: {product: [battery_a, battery_v], unknown_below: 1}}
+  below: {mean: {ratio: [battery_a, battery_v], unknown_below: -1}}
+  other: {mean: {ratio: [battery_a, battery_v], at_least: 1}}
   pooled: {rate: motor_command}
   most: {percentile: 101, of: battery_v}
   whose: {percentile: 90}
@@ -293,6 +318,8 @@ inputs:
   two: {mean: battery_v, window_s: 1, time_constant_s: 5}
   weightless: {max: battery_v, time_constant_s: 5}
   constant: {mean: battery_v, time_constant_s: 0}
+  engine: {mean: motor_margin, if_missing: 0.2}
+  full: {last: battery_v, if_missing: full}
 other_risks:
   risk: {}
   other: {verdict: {}, warn: {risk: 120}}

@@ -27,7 +27,8 @@ enum Source {
     Effort,
     Noise,
     Signal(usize),
-    Difference(usize, usize),
+    Both(usize, usize),
+    Ratio(usize, usize, f64),
 }
 
 /// A window of the script: channels that bring values at the same times share it.
@@ -136,10 +137,34 @@ pub(super) fn fill(
     size.rows += 1;
     size.numbers += 4 * elevated_capacity(plan) as usize;
     size.locals = script.locals();
+    let mut noted = Vec::new();
+    for (input, of) in (1..).zip(plan.inputs) {
+        let (Some(value), Some(channel)) = (of.if_missing, plan.channels.get(of.channel)) else {
+            continue;
+        };
+        let known = channel
+            .observed
+            .signals()
+            .filter_map(|signal| signals.get(signal));
+        let known: Vec<String> = known.map(|read| format!("{read} ~= nil")).collect();
+        let (has_come, known) = (format!("has_come[{input}]"), known.join(" and "));
+        noted.push(format!("  {has_come} = {has_come} or {known}"));
+        let value = number(value);
+        script.read.push(format!(
+            "  if not {has_come} then value[{input}] = {value} end"
+        ));
+    }
+    filling.set("if_missing", !noted.is_empty());
+    filling.put("note_signals", noted);
     for (input, of) in plan.inputs.iter().enumerate() {
         let value = format!("value[{}]", input + 1);
         if let Some(ratio) = of.ratio {
-            script.read.push(quotient(&value, &ratio));
+            let made = quotient(&value, &ratio);
+            script.read.push(match of.if_missing {
+                // What is assumed is assumed of the ratio.
+                Some(_) => format!("  if has_come[{}] then\n  {made}\n  end", input + 1),
+                None => made,
+            });
         }
         if plan.needs(input) {
             script.read.push(format!("  all = all and {value}"));
@@ -214,7 +239,14 @@ impl Window {
                 Observed::Effort(_) => Source::Effort,
                 Observed::CommandNoise => Source::Noise,
                 Observed::Named(signal) => Source::Signal(signal),
-                Observed::Difference { a, b, .. } => Source::Difference(a, b),
+                Observed::Difference { a, b, .. } | Observed::Product { a, b } => {
+                    Source::Both(a, b)
+                }
+                Observed::Ratio {
+                    a,
+                    b,
+                    unknown_below,
+                } => Source::Ratio(a, b, unknown_below),
                 Observed::Command
                 | Observed::CommandLessYaw
                 | Observed::Margin

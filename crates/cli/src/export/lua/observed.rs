@@ -12,6 +12,9 @@ use super::{frames, number, template::Filling};
 /// Of commands, in 32 bits.
 const ROUNDING: f64 = 1e-6;
 
+/// What is divided by less is not finite in 32 bits, or nearly so: unknown.
+const LEAST_DIVISOR: f64 = 1e-6;
+
 const AXES: [&str; 4] = ["roll", "pitch", "yaw", "thrust"];
 
 /// The lines of the script so far.
@@ -46,6 +49,23 @@ impl Script {
                     false => format!("{a} - {b}"),
                 };
                 Some(self.computed(format!("{a}_less_{b}"), format!("{a} and {b} and {less}")))
+            }
+            Observed::Ratio {
+                a,
+                b,
+                unknown_below,
+            } => {
+                let [a, b] = [a, b].map(|signal| self.signal(signal, signals));
+                let least = number(unknown_below.max(LEAST_DIVISOR));
+                let name = format!("{a}_by_{b}_{}", least.replace(['.', '-', '+'], "_"));
+                let ratio =
+                    format!("{a} and {b} and max({b}, -{b}) >= {least} and {a} / {b} or nil");
+                Some(self.computed(name, ratio))
+            }
+            Observed::Product { a, b } => {
+                let [a, b] = [a, b].map(|signal| self.signal(signal, signals));
+                let product = format!("{a} and {b} and {a} * {b}");
+                Some(self.computed(format!("{a}_times_{b}"), product))
             }
             Observed::Effort(axis) => {
                 if !self.efforts.contains(&axis) {

@@ -101,6 +101,9 @@ function fly()
   doubt_us = doubt_us and later(doubt_us, held_us)
   flown_us = flown_us and later(flown_us, held_us)
   lifted_us = lifted_us and later(lifted_us, held_us)
+-- @if if_missing
+  note_signals()
+-- @end
   read_commands()
 -- @if noise
   take_noise()

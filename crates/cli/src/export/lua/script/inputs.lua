@@ -8,6 +8,15 @@ function observe()
 -- @put observe
 end
 
+-- @if if_missing
+has_come = {} -- by input, whether its signals have been known: a vehicle may never send them
+
+-- Notes signals, in the air and on the ground.
+function note_signals()
+-- @put note_signals
+end
+
+-- @end
 -- The seconds that are known of a window and the share of its oldest slot that has left it; nil where too little is known.
 local function enough(window)
   local out = outside(window)
