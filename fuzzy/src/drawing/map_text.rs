@@ -202,21 +202,26 @@ fn picture(text: &mut String, slice: &Slice, mut draw: impl FnMut(Cell) -> Strin
         }
         None => vec![0],
     };
-    for (i, &row) in rows.iter().enumerate().rev() {
+    let label = |i: usize| {
         let is_marked = [0, rows.len() / 2, rows.len() - 1].contains(&i);
-        let value = slice.y.as_ref().and_then(|y| y.points.get(row));
-        let label = value.filter(|_| is_marked).map(|y| short(*y));
+        let y = slice.y.as_ref().filter(|_| is_marked);
+        let value = y.and_then(|y| y.points.get(*rows.get(i)?));
+        value.map(|y| short(*y)).unwrap_or_default()
+    };
+    let labels = (0..rows.len()).map(|i| label(i).len());
+    let width = labels.max().unwrap_or_default().max(8);
+    for (i, &row) in rows.iter().enumerate().rev() {
         let cells = columns.iter().map(|&column| draw(slice.cell(column, row)));
         let cells: String = cells.collect();
-        let _ = writeln!(text, "{:>8} |{cells}", label.unwrap_or_default());
+        let _ = writeln!(text, "{:>width$} |{cells}", label(i));
     }
     let scale = slice.x.scale();
     let (low, high) = (short(scale.low), short(scale.high));
-    let gap = " ".repeat(columns.len().saturating_sub(low.len() + high.len()));
+    let gap = " ".repeat(columns.len().saturating_sub(low.len() + high.len()).max(1));
     line(
         text,
-        format_args!("{:>8} +{}", "", "-".repeat(columns.len())),
+        format_args!("{:>width$} +{}", "", "-".repeat(columns.len())),
     );
-    line(text, format_args!("{:>10}{low}{gap}{high}", ""));
-    line(text, format_args!("{:>10}{}", "", slice.x.title()));
+    line(text, format_args!("{:>width$}  {low}{gap}{high}", ""));
+    line(text, format_args!("{:>width$}  {}", "", slice.x.title()));
 }

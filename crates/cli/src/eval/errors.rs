@@ -59,7 +59,7 @@ impl Errors {
             short(rms),
             short(mean)
         ));
-        for (line, computed, measured) in &self.worst {
+        for (line, computed, measured) in self.worst.iter().filter(|(_, c, m)| c != m) {
             let (computed, measured) = (short(*computed), short(*measured));
             say(&format!(
                 "  line {line}: {computed} computed, {measured} measured"
