@@ -1,4 +1,4 @@
-// Pictures of both rooms, desktop and phone, into a folder: `scripts/web-pictures` runs it.
+// Pictures of both rooms, desktop and phone, into a folder: `scripts/pictures page` runs it.
 
 import { join } from 'node:path';
 import { browser, serve, tab } from './tests/page.mjs';
