@@ -44,7 +44,7 @@ def risks(model, x, folder):
 def tuned(x, y, folder):
     rows, model = folder / "rows.csv", folder / "tuned.yaml"
     write(rows, [*INPUTS, "risk"], np.column_stack([x, y]))
-    options = ["--loss", "log", "--weights", "--least-distance", "0.001", "--no-validation", "--force"]
+    options = ["--loss", "log", "--rule-weights", "--least-distance", "0.001", "--no-validation", "--force"]
     flagred("tune", "rules/flagred.yaml", rows, *options, "-o", model)
     return model
 

@@ -102,6 +102,18 @@ fn completions_and_manual_name_every_command() {
     std::fs::remove_dir_all(&folder).unwrap();
     assert!(pages > commands.len(), "{pages}");
 
+    let profiles = ["flagred", "flagred-battery", "flagred-paper"].join(" ");
+    for (shell, offered) in [
+        (
+            "bash",
+            format!("--profile)\n                    COMPREPLY=($(compgen -W \"{profiles}\""),
+        ),
+        ("zsh", format!("{{ compadd {profiles}; _files }}")),
+        ("fish", format!("or a file' -r -a \"{profiles}\"")),
+    ] {
+        assert!(said(&["completions", shell]).contains(&offered), "{shell}");
+    }
+
     let output = flagred().args(["man", "lern"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("learn"));

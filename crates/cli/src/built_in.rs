@@ -41,5 +41,10 @@ fn unknown(name: &str) -> Failure {
 
 /// The names of built-in rule sets and profiles, for an argument; each rule set has a profile of its name.
 pub(crate) fn names() -> clap::builder::PossibleValuesParser {
-    clap::builder::PossibleValuesParser::new(PROFILES.iter().map(|known| known.name))
+    clap::builder::PossibleValuesParser::new(profile_names())
+}
+
+/// The names of built-in profiles.
+pub(crate) fn profile_names() -> impl Iterator<Item = &'static str> {
+    PROFILES.iter().map(|known| known.name)
 }

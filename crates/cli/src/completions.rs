@@ -6,6 +6,7 @@ use clap::CommandFactory;
 use clap_complete::Shell;
 
 use crate::{
+    built_in,
     failure::{Exit, Failure},
     output::Stdout,
 };
@@ -26,7 +27,36 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         &mut script,
     );
     let mut out = Stdout::data();
-    out.write_all(&script)?;
+    let script = String::from_utf8_lossy(&script);
+    out.write_all(with_built_in(arguments.shell, &script).as_bytes())?;
     out.finish()?;
     Ok(Exit::Clean)
+}
+
+/// The script with the names of built-in profiles beside files, where `--profile` takes both. The generator knows names alone or
+/// files alone.
+fn with_built_in(shell: Shell, script: &str) -> String {
+    let names: Vec<&str> = built_in::profile_names().collect();
+    let names = names.join(" ");
+    match shell {
+        Shell::Bash => script.replace(
+            "--profile)\n                    COMPREPLY=($(compgen -f \"${cur}\"))",
+            &format!(
+                "--profile)\n                    COMPREPLY=($(compgen -W \"{names}\" -- \"${{cur}}\") $(compgen -f \"${{cur}}\"))"
+            ),
+        ),
+        Shell::Zsh => script.replace(
+            ":NAME|FILE:_default",
+            &format!(":NAME|FILE:{{ compadd {names}; _files }}"),
+        ),
+        Shell::Fish => {
+            let is_profile = |line: &&str| line.contains(" -l profile ") && line.ends_with(" -r");
+            let lines = script.lines().map(|line| match is_profile(&line) {
+                true => format!("{line} -a \"{names}\"\n"),
+                false => format!("{line}\n"),
+            });
+            lines.collect()
+        }
+        _ => script.to_owned(),
+    }
 }

@@ -138,7 +138,7 @@ Examples:
   flagred tune my-rules.yaml rows.csv --output tuned.yaml
   flagred tune my-rules.yaml rows.csv --round 2 --svg moved.svg --output tuned.yaml
   flagred tune my-rules.yaml rows.csv --only heat --fix heat.hot --rising heat --output tuned.yaml
-  flagred tune my-rules.yaml rows.csv --loss ranking --column risk=failed --group-by vehicle --weights --output tuned.yaml
+  flagred tune my-rules.yaml rows.csv --loss ranking --column risk=failed --group-by vehicle --rule-weights --output tuned.yaml
 Ctrl-C ends the search; the best rule set so far is written.";
 
 pub(crate) const SIMPLIFY: &str = "\

@@ -320,7 +320,7 @@ fn numbers_change_in_the_text_where_they_stand() {
         writeln!(rows, "{heat},{damp},{speed}").unwrap();
     }
     let files = [("fan.yaml", LAID_OUT), ("rows.csv", &*rows)];
-    let (code, _, err, written) = tune(&files, &["--weights", "--no-validation"]);
+    let (code, _, err, written) = tune(&files, &["--rule-weights", "--no-validation"]);
     assert_eq!(code, Some(0), "{err}");
     let written = written.unwrap();
     let (rules, provenance) = written.split_once("provenance:\n").unwrap();
@@ -432,7 +432,7 @@ fn a_checkpoint_with_other_fixed_numbers_is_refused() {
     for (checkpoint, more) in [
         (&moved, &["--fix", "speed.slow"][..]),
         (&moved, &["--only", "speed.fast"]),
-        (&weighted, &["--weights"]),
+        (&weighted, &["--rule-weights"]),
     ] {
         let arguments = [&["--checkpoint", "best.yaml", "--no-validation"], more].concat();
         let (code, _, err, _) = tune(&[("best.yaml", checkpoint)], &arguments);

@@ -51,7 +51,7 @@ pub(crate) struct Arguments {
     fix: Vec<String>,
 
     /// Move the weights of the rules, too
-    #[arg(long)]
+    #[arg(long = "rule-weights")]
     weights: bool,
 
     /// The least distance between neighbouring peaks, as a share of the range
@@ -272,7 +272,7 @@ fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failur
             visible(&of)
         );
         return Err(Failure::usage(message).help(
-            "run with the `--only`, `--fix` and `--weights` that the checkpoint was written with, or name a new file",
+            "run with the `--only`, `--fix` and `--rule-weights` that the checkpoint was written with, or name a new file",
         ));
     }
     Ok(resumed)
@@ -285,7 +285,7 @@ fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
         }
         TuneError::Unknown { .. } => "name a variable, or a term as `variable.term`",
         TuneError::NothingMoves => {
-            "`--only` and `--fix` leave nothing; `--weights` moves the weights"
+            "`--only` and `--fix` leave nothing; `--rule-weights` moves the weights"
         }
         TuneError::NoRows => "the tables have a header and no rows",
         TuneError::NoWeight => "give rows a weight above 0, or leave out `--weight`",
