@@ -1,8 +1,6 @@
 //! Channels: one thing observed over one window, and the statistics taken of it. What is to be observed is plain data,
 //! which can lie in a table; what was seen is the caller's memory.
 
-use crate::verdict::NoticeSettings;
-
 mod code;
 mod seen;
 
@@ -262,11 +260,10 @@ impl Channel {
     }
 }
 
-/// The number of motors that a craft needs for channels and for findings beside the risk.
-pub(crate) fn motors_needed(channels: &[Channel], notices: &NoticeSettings) -> usize {
-    let of_notices = usize::from(notices.any());
+/// The number of motors that a craft needs for channels, and where there are any, for findings beside the risk.
+pub(crate) fn motors_needed(channels: &[Channel], has_notices: bool) -> usize {
     let needed = channels.iter().map(Channel::motors_needed);
-    needed.fold(of_notices, usize::max)
+    needed.fold(usize::from(has_notices), usize::max)
 }
 
 /// Whether an input reads the commands of the motors.

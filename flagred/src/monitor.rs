@@ -191,7 +191,7 @@ impl Monitor {
         let (channels, inputs) = profile
             .channels(always, craft)
             .map_err(|signal| MonitorError::NoSignal { signal })?;
-        let motor = motors_needed(&channels, &profile.verdict.notices);
+        let motor = motors_needed(&channels, profile.verdict.notices.any());
         if motor > craft.motors {
             let motors = craft.motors;
             return Err(MonitorError::FewMotors { motor, motors });

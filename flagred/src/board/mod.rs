@@ -310,7 +310,7 @@ impl<'a> Monitor<'a> {
     #[doc(hidden)] // For the C interface. Rust uses `Storage::monitor` or `OwnedMemory::monitor`.
     pub fn new(plan: &'a Plan<'a>, memory: Memory<'a>) -> Result<Monitor<'a>, Refused> {
         plan.check().map_err(Refused::Plan)?;
-        if memory.motors.len() < motors_needed(plan.channels, &plan.settings.verdict.notices) {
+        if memory.motors.len() < motors_needed(plan.channels, plan.settings.verdict.notices.any()) {
             return Err(Refused::NoMotors);
         }
         let monitor = Monitor::divide(plan, memory).ok_or(Refused::Memory)?;
