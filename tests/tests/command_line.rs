@@ -102,7 +102,7 @@ fn completions_and_manual_name_every_command() {
     std::fs::remove_dir_all(&folder).unwrap();
     assert!(pages > commands.len(), "{pages}");
 
-    let profiles = ["flagred", "flagred-battery", "flagred-paper"].join(" ");
+    let profiles = ["flagred", "flagred-paper", "flagred-battery"].join(" ");
     for (shell, offered) in [
         (
             "bash",

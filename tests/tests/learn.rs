@@ -43,7 +43,7 @@ fn a_rule_set_that_cannot_be_learned_into_is_refused_with_what_to_do() {
         ),
         (
             VARIABLES.replace("rules: []", "  more: {range: [0, 1], partition: [a, b]}\nrules: []"),
-            "help: learn from a rule set with this output alone",
+            "help: learn with one of these outputs and those that it reads",
         ),
         (
             VARIABLES.replace("rules: []", "blocks: {one: {rules: [IF margin IS low THEN risk IS low]}}"),

@@ -75,34 +75,44 @@ fn a_map_has_the_values_of_eval() {
 }
 
 #[test]
-fn learn_and_export_refuse_a_chain() {
+fn the_last_output_is_learned_from_its_own_column() {
+    let data = "heat,fan\n5,1\n12,2\n";
+    let folder = folder(&[("fan.yaml", FAN), ("data.csv", data)]);
+    let learn = ["learn", "fan.yaml", "data.csv", "-o", "new.yaml"];
+    let (code, report, errors) = flagred(folder.path(), &learn);
+    assert_eq!(code, Some(0), "{errors}");
+    assert!(report.contains("2 used, 0 refused"), "{report}");
+    let learned = std::fs::read_to_string(folder.path().join("new.yaml")).unwrap();
+    for rule in [
+        "IF heat IS low THEN comfort IS good",
+        "IF comfort IS good THEN fan IS slow",
+    ] {
+        assert!(learned.contains(rule), "{rule}: {learned}");
+    }
+    let (code, report, errors) = flagred(
+        folder.path(),
+        &[
+            "tune",
+            "new.yaml",
+            "data.csv",
+            "-o",
+            "tuned.yaml",
+            "--no-validation",
+        ],
+    );
+    assert_eq!(code, Some(0), "{errors}");
+    assert!(report.contains("2 used, 0 refused"), "{report}");
+}
+
+#[test]
+fn a_script_refuses_a_chain() {
     let paper = include_str!("../../../rules/flagred-paper.yaml").replace(
         "outputs:\n",
         "outputs:\n  strain: {range: [0, 1], partition: [low, high]}\n",
     ) + "  - IF margin IS low THEN strain IS high\n  - IF strain IS high THEN risk IS high\n";
     let profile = include_str!("../../../rules/profiles/flagred-paper.yaml")
         .replace("rules: flagred-paper ", "rules: chain.yaml ");
-    let data = "heat,comfort,fan\n10,0.5,3\n";
-    let files = [
-        ("fan.yaml", FAN),
-        ("data.csv", data),
-        ("chain.yaml", &*paper),
-        ("profile.yaml", &*profile),
-    ];
-    let folder = folder(&files);
-    let (code, _, errors) = flagred(
-        folder.path(),
-        &["learn", "fan.yaml", "data.csv", "-o", "new.yaml"],
-    );
-    assert_eq!(code, Some(2), "{errors}");
-    assert!(
-        errors.contains("the rule set has 2 outputs; learning needs exactly one"),
-        "{errors}"
-    );
-    assert!(
-        errors.contains("outputs that chain are learned one by one"),
-        "{errors}"
-    );
+    let folder = folder(&[("chain.yaml", &*paper), ("profile.yaml", &*profile)]);
     for language in ["--rust", "--c"] {
         let (code, text, errors) = flagred(folder.path(), &["export", language, "profile.yaml"]);
         assert_eq!(code, Some(0), "{errors}");

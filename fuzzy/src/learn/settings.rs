@@ -170,9 +170,7 @@ impl LearnError {
     pub fn help(&self) -> &'static str {
         match self {
             LearnError::Outputs { .. } => "learn with one of these outputs and those that it reads",
-            LearnError::Chain { .. } => {
-                "`flagred check` shows what is wrong with the rules of the other outputs"
-            }
+            LearnError::Chain { .. } => "mend the rules of the outputs that the last one reads",
             LearnError::Blocks => "remove `blocks` and its rules; add blocks again after learning",
             LearnError::ReadsInputs { .. } => {
                 "replace it by a number, such as `{constant: 5}`; `tune` fits functions of inputs to rows, for rules that you write"
