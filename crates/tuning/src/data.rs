@@ -156,12 +156,14 @@ impl Data {
     }
 }
 
-/// The index of the output that is tuned.
+/// The index of the output that is tuned: the only one that no other output reads.
 pub(crate) fn target(model: &Model) -> Result<usize, TuneError> {
-    let outputs = TuneError::Outputs {
-        outputs: model.last_outputs().len(),
-    };
-    model.measured_output().ok_or(outputs)
+    match model.last_outputs()[..] {
+        [target] => Ok(target),
+        ref last => Err(TuneError::Outputs {
+            outputs: last.len(),
+        }),
+    }
 }
 
 /// The least and the largest value.
