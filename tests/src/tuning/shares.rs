@@ -45,7 +45,7 @@ pub fn shares(rows: &[Row], risks_pct: &[f64], bands: usize, is_in: fn(Set) -> b
     for (row, risk_pct) in rows.iter().zip(risks_pct) {
         let seen = seen.entry(row.flight).or_default();
         *seen += 1;
-        if !is_in(row.set) || (row.set.is_real() && *seen % 2 == 0) {
+        if !is_in(row.set) || (row.set.is_real() && seen.is_multiple_of(2)) {
             continue;
         }
         let band = (risk_pct / 100.0 * bands as f64) as usize;
