@@ -81,10 +81,11 @@ fn every_short_text_fits_with_the_largest_numbers() {
     }
 }
 
-/// The counts of the shipped profiles are those of `flagred validate`.
+/// The reliability of the shipped profiles is of vehicles left out; `scripts/learn-flagred` measures it in another way than
+/// `flagred validate`, which has the rules that know these vehicles. The shares are within 10 points of each other.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn the_reliability_is_the_measured_one() {
+fn the_reliability_is_near_that_of_rules_that_know_the_vehicles() {
     let counts = |folders: &[&str]| {
         let paths = folders.iter().map(|folder| reference_data().join(folder));
         let output = flagred()
@@ -113,18 +114,22 @@ fn the_reliability_is_the_measured_one() {
     } in rows
     {
         let bands = (*from_pct / 10.0) as usize..(*to_pct / 10.0) as usize;
-        let sum = |counts: &[&Vec<(u64, u64)>]| {
+        let known = |counts: &[&Vec<(u64, u64)>]| {
             let counts = counts.iter().flat_map(|counts| &counts[bands.clone()]);
-            let sum = counts.fold((0, 0), |sum, band| (sum.0 + band.0, sum.1 + band.1));
-            let (moments, followed) = sum;
-            Some(Followed { moments, followed })
+            let (moments, followed) =
+                counts.fold((0, 0), |sum, band| (sum.0 + band.0, sum.1 + band.1));
+            Followed { moments, followed }
         };
-        assert_eq!(*of_real, sum(&[&real]), "{from_pct} to {to_pct} %");
         let [sitl2, sitl3] = &simulated;
-        assert_eq!(
-            *of_simulated,
-            sum(&[sitl2, sitl3]),
-            "{from_pct} to {to_pct} %"
-        );
+        for (left_out, known) in [
+            (of_real.unwrap(), known(&[&real])),
+            (of_simulated.unwrap(), known(&[sitl2, sitl3])),
+        ] {
+            let pct = |of: Followed| 100.0 * of.followed as f64 / of.moments as f64;
+            assert!(
+                (pct(left_out) - pct(known)).abs() < 10.0,
+                "{from_pct} to {to_pct} %: {left_out:?}, {known:?}"
+            );
+        }
     }
 }

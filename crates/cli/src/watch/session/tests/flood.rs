@@ -125,8 +125,14 @@ fn hovering(t_s: f64) -> MavMessage {
     servo(t_s, [1500 + wiggle, 1500, 1500 - wiggle, 1500])
 }
 
+/// Keeps so short a history of the vehicle's own samples that it is full before the memory is looked at: its bound is another
+/// matter, [`MOST`](super::super::history::MOST).
 fn link(estimator: &Estimator) -> Link<'_> {
-    let mut bench = Bench::new(estimator, Some(191));
+    let session = Session::new(estimator, Some(Sender::new(191)), false).keeping(500);
+    let mut bench = Bench {
+        session,
+        ..Bench::new(estimator, None)
+    };
     bench.beat(false);
     bench.all_parameters();
     bench.hover(5.0, 1.0, 1500);
