@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     /// Warn where no rule fires with at least this strength
     #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = degree)]
     coverage: f64,
-    /// Exit with 1 for these too; errors always do
+    /// Also exit with 1 for these, not only for errors
     #[arg(long, value_name = "SEVERITY")]
     deny: Option<Deny>,
 }

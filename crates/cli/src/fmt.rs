@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
     /// Rule sets or profiles in YAML; `-` is standard input, written to standard output
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Change nothing: name the files that have another layout, and exit with 1
+    /// Only list files with another layout, and exit with 1 if there are any
     #[arg(long)]
     check: bool,
 }

@@ -92,7 +92,7 @@ enum Command {
     /// Evaluate a rule set at the points of a CSV file
     #[command(after_help = help::EVAL)]
     Eval(eval::Arguments),
-    /// Give rule sets and profiles one layout; comments stay
+    /// Format rule sets and profiles in place; comments stay
     #[command(after_help = help::FMT)]
     Fmt(fmt::Arguments),
     /// Serve an editor: findings, completion, renaming and more for rule sets and profiles (language server protocol)

@@ -26,15 +26,15 @@ pub(crate) struct Arguments {
     #[arg(value_name = "DATA.csv")]
     data: Vec<PathBuf>,
 
-    /// By how much an output may differ, in its unit; without it, by 1e-12 of its range
+    /// Largest difference of an output, in its unit [default: 1e-12 of its range]
     #[arg(long, value_name = "VALUE", value_parser = tolerance)]
     tolerance: Option<f64>,
 
-    /// Compare the outputs at the rows of DATA alone; elsewhere they may be anything
+    /// Compare outputs only at the rows of DATA; elsewhere they may differ by any amount
     #[arg(long, requires = "data")]
     rows_only: bool,
 
-    /// The seed of the points at random
+    /// Random seed (test points)
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     seed: u64,
 }

@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
     flights: Vec<PathBuf>,
 
-    /// Evaluate a table with a row for each flight instead of logs, as `flagred dataset` writes it
+    /// Evaluate a table with a row for each flight instead of logs, as `flagred dataset --profile NAME` writes it
     #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
     rows: Option<PathBuf>,
 

@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value_t = 0.5, requires = "ahead")]
     every: f64,
 
-    /// The attitude error of a risk of 100 %, in degrees
+    /// Attitude error that counts as a risk of 100 %, in degrees
     #[arg(long, value_name = "DEG", value_parser = seconds, default_value_t = CRITICAL_ERROR_DEG)]
     critical: f64,
 

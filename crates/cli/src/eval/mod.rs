@@ -36,12 +36,12 @@ pub(crate) struct Arguments {
     #[arg(short, long, value_name = "OUT.csv", default_value = "-", value_parser = output::table_path)]
     output: PathBuf,
 
-    /// Append this to the names of the outputs' columns: `_model`. Where the table has measured values in a column of an output's
-    /// name, the errors are printed: RMS, mean and the worst rows
+    /// Suffix of the output columns: `_model`. Needed where a column has an output's name; its measured values are then compared:
+    /// RMS error, mean error and the worst rows
     #[arg(long, value_name = "SUFFIX", default_value = "")]
     suffix: String,
 
-    /// Add columns about how the outputs come about
+    /// Add columns that explain the outputs
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
     with: Vec<With>,
 

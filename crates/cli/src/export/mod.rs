@@ -56,10 +56,10 @@ pub(crate) struct Arguments {
     /// Write a rule set as FML, for JFML and other programs of IEEE 1855
     #[arg(long, group = "language")]
     fml: bool,
-    /// Leave out what the format cannot say, and `samples` in Rust and C: values may be others
+    /// Drop what the format cannot express, in Rust and C also `samples`; results may differ
     #[arg(long, conflicts_with = "lua")]
     lossy: bool,
-    /// Profile: `flagred`, `flagred-battery`, `flagred-paper`, or a file; except for Lua, a rule set in any format, too
+    /// Profile (Rust, C, Lua) or rule set (all but Lua): `flagred`, `flagred-battery`, `flagred-paper`, or a file
     #[arg(value_name = "FILE", default_value = profile::DEFAULT)]
     file: String,
     /// The file to write; `-` is standard output

@@ -68,11 +68,11 @@ pub(crate) struct Arguments {
     #[arg(long)]
     lines: bool,
 
-    /// By what share a step must make the error on rows left out smaller
+    /// Least relative gain in cross-validation error per step
     #[arg(long, default_value_t = 0.02, value_name = "SHARE", value_parser = rows::share)]
     least_gain: f64,
 
-    /// The fewest rows that make a rule
+    /// The fewest rows of a rule
     #[arg(long, default_value_t = 1, value_name = "ROWS")]
     min_support: usize,
 
@@ -88,7 +88,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "COLUMN")]
     group_by: Option<String>,
 
-    /// Into how many parts the rows or groups are divided
+    /// Number of cross-validation folds
     #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = count(2, 100))]
     folds: u32,
 

@@ -66,11 +66,11 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "3", value_name = "DIGITS", value_parser = digits)]
     round: Digits,
 
-    /// How often the search starts: at the rule set, then at random places around it
+    /// Number of starts: the rule set, then random points around it
     #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
     starts: u32,
 
-    /// The most steps of a start
+    /// The most steps per start
     #[arg(long, default_value_t = 100, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     iterations: u32,
 
@@ -82,11 +82,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE.yaml")]
     checkpoint: Option<PathBuf>,
 
-    /// Into how many parts cross-validation divides the rows or groups
+    /// Number of cross-validation folds
     #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=100))]
     folds: u32,
 
-    /// Tell the error on rows left out after tuning on an eighth, a quarter and half of the others, too
+    /// Also report the cross-validation error after tuning on 1/8, 1/4 and 1/2 of the training rows
     #[arg(long, conflicts_with = "no_validation")]
     learning_curve: bool,
 

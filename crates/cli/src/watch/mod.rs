@@ -73,7 +73,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     jsonl: bool,
 
-    /// Believe only packets signed with the key in this file (32 bytes, or 64 hexadecimal digits), and sign those sent
+    /// Accept only packets signed with the key in this file (32 bytes or 64 hexadecimal digits), and sign sent ones
     #[arg(long, value_name = "FILE")]
     key: Option<PathBuf>,
 
