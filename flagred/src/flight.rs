@@ -461,6 +461,12 @@ impl Flight {
         match (gravest.filter(|level| *level > Level::Info), lost) {
             (Some(gravest), _) => Verdict::Known(gravest),
             (None, Some(lost)) => Verdict::NotAvailable(lost),
+            (None, None) if knows_enough && summary.risk_max.is_none() => {
+                Verdict::NotAvailable(Reason::TooShort {
+                    in_air_s: summary.in_air_s,
+                    quiet_s: profile.verdict.quiet_after_take_off_s,
+                })
+            }
             (None, None) if knows_enough => Verdict::Known(Level::Good),
             (None, None) => {
                 let longest = self.unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1));

@@ -112,7 +112,10 @@ fn is_in_doubt(verdict: &Verdict) -> bool {
         verdict,
         Verdict::Known(Level::Good)
             | Verdict::NotAvailable(
-                Reason::MotorUnknown { .. } | Reason::RiskUnknown { .. } | Reason::NoSamples
+                Reason::MotorUnknown { .. }
+                    | Reason::RiskUnknown { .. }
+                    | Reason::TooShort { .. }
+                    | Reason::NoSamples
             )
     )
 }

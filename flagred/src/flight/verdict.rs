@@ -106,6 +106,16 @@ pub enum Reason {
         /// For how long in that time, in seconds.
         unknown_s: f64,
     },
+    /// No moment of the flight is judged: it ended within the first seconds after take-off, which are not.
+    #[error(
+        "{in_air_s:.1} s are too short: nothing is judged in the first {quiet_s} s and just before the end"
+    )]
+    TooShort {
+        /// The time in the air, in seconds.
+        in_air_s: f64,
+        /// For how long after take-off nothing is judged, in seconds.
+        quiet_s: f64,
+    },
     /// There was hardly a sample in the air.
     #[error("there is hardly any sample of the flight")]
     NoSamples,
@@ -194,7 +204,9 @@ impl Reason {
             Reason::SamplesFarApart { .. } => Some(
                 "`longest_gap_s` of the profile has to be longer than the time between samples; if `t_s` is in milliseconds, divide it by 1000",
             ),
-            Reason::Monitor(_) | Reason::NoSamples | Reason::NoFlight => None,
+            Reason::Monitor(_) | Reason::TooShort { .. } | Reason::NoSamples | Reason::NoFlight => {
+                None
+            }
         }
     }
 }
