@@ -155,15 +155,8 @@ impl RuleSet {
 
     /// The names of the variables that rows of data have values of: the inputs, and the measured output.
     fn _measured_names(&self) -> Vec<String> {
-        self.model(|model| {
-            let output = model.measured_output();
-            let output = output.and_then(|output| model.outputs.get(output));
-            let measured = model
-                .inputs
-                .iter()
-                .chain(output.map(|output| &output.variable));
-            measured.map(|variable| variable.name.clone()).collect()
-        })
+        let name = |variable: &fuzzy::model::Variable| variable.name.clone();
+        self.model(|model| model.measured_variables().map(name).collect())
     }
 
     /// The text it was read from, and the name of its file.

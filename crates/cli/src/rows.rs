@@ -118,13 +118,7 @@ pub(crate) struct Data {
 
 /// Reads the values of the inputs and of the measured output of a model from all tables.
 pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure> {
-    let output = model.measured_output();
-    let output = output.and_then(|output| model.outputs.get(output));
-    let variables = model
-        .inputs
-        .iter()
-        .chain(output.map(|output| &output.variable));
-    let variables: Vec<&Variable> = variables.collect();
+    let variables: Vec<&Variable> = model.measured_variables().collect();
     let names: Vec<&str> = variables.iter().map(|v| v.name.as_str()).collect();
     let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
     let format = &arguments.rewrite.format;

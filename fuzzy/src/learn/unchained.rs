@@ -100,16 +100,8 @@ impl Unchained {
         &self.model
     }
 
-    /// The variables that samples have values of: the inputs of the chain, and the measured output.
-    pub fn variables(&self) -> impl Iterator<Item = &Variable> {
-        let target = self.whole.outputs.get(self.target);
-        self.whole
-            .inputs
-            .iter()
-            .chain(target.map(|output| &output.variable))
-    }
-
-    /// A sample for [`model`](Self::model) from a value for each of [`variables`](Self::variables).
+    /// A sample for [`model`](Self::model) from a value for each of
+    /// [`Model::measured_variables`] of the chain.
     ///
     /// # Errors
     /// A value is not finite or outside its range, or an output that is read has no value.

@@ -104,6 +104,14 @@ impl Model {
         }
     }
 
+    /// The variables that rows of data have values of: the inputs, then the measured output.
+    pub fn measured_variables(&self) -> impl Iterator<Item = &Variable> {
+        let output = self.measured_output();
+        let output = output.and_then(|output| self.outputs.get(output));
+        let inputs = self.inputs.iter();
+        inputs.chain(output.map(|output| &output.variable))
+    }
+
     /// The inputs that an output depends on: those that its rules, linear functions and formulas read, and those of the
     /// outputs that it reads. All others change neither its value nor its coverage.
     ///
