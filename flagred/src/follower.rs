@@ -74,8 +74,8 @@ enum Idle {
     InTrouble,
 }
 
-/// What is known after a sample where the risk is.
-struct Known {
+/// The risk after a sample.
+struct Risk {
     estimate: Estimate,
     elevated_pct: f64,
     /// Whether the risk counts for the verdict.
@@ -163,10 +163,10 @@ impl Follower {
             ended: Ended::default(),
         };
         match self.take(feed, room, sample, &mut update.ended, estimate) {
-            Ok(known) => {
-                update.risk = Ok(known.estimate);
-                update.elevated_risk_pct = Some(known.elevated_pct);
-                update.judged = known.judged;
+            Ok(risk) => {
+                update.risk = Ok(risk.estimate);
+                update.elevated_risk_pct = Some(risk.elevated_pct);
+                update.judged = risk.judged;
                 update.level = Some(self.level());
             }
             Err(reason) => {
@@ -185,7 +185,7 @@ impl Follower {
         sample: &Sample<'_>,
         ended: &mut Ended,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
-    ) -> Result<Known, Unknown> {
+    ) -> Result<Risk, Unknown> {
         let t_s = sample.t_s;
         let longest_gap_s = self.settings.sampling.longest_gap_s;
         let held_s = match self.last_s {
@@ -276,7 +276,7 @@ impl Follower {
         if step.ended.is_some() {
             ended[0] = step.ended;
         }
-        Ok(Known {
+        Ok(Risk {
             estimate: said,
             elevated_pct: elevated,
             judged: !takes_off,

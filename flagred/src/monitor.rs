@@ -79,7 +79,7 @@ pub enum MonitorError {
         /// The signal.
         signal: String,
     },
-    /// The profile reads the motors, and there are none.
+    /// The profile reads the motors, but the flight has none.
     #[error("the flight has no motors, and the profile reads them")]
     NoMotors,
     /// The profile names a motor that the flight does not have.

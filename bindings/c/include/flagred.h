@@ -33,7 +33,7 @@ typedef enum flagred_status {
     FLAGRED_NULL_POINTER = 1,   /* a required pointer is NULL */
     FLAGRED_OTHER_FORMAT = 2,   /* another version exported the plan: export it again */
     FLAGRED_DAMAGED_PLAN = 3,   /* an index in the plan is out of bounds, or a window has no length */
-    FLAGRED_NO_MOTORS = 4,      /* the profile reads the motors and there are none, or it names a motor that there is not */
+    FLAGRED_NO_MOTORS = 4,      /* the profile reads a motor that the vehicle does not have */
     FLAGRED_MEMORY_SIZE = 5,    /* less memory than flagred_memory_size returns, or not aligned to 16 bytes */
     FLAGRED_BAD_LIMITS = 6,     /* the lower limit of a motor is not below its upper limit */
     FLAGRED_BAD_GEOMETRY = 7,   /* the geometry does not tell roll, pitch, yaw and thrust of all motors apart */

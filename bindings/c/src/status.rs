@@ -23,7 +23,7 @@ pub(crate) fn text(status: i32) -> &'static CStr {
         1 => c"a required pointer is NULL",
         2 => c"another version exported the plan: export it again",
         3 => c"damaged plan: an index is out of bounds",
-        4 => c"the number of motors is 0, or the profile names a motor that there is not",
+        4 => c"the profile reads a motor that the vehicle does not have",
         5 => c"the memory is too small, or not aligned to 16 bytes",
         6 => c"the lower limit of a motor is not below its upper limit",
         7 => c"the geometry does not tell roll, pitch, yaw and thrust of all motors apart",

@@ -104,7 +104,7 @@ pub struct Words<'a> {
 pub enum Refused {
     /// The memory does not have the sizes of the plan.
     Memory,
-    /// The profile reads the motors and there are none, or it names a motor that there is not.
+    /// The profile reads a motor that the vehicle does not have.
     NoMotors,
     /// The plan is damaged.
     Plan(Damaged),
@@ -116,9 +116,9 @@ impl core::fmt::Display for Refused {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Refused::Memory => f.write_str("the memory does not have the sizes of the plan"),
-            Refused::NoMotors => f.write_str(
-                "the profile reads the motors and there are none, or it names a motor that there is not",
-            ),
+            Refused::NoMotors => {
+                f.write_str("the profile reads a motor that the vehicle does not have")
+            }
             Refused::Plan(damaged) => damaged.fmt(f),
             Refused::Geometry => f.write_str(
                 "the geometry does not tell roll, pitch, yaw and thrust of all motors apart",

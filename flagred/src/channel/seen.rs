@@ -332,7 +332,7 @@ impl Channel {
             let one = motors.nth(motor as usize);
             return self.threshold(one.unwrap_or(f64::NAN));
         }
-        // The motors that are known tell nothing of one that is not.
+        // If one motor is unknown, so is the result.
         if self.motors == Motors::Pooled {
             return Moments::alike(motors, |value| self.counted(value));
         }
