@@ -44,14 +44,14 @@ def risks(model, x, folder):
 def tuned(x, y, folder):
     rows, model = folder / "rows.csv", folder / "tuned.yaml"
     write(rows, [*INPUTS, "risk"], np.column_stack([x, y]))
-    options = ["--loss", "log", "--rule-weights", "--least-distance", "0.001", "--no-validation", "--force"]
+    options = ["--loss", "log", "--rule-weights", "--min-distance", "0.001", "--no-validation", "--force"]
     flagred("tune", "rules/flagred.yaml", rows, *options, "-o", model)
     return model
 
 
 def main():
     flights = sorted(Path(DATA).glob("*.csv.gz"))
-    rows = flagred("dataset", "--profile", "rules/profiles/multirotor.yaml", "--ahead", "5", *flights)
+    rows = flagred("dataset", "--profile", "rules/profiles/multirotor.yaml", "--horizon", "5", *flights)
     rows = [row for row in rows if row["att_rmse_deg"]]
     number = lambda name, empty=0.0: np.array([float(row[name] or empty) for row in rows])
     x = np.column_stack([number(name) for name in INPUTS])

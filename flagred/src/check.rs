@@ -61,6 +61,7 @@ pub fn profile(
     let estimator = compile(&profile, rules, &at, &mut found);
     if let Some(estimator) = &estimator {
         thresholds(estimator, &["verdict"], &at, &mut found);
+        durations(estimator.profile(), &at, &mut found);
         for other in estimator.others() {
             let place = ["other_risks", &other.profile().output];
             thresholds(other, &place, &at, &mut found);
@@ -259,6 +260,43 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
     }
 }
 
+/// The longest window and the longest wait before a level is raised that are not suspicious, in seconds.
+const LONGEST_WINDOW_S: f64 = 600.0;
+const LONGEST_WAIT_S: f64 = 30.0;
+
+/// Windows and waits so long that they are likely in another unit.
+fn durations(profile: &Profile, at: &Places, found: &mut Vec<Diagnostic>) {
+    let mut note = |path: &[&str], message: String, help: &str| {
+        found.push(Diagnostic::warning("unit", at.of(path), message).help(help));
+    };
+    let window = "windows are in seconds; a risk over a longer one comes too late";
+    let mut long = |path: &[&str], window_s: f64| {
+        if window_s > LONGEST_WINDOW_S {
+            note(
+                path,
+                format!("the window of {window_s} s is longer than most flights"),
+                window,
+            );
+        }
+    };
+    long(&["window_s"], profile.window_s);
+    for input in &profile.inputs {
+        if input.source.window_s.to_bits() != profile.window_s.to_bits() {
+            long(&["inputs", &input.name, "window_s"], input.source.window_s);
+        }
+    }
+    for (name, level) in [
+        ("warn", &profile.verdict.warn),
+        ("fail", &profile.verdict.fail),
+    ] {
+        if level.after_s > LONGEST_WAIT_S {
+            let message = format!("`{name}` is raised only after {} s", level.after_s);
+            let help = "`after_s` is in seconds; control can be lost within one";
+            note(&["verdict", name, "after_s"], message, help);
+        }
+    }
+}
+
 fn is_above(limit: f64, high: f64) -> bool {
     const ROUNDING: f64 = 1e-6;
     limit > high + ROUNDING
@@ -278,6 +316,17 @@ fn reached(
 ) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let place = |key: &[&str]| of(&[&[name], key].concat());
+    if let Some(limit) = level.raise.risk_pct
+        && (low..1.0).contains(&limit)
+        && limit > 0.0
+    {
+        let message = format!("`{name}` at risk {limit} is raised below 1 %");
+        let help = format!(
+            "thresholds are in percent: did you mean {}?",
+            shown(100.0 * limit)
+        );
+        found.push(Diagnostic::warning("unit", place(&["risk"]), message).help(help));
+    }
     if let Some(limit) = level.raise.risk_pct {
         let above = is_above(limit, high);
         if above || limit <= low {

@@ -97,7 +97,7 @@ fn completions_and_manual_name_every_command() {
     assert!(said(&["man", "learn"]).contains("min\\-support"));
 
     let folder = std::env::temp_dir().join(format!("flagred-manual-{}", std::process::id()));
-    said(&["man", "--all", folder.to_str().unwrap()]);
+    said(&["man", "--folder", folder.to_str().unwrap()]);
     let pages = std::fs::read_dir(&folder).unwrap().count();
     std::fs::remove_dir_all(&folder).unwrap();
     assert!(pages > commands.len(), "{pages}");

@@ -157,7 +157,7 @@ rules: [IF spread IS even THEN risk IS low, IF spread IS uneven THEN risk IS hig
         assert_ne!(with_profile, of_profile);
     }
     let ahead = flagred()
-        .args(["dataset", "--ahead", "5", "--profile", "flagred", STEADY])
+        .args(["dataset", "--horizon", "5", "--profile", "flagred", STEADY])
         .output()
         .unwrap();
     let head = String::from_utf8_lossy(&ahead.stdout);
@@ -329,7 +329,7 @@ fn a_flight_becomes_rows() {
     let mean = windows.iter().map(|row| number(&row[5])).sum::<f64>() / windows.len() as f64;
     approx::assert_abs_diff_eq!(mean, margin, epsilon = 0.01);
 
-    let (header, ahead) = rows(&["--ahead", "5", "--profile", "flagred-paper"]);
+    let (header, ahead) = rows(&["--horizon", "5", "--profile", "flagred-paper"]);
     let last = [
         "error_last_5_s_deg",
         "error_last_10_s_deg",
@@ -339,7 +339,7 @@ fn a_flight_becomes_rows() {
     assert_eq!(header[7..], last);
     assert!(ahead.len() > 180, "{}", ahead.len());
     let (_, often) = rows(&[
-        "--ahead",
+        "--horizon",
         "5",
         "--every",
         "0.25",
@@ -416,7 +416,7 @@ fn the_battery_adds_to_the_shipped_rules_and_changes_nothing_of_them() {
     );
 }
 
-/// What `learn` says of the directions is what `check --monotone` finds.
+/// What `learn` says of the directions is what `check --rising` finds.
 #[test]
 fn directions_hold_or_are_refuted_with_the_place() {
     let folder = Folder::new();
@@ -445,14 +445,7 @@ fn directions_hold_or_are_refuted_with_the_place() {
         let said = String::from_utf8_lossy(&output.stdout);
         assert_eq!(output.status.code(), Some(code), "{name}: {said}");
         let check = flagred()
-            .args([
-                "check",
-                &out,
-                "--monotone",
-                "margin:decreasing",
-                "--monotone",
-                "spread:increasing",
-            ])
+            .args(["check", &out, "--falling", "margin", "--rising", "spread"])
             .output()
             .unwrap();
         let found = String::from_utf8_lossy(&check.stdout);

@@ -21,10 +21,10 @@ pub(crate) struct IdentifyOptions {
     antecedents: String,
     consequents: String,
     inputs: Vec<String>,
-    most_inputs: usize,
-    most_terms: usize,
-    most_rules: usize,
-    least_gain: f64,
+    max_inputs: usize,
+    max_terms: usize,
+    max_rules: usize,
+    min_gain: f64,
     min_support: usize,
     folds: u32,
     seed: u64,
@@ -45,10 +45,10 @@ impl IdentifyOptions {
         settings.antecedents = choice("antecedents", &self.antecedents, &antecedents)?;
         settings.consequents = choice("consequents", &self.consequents, &consequents)?;
         settings.inputs = self.inputs.clone();
-        settings.most_inputs = self.most_inputs;
-        settings.most_terms = self.most_terms;
-        settings.most_rules = self.most_rules;
-        settings.least_gain = self.least_gain;
+        settings.max_inputs = self.max_inputs;
+        settings.max_terms = self.max_terms;
+        settings.max_rules = self.max_rules;
+        settings.min_gain = self.min_gain;
         settings.least_support = self.min_support;
         settings.folds = self.folds;
         settings.seed = self.seed;

@@ -4,7 +4,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use fuzzy::{
     Findings, Model,
-    check::{self, Monotone},
+    check::{self, Direction, Monotone},
     diagnostic::suggest,
     drawing::variables_svg,
     format,
@@ -373,28 +373,30 @@ impl RuleSet {
     /// ----------
     /// coverage
     ///     The firing strength that some rule should reach everywhere.
-    /// monotone
-    ///     Claims about the outputs: ``"service:increasing"``, or ``"service:increasing:tip"`` for one of several.
+    /// rising, falling
+    ///     Inputs that no output may fall, or rise, with: ``["service"]``, or ``["service:tip"]`` for one of several outputs.
     ///
     /// Returns
     /// -------
     /// list of Diagnostic
     ///     What an author should know, in the order of the text; ``str()`` draws one.
-    #[pyo3(signature = (*, coverage = 0.5, monotone = None))]
+    #[pyo3(signature = (*, coverage = 0.5, rising = Vec::new(), falling = Vec::new()))]
     fn check<'py>(
         &self,
         py: Python<'py>,
         coverage: f64,
-        monotone: Option<Vec<String>>,
+        rising: Vec<String>,
+        falling: Vec<String>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let mut options = check::Options::default();
         options.coverage = coverage;
-        for claim in monotone.unwrap_or_default() {
-            let claim = claim.parse::<Monotone>();
-            options
-                .monotone
-                .push(claim.map_err(|help| data_error("no claim", Some(help)))?);
-        }
+        let rising = rising
+            .iter()
+            .map(|claim| Monotone::new(claim, Direction::Increasing));
+        let falling = falling
+            .iter()
+            .map(|claim| Monotone::new(claim, Direction::Decreasing));
+        options.monotone = rising.chain(falling).collect();
         let source = self.source();
         let compiled = match source.compile(py) {
             Ok(compiled) => Arc::clone(compiled),

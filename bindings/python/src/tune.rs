@@ -26,7 +26,7 @@ pub(crate) struct TuneOptions {
     only: Vec<String>,
     fix: Vec<String>,
     weights: bool,
-    least_distance: f64,
+    min_distance: f64,
     rising: Vec<String>,
     falling: Vec<String>,
     beyond_range: bool,
@@ -81,7 +81,7 @@ impl TuneOptions {
         settings.only = self.only.clone();
         settings.fix = self.fix.clone();
         settings.weights = self.weights;
-        settings.least_distance = self.least_distance;
+        settings.min_distance = self.min_distance;
         settings.monotone = claims(&self.rising, &self.falling);
         settings.beyond_range = self.beyond_range;
         settings.digits = self.digits;

@@ -25,13 +25,13 @@ use crate::{
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
     output::{Files, Stdout},
-    profile,
+    profile, rows,
 };
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Rule sets or profiles in YAML, or rule sets in FIS, FLL, FCL or FML; the name of a built-in profile; `-` is standard input
-    #[arg(required = true, value_name = "MODEL")]
+    /// Rule sets in YAML, FIS, FLL, FCL or FML, profiles in YAML, the name of a built-in profile, or `-` for standard input
+    #[arg(required = true, value_name = "FILE")]
     models: Vec<PathBuf>,
     /// How to print the findings
     #[arg(long, value_enum, default_value = "text", value_name = "FORMAT")]
@@ -39,14 +39,12 @@ pub(crate) struct Arguments {
     /// The same as `--format json`
     #[arg(long, conflicts_with = "format")]
     json: bool,
-    /// Check that the output never falls (INPUT:increasing) or never rises (INPUT:decreasing) when an input rises;
-    /// with several outputs, INPUT:increasing:OUTPUT. May be repeated
-    #[arg(long, value_name = "CLAIM")]
-    monotone: Vec<check::Monotone>,
+    #[command(flatten)]
+    claims: rows::Claims,
     /// Warn where no rule fires with at least this strength
     #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = degree)]
     coverage: f64,
-    /// Also exit with 1 for these, not only for errors
+    /// Exit with 1 for these, too, and not only for errors
     #[arg(long, value_name = "SEVERITY")]
     deny: Option<Deny>,
 }
@@ -167,9 +165,10 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
 fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>, Failure> {
     let mut options = check::Options::default();
     options.coverage = arguments.coverage;
-    options.monotone.clone_from(&arguments.monotone);
+    options.monotone = arguments.claims.monotone()?;
     flagred_authoring::examine(source, &options).map_err(|finding| {
-        Failure::usage(format!("--monotone: {}", finding.message)).help_if(finding.help)
+        Failure::usage(format!("`--rising` or `--falling`: {}", finding.message))
+            .help_if(finding.help)
     })
 }
 

@@ -14,8 +14,8 @@ pub(crate) struct Arguments {
     #[arg(value_name = "LOG")]
     log: PathBuf,
 
-    /// The CSV file to write; `-` is standard output
-    #[arg(short, long, value_name = "FILE", value_parser = output::csv_path)]
+    /// The file to write; `-` is standard output
+    #[arg(short, long, value_name = "OUT.csv", value_parser = output::csv_path)]
     output: PathBuf,
 
     #[command(flatten)]

@@ -21,22 +21,22 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, a built-in one's name, or `-` for standard input
-    #[arg(value_name = "MODEL")]
+    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, the name of a built-in one, or `-` for standard input
+    #[arg(value_name = "RULES")]
     model: PathBuf,
     /// A value for each input: `margin=0.07`
-    #[arg(required_unless_present = "csv", value_name = "INPUT=VALUE")]
+    #[arg(required_unless_present = "rows", value_name = "INPUT=VALUE")]
     inputs: Vec<String>,
-    /// Explain each row of this table: it is printed with the value, the dominant rule and the shares of the rules for each output
-    #[arg(long, value_name = "POINTS.csv", conflicts_with_all = ["inputs", "json", "svg"])]
-    csv: Option<PathBuf>,
+    /// Explain each row of this table: print it with the value, the dominant rule and the shares of the rules for each output
+    #[arg(long, alias = "csv", value_name = "POINTS.csv", conflicts_with_all = ["inputs", "json", "svg"])]
+    rows: Option<PathBuf>,
     /// The file to write [default: standard output]
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", value_parser = output::text_path)]
     output: Option<PathBuf>,
     /// Print a JSON document instead of text
     #[arg(long)]
     json: bool,
-    /// Write an SVG picture of terms, rules and results to this file instead; `-` is standard output
+    /// Write an SVG picture of terms, rules and results to this file instead of text; `-` is standard output
     #[arg(long, value_name = "FILE", conflicts_with_all = ["json", "output"], value_parser = output::svg_path)]
     svg: Option<PathBuf>,
     #[command(flatten)]
@@ -81,12 +81,12 @@ fn number_advice(text: &str) -> Option<String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut files = Files::reading([&arguments.model].into_iter().chain(&arguments.csv))?;
+    let mut files = Files::reading([&arguments.model].into_iter().chain(&arguments.rows))?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let output = files.optional(arguments.output.as_ref())?;
     let engine = rule_set::load(&arguments.model)?;
     let model = engine.model();
-    if let Some(points) = &arguments.csv {
+    if let Some(points) = &arguments.rows {
         print(
             output.as_ref(),
             &table::explained(&engine, points, &arguments.format)?,

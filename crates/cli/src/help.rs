@@ -34,7 +34,7 @@ Examples:
 pub(crate) const CHECK: &str = "\
 Examples:
   flagred check my-rules.yaml
-  flagred check my-rules.yaml --monotone temperature:increasing
+  flagred check my-rules.yaml --rising temperature   the output must not fall
   flagred check --deny warnings rules/*.yaml
   flagred check my-profile.yaml                  a profile with its rule set
   flagred check --format json my-rules.yaml
@@ -51,7 +51,7 @@ pub(crate) const DATASET: &str = "\
 Examples:
   flagred dataset *.bin --profile flagred        a row for each flight
   flagred dataset *.bin --window 10              a row for every 10 seconds
-  flagred dataset *.bin --profile flagred --ahead 5 --every 0.25
+  flagred dataset *.bin --profile flagred --horizon 5 --every 0.25
   flagred dataset *.bin --output rows.csv";
 
 pub(crate) const EVAL: &str = "\
@@ -76,7 +76,7 @@ Examples:
   flagred explain my-rules.yaml temperature=24 humidity=70
   flagred explain my-rules.yaml temperature=24 humidity=70 --svg explanation.svg
   flagred explain --json my-rules.yaml temperature=24 humidity=70
-  flagred explain my-rules.yaml --csv points.csv -o reasons.csv     the dominant rule and the shares, for each row";
+  flagred explain my-rules.yaml --rows points.csv -o reasons.csv     the dominant rule and the shares, for each row";
 
 pub(crate) const EXPORT: &str = "\
 Examples:
@@ -85,8 +85,8 @@ Examples:
   flagred export --c my-profile.yaml
   flagred export --fis my-rules.yaml --output my-rules.fis
 
-`--fis`, `--fll`, `--fcl` and `--fml` write a rule set for MATLAB, fuzzylite, jFuzzyLogic and JFML. What such a file
-cannot say is an error; with `--lossy` it is left out with a warning, except a term that rules need.";
+`--fis`, `--fll`, `--fcl` and `--fml` write a rule set for MATLAB, fuzzylite, jFuzzyLogic and JFML. What the
+format cannot express is an error; `--lossy` drops it with a warning, except for terms that rules need.";
 
 pub(crate) const IMPORT: &str = "\
 Examples:
@@ -98,7 +98,7 @@ Commands that take a rule set also take such files as they are: `flagred check t
 pub(crate) const FMT: &str = "\
 Examples:
   flagred fmt my-rules.yaml
-  flagred fmt --check rules/*.yaml               in a test: 1 where a layout differs";
+  flagred fmt --check rules/*.yaml               in a test: exit code 1 if a layout differs";
 
 pub(crate) const LSP: &str = "\
 Examples:
@@ -121,7 +121,7 @@ Examples:
   flagred identify cars.csv --target mpg --output cars.yaml
   flagred identify cars.csv --target mpg --input weight --input year --output cars.yaml
   flagred identify cars.csv --target mpg --clusters --lines --output cars.yaml
-  flagred tune cars.yaml cars.csv --round 3 --output tuned.yaml     its numbers";
+  flagred tune cars.yaml cars.csv --round 3 --output tuned.yaml     fit its numbers";
 
 pub(crate) const LEARN: &str = "\
 Examples:
@@ -139,7 +139,7 @@ Examples:
   flagred tune my-rules.yaml rows.csv --round 2 --svg moved.svg --output tuned.yaml
   flagred tune my-rules.yaml rows.csv --only heat --fix heat.hot --rising heat --output tuned.yaml
   flagred tune my-rules.yaml rows.csv --loss ranking --column risk=failed --group-by vehicle --rule-weights --output tuned.yaml
-Ctrl-C ends the search; the best rule set so far is written.";
+Ctrl-C ends the search and writes the best rule set so far.";
 
 pub(crate) const SIMPLIFY: &str = "\
 Examples:
@@ -157,7 +157,7 @@ Examples:
   flagred map my-profile.yaml                    interpolated as the profile says
   flagred map my-rules.yaml --values             numbers, a table for each slice
   flagred map my-rules.yaml --csv -o my-rules.map.csv
-  flagred map my-rules.yaml --check my-rules.map.csv     in a test: 1 where an output differs
+  flagred map my-rules.yaml --check my-rules.map.csv     in a test: exit code 1 if an output differs
 
 docs/ci.md shows how to use the last two in CI.";
 
@@ -190,14 +190,14 @@ Examples:
   flagred completions zsh
   flagred completions fish
 
-Write the output to ~/.local/share/bash-completion/completions/flagred for bash, to
-~/.config/fish/completions/flagred.fish for fish, to _flagred in a folder of $fpath for zsh.";
+Bash reads completions from ~/.local/share/bash-completion/completions/flagred, fish from
+~/.config/fish/completions/flagred.fish, and zsh from a file _flagred in a folder of $fpath.";
 
 pub(crate) const MAN: &str = "\
 Examples:
   flagred man
   flagred man assess
-  flagred man --all man1";
+  flagred man --folder man1";
 
 pub(crate) const WATCH: &str = "\
 Examples:

@@ -7,24 +7,24 @@ use flagred_interchange::{Format, Losses};
 use crate::{
     diagnostics::{is_meant_as_rules, read_text, refuse, show},
     failure::{Exit, Failure},
-    output::{Files, Replace},
+    output::{self, Files, Replace},
 };
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Rule set in FIS, FLL, FCL or FML, told by its content; `-` is standard input
+    /// Rule set in FIS, FLL, FCL or FML, recognised by its content; `-` is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// The file to write; `-` is standard output
-    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    /// The file to write [default: standard output]
+    #[arg(short, long, value_name = "OUT.yaml", default_value = "-", hide_default_value = true, value_parser = output::rules_path)]
     output: PathBuf,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
-    /// The function block to read of an FCL that has several
+    /// The function block to read from an FCL file with several
     #[arg(long, value_name = "NAME")]
     block: Option<String>,
-    /// Leave out what a rule set cannot say: its values may be others
+    /// Drop what a rule set cannot express; results may differ
     #[arg(long)]
     lossy: bool,
 }

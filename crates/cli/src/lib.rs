@@ -54,8 +54,8 @@ use failure::{Exit, Failure};
 
 /// Estimates from its motor commands the risk that a multirotor loses control; checks, explains and learns fuzzy rule sets.
 ///
-/// Exit codes: 0 no findings, 1 findings, 2 wrong usage or an output that cannot be written, 3 no answer: the input cannot
-/// be read or is not of a multirotor.
+/// Exit codes: 0 done; 1 done, with findings (the help of a command names them); 2 wrong usage, or an output cannot be written;
+/// 3 no answer: the input cannot be read or used.
 #[derive(Parser)]
 #[command(name = "flagred", version, max_term_width = 100, after_help = help::FLAGRED)]
 struct Arguments {
@@ -83,7 +83,7 @@ enum Command {
     /// Print a built-in profile or rule set with its comments
     #[command(after_help = help::SHOW)]
     Show(show::Arguments),
-    /// Find errors, gaps and conflicts in a rule set, and whether a profile fits its rule set
+    /// Find errors, gaps and conflicts in rule sets and profiles
     #[command(after_help = help::CHECK)]
     Check(check::Arguments),
     /// Explain the outputs of a rule set at a point: degrees, rules, result, what would change it
@@ -107,7 +107,7 @@ enum Command {
     /// Draw the terms of every variable of a rule set
     #[command(after_help = help::PLOT)]
     Plot(plot::Arguments),
-    /// Make a table of flights for `learn`: inputs, attitude error and risk of each
+    /// Make a table of flights for `learn`: their inputs, attitude errors and risks
     #[command(after_help = help::DATASET)]
     Dataset(dataset::Arguments),
     /// Find inputs, partitions and rules for a column of a table
@@ -128,7 +128,7 @@ enum Command {
     /// The earlier name of `validate`
     #[command(after_help = help::VALIDATE, hide = true)]
     Evaluate(validate::Arguments),
-    /// Read a rule set of another program (FIS, FLL, FCL, FML) and write it in YAML
+    /// Convert a rule set of another program (FIS, FLL, FCL, FML) to YAML
     #[command(after_help = help::IMPORT)]
     Import(import::Arguments),
     /// Export a profile as code for firmware, or a rule set for another program

@@ -16,7 +16,7 @@ pub(crate) struct Arguments {
     command: Option<String>,
     /// Write all pages to this folder instead
     #[arg(long, value_name = "FOLDER", conflicts_with = "command")]
-    all: Option<PathBuf>,
+    folder: Option<PathBuf>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let commands = flagred.get_subcommands();
         commands.filter(|command| command.get_name() != "help" && !command.is_hide_set())
     };
-    if let Some(folder) = &arguments.all {
+    if let Some(folder) = &arguments.folder {
         fs::create_dir_all(folder).map_err(|error| {
             Failure::usage(format!("`{}` cannot be made: {error}", folder.display()))
         })?;

@@ -8,7 +8,7 @@ use fuzzy::drawing::visible;
 use crate::{
     built_in,
     failure::{Exit, Failure},
-    output::{Files, Replace, Stdout},
+    output::{self, Files, Replace, Stdout},
 };
 
 #[derive(clap::Args)]
@@ -16,8 +16,8 @@ pub(crate) struct Arguments {
     /// The name of the rule set or profile, and of the file NAME.yaml
     #[arg(value_name = "NAME", value_parser = name)]
     name: String,
-    /// The file to write [default: NAME.yaml]; `-` is standard output
-    #[arg(long, short, value_name = "FILE")]
+    /// The file to write; `-` is standard output [default: NAME.yaml]
+    #[arg(long, short, value_name = "OUT.yaml", value_parser = output::rules_path)]
     output: Option<PathBuf>,
     /// Write a profile: a copy of this built-in one with its comments
     #[arg(long, value_name = "BUILT-IN", value_parser = built_in::names(), conflicts_with = "from")]

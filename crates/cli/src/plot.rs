@@ -16,10 +16,10 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, a built-in one's name, or `-` for standard input
-    #[arg(value_name = "MODEL")]
+    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, the name of a built-in one, or `-` for standard input
+    #[arg(value_name = "RULES")]
     model: PathBuf,
-    /// Write an SVG picture to this file instead; `-` is standard output
+    /// Write an SVG picture to this file instead of text; `-` is standard output
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 }

@@ -19,12 +19,12 @@ use crate::{
 /// The arguments of a command that makes a rule set of another one.
 #[derive(clap::Args)]
 pub(crate) struct Rewrite {
-    /// The rule set to begin with: a file or a built-in one's name
-    #[arg(value_name = "MODEL")]
+    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, the name of a built-in one, or `-` for standard input
+    #[arg(value_name = "RULES")]
     pub(crate) model: PathBuf,
 
-    /// The file for the new rule set; `-` is standard output
-    #[arg(short, long, value_name = "OUT.yaml")]
+    /// The file to write; `-` is standard output
+    #[arg(short, long, value_name = "OUT.yaml", value_parser = output::rules_path)]
     pub(crate) output: PathBuf,
 
     /// Replace the file if it exists
@@ -49,13 +49,8 @@ pub(crate) struct FromRows {
     #[arg(required = true, value_name = "DATA.csv")]
     pub(crate) data: Vec<PathBuf>,
 
-    /// The output must not fall when this input rises
-    #[arg(long, value_name = "INPUT")]
-    rising: Vec<String>,
-
-    /// The output must not rise when this input rises
-    #[arg(long, value_name = "INPUT")]
-    falling: Vec<String>,
+    #[command(flatten)]
+    pub(crate) claims: Claims,
 
     /// The column with the weights of the rows
     #[arg(long, value_name = "COLUMN")]
@@ -87,20 +82,68 @@ impl FromRows {
         let output = files.output(output, Replace::forced(*force))?;
         Ok((files, output))
     }
+}
 
-    /// What `--rising` and `--falling` claim.
-    pub(crate) fn claims(&self) -> Vec<Monotone> {
-        let claim = |input: &String, direction| Monotone {
-            input: input.clone(),
-            direction,
-            output: None,
-        };
+/// Claims about an output.
+#[derive(clap::Args)]
+pub(crate) struct Claims {
+    /// The output must not fall when this input rises; `INPUT:OUTPUT` for one of several outputs; may be repeated
+    #[arg(long, value_name = "INPUT")]
+    rising: Vec<String>,
+
+    /// The output must not rise when this input rises; `INPUT:OUTPUT` for one of several outputs; may be repeated
+    #[arg(long, value_name = "INPUT")]
+    falling: Vec<String>,
+}
+
+impl Claims {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rising.is_empty() && self.falling.is_empty()
+    }
+
+    /// The claims, those about rising inputs first.
+    ///
+    /// # Errors
+    ///
+    /// The same claim is made in both directions.
+    pub(crate) fn monotone(&self) -> Result<Vec<Monotone>, Failure> {
+        if let Some(both) = self
+            .rising
+            .iter()
+            .find(|claim| self.falling.contains(claim))
+        {
+            let message = format!("`{both}` is given with `--rising` and with `--falling`");
+            return Err(Failure::usage(message).help("keep the direction that the output has"));
+        }
         let rising = self.rising.iter();
-        let rising = rising.map(|input| claim(input, Direction::Increasing));
+        let rising = rising.map(|claim| Monotone::new(claim, Direction::Increasing));
         let falling = self.falling.iter();
-        rising
-            .chain(falling.map(|input| claim(input, Direction::Decreasing)))
-            .collect()
+        Ok(rising
+            .chain(falling.map(|claim| Monotone::new(claim, Direction::Decreasing)))
+            .collect())
+    }
+
+    /// The claims about the only output that is learned.
+    ///
+    /// # Errors
+    ///
+    /// As [`monotone`](Self::monotone), or a claim names another output.
+    pub(crate) fn about(&self, output: &str) -> Result<Vec<Monotone>, Failure> {
+        let mut claims = self.monotone()?;
+        for claim in &mut claims {
+            match claim.output.replace(output.to_owned()) {
+                Some(other) if other != output => {
+                    let message = format!(
+                        "`{other}` is not learned: the claim about `{}`",
+                        claim.input
+                    );
+                    return Err(Failure::usage(message)
+                        .help(format!("name `{output}`, or the input alone")));
+                }
+                _ => {}
+            }
+        }
+        Ok(claims)
     }
 }
 

@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     rewrite: rows::Rewrite,
 
-    /// Tables with a column for each input: rows at which the outputs are compared, too
+    /// Tables with a column for each input: the outputs are also compared at their rows
     #[arg(value_name = "DATA.csv")]
     data: Vec<PathBuf>,
 

@@ -63,15 +63,15 @@ impl Reader {
 /// How a table is read.
 #[derive(clap::Args)]
 pub(crate) struct Format {
-    /// Read a variable from a column of another name: `margin=margin_mean`
+    /// Read a variable from a column of another name: `margin=margin_mean`; may be repeated
     #[arg(long, value_name = "NAME=COLUMN", value_parser = pair)]
     column: Vec<(String, String)>,
 
-    /// The character between cells: `;`, or `tab`
+    /// The character between cells: `;`, `tab`
     #[arg(long, value_name = "CHARACTER", default_value = ",", value_parser = delimiter)]
     pub(crate) delimiter: u8,
 
-    /// Leave out rows that cannot be read
+    /// Skip rows that cannot be read
     #[arg(long)]
     pub(crate) skip_bad_rows: bool,
 }

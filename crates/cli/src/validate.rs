@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
     flights: Vec<PathBuf>,
 
-    /// Evaluate a table with a row for each flight instead of logs, as `flagred dataset --profile NAME` writes it
+    /// Validate with a table with a row for each flight instead of logs, as `flagred dataset --profile NAME` writes it
     #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
     rows: Option<PathBuf>,
 
@@ -33,14 +33,14 @@ pub(crate) struct Arguments {
     profiles: Vec<String>,
 
     /// How many seconds ahead the risk should predict
-    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = horizon)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = horizon, conflicts_with = "rows")]
     horizon: f64,
 
     /// Print a JSON document instead of text
     #[arg(long)]
     json: bool,
 
-    /// Write an SVG picture of the ROC curves and the reliability to this file; `-` is standard output
+    /// Also write an SVG picture of the ROC curves and the reliability to this file
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 }

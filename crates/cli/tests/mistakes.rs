@@ -111,7 +111,7 @@ fn options_mean_the_same_everywhere() {
         flagred(folder.path(), &words)
     };
     // An option with a value does not take the file behind it.
-    let (code, _, errors) = run("check --monotone temperature:increasing fan.yaml");
+    let (code, _, errors) = run("check --rising temperature fan.yaml");
     assert_eq!(code, Some(0), "{errors}");
     // A rule set that exists is kept.
     let (code, fis, _) = run("export --fis fan.yaml");

@@ -46,10 +46,10 @@ fn check_holds_outputs_against_what_their_author_says() {
         "check",
         "flagred-paper.yaml",
         "--json",
-        "--monotone",
-        "spread:increasing",
-        "--monotone",
-        "margin:decreasing",
+        "--rising",
+        "spread",
+        "--falling",
+        "margin",
     ];
     let (output, text) = flagred(&claims, "");
     assert_eq!(output.status.code(), Some(0));
@@ -66,15 +66,7 @@ fn check_holds_outputs_against_what_their_author_says() {
     assert_eq!(box_["sides"][0]["high"], 0.15);
     assert_eq!(box_["sides"][1]["high"], 0.05);
 
-    let (output, _) = flagred(
-        &[
-            "check",
-            "flagred-paper.yaml",
-            "--monotone",
-            "wind:increasing",
-        ],
-        "",
-    );
+    let (output, _) = flagred(&["check", "flagred-paper.yaml", "--rising", "wind"], "");
     assert_eq!(output.status.code(), Some(2));
     assert!(errors(&output).contains("there are `margin` and `spread`"));
 }

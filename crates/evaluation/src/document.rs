@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// The version of the document's layout; it grows when a name changes its meaning or goes.
-const SCHEMA: &str = "flagred.evaluate/1";
+const SCHEMA: &str = "flagred.validate/1";
 
 /// The document of an evaluation: what `flagred validate --json` prints.
 #[derive(Serialize)]

@@ -282,7 +282,7 @@ fn is_linear(term: &Term) -> bool {
 
 /// What of the membership functions of a variable may move.
 fn terms(variable: &Variable, settings: &Settings, moves: &dyn Fn(&Term) -> bool) -> Movable {
-    let apart = settings.least_distance * (variable.high - variable.low);
+    let apart = settings.min_distance * (variable.high - variable.low);
     if let Some(peaks) = variable.partition_peaks() {
         let fixed = variable.terms.iter().map(|term| !moves(term));
         let positions: Vec<(f64, bool)> = peaks.into_iter().zip(fixed).collect();

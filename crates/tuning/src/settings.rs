@@ -37,7 +37,7 @@ pub struct Settings {
     pub weights: bool,
     /// The least distance between the peaks of neighbouring terms, as a share of the range. Peaks that are closer stay as
     /// close as they are.
-    pub least_distance: f64,
+    pub min_distance: f64,
     /// What the output must do when an input rises. A step after which [`fuzzy::check::counterexamples`] finds that it does
     /// not is not taken.
     pub monotone: Vec<Monotone>,
@@ -63,7 +63,7 @@ impl Default for Settings {
             only: Vec::new(),
             fix: Vec::new(),
             weights: false,
-            least_distance: 0.01,
+            min_distance: 0.01,
             monotone: Vec::new(),
             beyond_range: false,
             digits: Some(3),

@@ -107,7 +107,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         .get("output")
         .and_then(|node| node.words("the output", found))
         .map_or_else(|| "risk".into(), |words| words.text.clone());
-    let window_s = number(&fields, "window_s", WINDOW_S, Least::Above0, found);
+    let window_s = number(&fields, "window_s", WINDOW_S, Bounds::Above0, found);
     let inputs = inputs(&fields, window_s, found);
     let elevated_risk = elevated_risk(&fields, AccumulatorSettings::default(), found);
     let verdict = verdict(&fields, found);
@@ -150,19 +150,19 @@ fn sampling(fields: &Fields, found: &mut Found) -> Sampling {
         min_samples: min_samples.map_or(default.min_samples, |n| {
             u32::try_from(n).unwrap_or(u32::MAX)
         }),
-        warm_up_s: number(fields, "warm_up_s", default.warm_up_s, Least::From0, found),
+        warm_up_s: number(fields, "warm_up_s", default.warm_up_s, Bounds::From0, found),
         longest_gap_s: number(
             fields,
             "longest_gap_s",
             default.longest_gap_s,
-            Least::Above0,
+            Bounds::Above0,
             found,
         ),
         take_off_s: number(
             fields,
             "take_off_s",
             default.take_off_s,
-            Least::From0,
+            Bounds::From0,
             found,
         ),
     }
@@ -178,7 +178,7 @@ fn gap(fields: &Fields, found: &mut Found) -> GapSettings {
     };
     gap.coverage_below = fields
         .get("coverage_below")
-        .map(|_| number(&fields, "coverage_below", 0.0, Least::From0, found));
+        .map(|_| number(&fields, "coverage_below", 0.0, Bounds::From0, found));
     if let Some(method) = fields.get("method").and_then(|node| method(node, found)) {
         gap.method = method;
     }
@@ -202,7 +202,7 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
         .and_then(|node| node.whole("`neighbours`", 1, found));
     Some(GapMethod::InverseDistance {
         neighbours: neighbours.map_or(3, |n| usize::try_from(n).unwrap_or(usize::MAX)),
-        power: number(&fields, "power", 2.0, Least::Above0, found),
+        power: number(&fields, "power", 2.0, Bounds::Above0, found),
     })
 }
 
@@ -247,21 +247,21 @@ fn elevated_risk(
         return default;
     };
     let settings = AccumulatorSettings {
-        window_s: number(&fields, "window_s", default.window_s, Least::Above0, found),
-        high_pct: number(&fields, "high", default.high_pct, Least::From0, found),
-        low_pct: number(&fields, "low", default.low_pct, Least::From0, found),
+        window_s: number(&fields, "window_s", default.window_s, Bounds::Above0, found),
+        high_pct: number(&fields, "high", default.high_pct, Bounds::From0, found),
+        low_pct: number(&fields, "low", default.low_pct, Bounds::From0, found),
         rise_pct_per_s: number(
             &fields,
             "rise_per_s",
             default.rise_pct_per_s,
-            Least::From0,
+            Bounds::From0,
             found,
         ),
         fall_pct_per_s: number(
             &fields,
             "fall_per_s",
             default.fall_pct_per_s,
-            Least::From0,
+            Bounds::From0,
             found,
         ),
     };
@@ -280,24 +280,30 @@ fn elevated_risk(
     settings
 }
 
-/// The least that a number may be.
+/// The values that a number may have.
 #[derive(Clone, Copy)]
-enum Least {
+enum Bounds {
     From0,
     Above0,
+    /// A share: from 0 to below 1.
+    Below1,
 }
 
 /// A number that may be left out.
-fn number(fields: &Fields, key: &str, default: f64, least: Least, found: &mut Found) -> f64 {
+fn number(fields: &Fields, key: &str, default: f64, bounds: Bounds, found: &mut Found) -> f64 {
     let Some(node) = fields.get(key) else {
         return default;
     };
     let Some(value) = node.finite(&format!("`{key}`"), found) else {
         return default;
     };
-    let (fits, expected) = match least {
-        Least::From0 => (value >= 0.0, "not below 0"),
-        Least::Above0 => (value > 0.0, "above 0"),
+    let (fits, expected) = match bounds {
+        Bounds::From0 => (value >= 0.0, "not below 0"),
+        Bounds::Above0 => (value > 0.0, "above 0"),
+        Bounds::Below1 => (
+            (0.0..1.0).contains(&value),
+            "from 0 to below 1: the commands of motors are shares of their range",
+        ),
     };
     if !fits {
         let message = format!("`{key}` is {value}");

@@ -39,6 +39,13 @@ impl Level {
         let strict = false;
         Level { value, strict }
     }
+
+    fn is_reached_by(self, degree: f64) -> bool {
+        match self.strict {
+            true => degree > self.value,
+            false => degree >= self.value,
+        }
+    }
 }
 
 /// Which values an analysis looks at.
@@ -296,12 +303,20 @@ impl Reader<'_> {
     }
 
     fn literal(&mut self, proposition: &Proposition, level: Level) -> Formula {
+        if proposition.term.is_none() {
+            // `IS any`: the hedges decide, and not the variable.
+            let hedges = proposition.hedges.iter().rev();
+            return match level.is_reached_by(hedges.fold(1.0, |degree, hedge| hedge.of(degree))) {
+                true => Formula::Always,
+                false => Formula::Not(Box::new(Formula::Always)),
+            };
+        }
         let input = self.inputs.get(proposition.variable.text.as_str()).copied();
         let term = input.and_then(|i| self.model.inputs.get(i)).and_then(|v| {
             let name = proposition.term.as_ref()?;
             v.terms.iter().position(|term| term.name == name.text)
         });
-        // `IS any` has no term and is always true. Unknown names are reported elsewhere.
+        // Unknown names are reported elsewhere.
         let (Some(input), Some(term)) = (input, term) else {
             return Formula::Always;
         };
@@ -326,12 +341,10 @@ impl Key {
         let membership = input.terms.get(self.term).map_or(0.0, |t| t.membership(x));
         let hedges = self.hedges.iter().rev();
         let hedges = hedges.filter_map(|&h| Hedge::ALL.into_iter().find(|hedge| *hedge as u8 == h));
-        let degree = hedges.fold(membership, |degree, hedge| hedge.of(degree));
-        let value = f64::from_bits(self.value);
-        if self.strict {
-            degree > value
-        } else {
-            degree >= value
-        }
+        let level = Level {
+            value: f64::from_bits(self.value),
+            strict: self.strict,
+        };
+        level.is_reached_by(hedges.fold(membership, |degree, hedge| hedge.of(degree)))
     }
 }

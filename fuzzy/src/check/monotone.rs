@@ -1,7 +1,7 @@
 //! Whether outputs are monotone as claimed.
 
 use alloc::{string::String, vec::Vec};
-use core::{fmt, str::FromStr};
+use core::fmt;
 
 use super::{
     findings::coordinates,
@@ -44,27 +44,19 @@ impl Direction {
     }
 }
 
-impl FromStr for Monotone {
-    type Err = String;
-
-    /// Reads `heat:increasing`, or `heat:increasing:speed` for one output of several.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let mut parts = text.split(':');
-        let (input, direction) = (parts.next().unwrap_or(""), parts.next().unwrap_or(""));
-        let output = parts.next().map(String::from);
-        let direction = match direction {
-            "increasing" => Direction::Increasing,
-            "decreasing" => Direction::Decreasing,
-            _ => return Err("write `input:increasing`, or `input:decreasing:output`".into()),
+impl Monotone {
+    /// A claim about every output, from the name of an input (`heat`), or about one output (`heat:speed`).
+    #[must_use]
+    pub fn new(claim: &str, direction: Direction) -> Monotone {
+        let (input, output) = match claim.split_once(':') {
+            Some((input, output)) => (input, Some(output)),
+            None => (claim, None),
         };
-        if input.is_empty() || parts.next().is_some() {
-            return Err("write `input:increasing`, or `input:decreasing:output`".into());
-        }
-        Ok(Monotone {
-            input: input.into(),
+        Monotone {
+            input: input.trim().into(),
             direction,
-            output,
-        })
+            output: output.map(|output| output.trim().into()),
+        }
     }
 }
 

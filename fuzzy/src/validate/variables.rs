@@ -123,6 +123,20 @@ impl Validator<'_> {
                 self.error("wrong-term", here, message, &help);
             }
         }
+        self.has_a_value(what, variable, formula, spans);
+    }
+
+    /// An error if a formula has no finite value at any of 101 points of the range, such as `1 / 0`.
+    fn has_a_value(&mut self, what: &str, read: &Variable, formula: &Formula, spans: &TermSpans) {
+        let width = read.high - read.low;
+        let mut points = (0..=100).map(|i| read.low + width * f64::from(i) / 100.0);
+        let other = |name: &str| name != read.name;
+        if formula.variables().any(other) || points.any(|x| formula.evaluate(|_| x).is_finite()) {
+            return;
+        }
+        let message = format!("the formula of {what} has no finite value");
+        let help = "division by 0, and roots and logarithms of negative numbers, have no value";
+        self.error("wrong-parameter", &spans.name, message, help);
     }
 
     pub(super) fn output(&mut self, output: &Output, spans: &VariableSpans) {
@@ -190,6 +204,7 @@ impl Validator<'_> {
                     for (i, name) in formula.variables().enumerate() {
                         self.is_read(name, spans.parameters.get(i).unwrap_or(here));
                     }
+                    self.has_a_value(&what, &output.variable, formula, spans);
                 }
                 MembershipFunction::Function { formula } if !tsukamoto => {
                     self.own_formula(&what, &output.variable, formula, spans);

@@ -1,4 +1,4 @@
-//! Rows of flights, as `flagred dataset --ahead` writes them.
+//! Rows of flights, as `flagred dataset --horizon` writes them.
 
 use std::{collections::HashMap, path::Path};
 

@@ -61,10 +61,10 @@ def identify(
     ignore: Iterable[str] = (),
     antecedents: Literal["partitions", "clusters"] = "partitions",
     consequents: Literal["constants", "lines"] = "constants",
-    most_inputs: int = 4,
-    most_terms: int = 5,
-    most_rules: int = 25,
-    least_gain: float = 0.02,
+    max_inputs: int = 4,
+    max_terms: int = 5,
+    max_rules: int = 25,
+    min_gain: float = 0.02,
     min_support: int = 1,
     group_by: str | None = None,
     folds: int = 5,
@@ -90,9 +90,9 @@ def identify(
         A rule for each combination of the terms of ``partitions``, or for each of the ``clusters`` of rows.
     consequents
         What a rule concludes: ``constants``, or ``lines`` over the inputs.
-    most_inputs, most_terms, most_rules
+    max_inputs, max_terms, max_rules
         The most inputs, terms of an input (2 to 5) and rules.
-    least_gain
+    min_gain
         By what share a step must make the error on rows left out smaller.
     min_support
         The fewest rows that make a rule.
@@ -145,10 +145,10 @@ def identify(
         "antecedents": antecedents,
         "consequents": consequents,
         "inputs": wanted,
-        "most_inputs": most_inputs,
-        "most_terms": most_terms,
-        "most_rules": most_rules,
-        "least_gain": least_gain,
+        "max_inputs": max_inputs,
+        "max_terms": max_terms,
+        "max_rules": max_rules,
+        "min_gain": min_gain,
         "min_support": min_support,
         "folds": folds,
         "seed": seed,

@@ -211,7 +211,7 @@ def tune(
     only: Iterable[str] = (),
     fix: Iterable[str] = (),
     weights: bool = False,
-    least_distance: float = 0.01,
+    min_distance: float = 0.01,
     rising: Iterable[str] = (),
     falling: Iterable[str] = (),
     beyond_range: bool = False,
@@ -241,7 +241,7 @@ def tune(
         The variables, or terms as ``variable.term``, that alone may move, or that stay.
     weights
         Whether the weights of the rules may move.
-    least_distance
+    min_distance
         The least distance between neighbouring peaks, as a share of the range.
     beyond_range
         Whether constants may leave the range of the output, by its width at most.
@@ -288,7 +288,7 @@ def tune(
         "only": list(only),
         "fix": list(fix),
         "weights": weights,
-        "least_distance": least_distance,
+        "min_distance": min_distance,
         "rising": list(rising),
         "falling": list(falling),
         "beyond_range": beyond_range,

@@ -30,15 +30,15 @@ pub(crate) struct Arguments {
     profile: Option<String>,
 
     /// Make a row for each period of this length instead of each time in the air
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, conflicts_with = "ahead")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, conflicts_with = "horizon")]
     window: Option<f64>,
 
-    /// Make rows that look ahead: the inputs of the profile at a time, and the largest attitude error in the seconds after it
+    /// Make rows that look this far ahead: the inputs of the profile at a time, and the largest attitude error in the seconds after it
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
-    ahead: Option<f64>,
+    horizon: Option<f64>,
 
-    /// The time between the rows of `--ahead`
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value_t = 0.5, requires = "ahead")]
+    /// The time between the rows of `--horizon`
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value_t = 0.5, requires = "horizon")]
     every: f64,
 
     /// Attitude error that counts as a risk of 100 %, in degrees
@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     critical: f64,
 
     /// The file to write [default: standard output]
-    #[arg(short, long, value_name = "FILE", value_parser = output::csv_path)]
+    #[arg(short, long, value_name = "OUT.csv", value_parser = output::csv_path)]
     output: Option<PathBuf>,
 }
 
@@ -104,7 +104,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(name) => profile::read(name)?.0,
         None => profile::read("flagred-paper")?.0,
     };
-    let cut = match (arguments.window, arguments.ahead) {
+    let cut = match (arguments.window, arguments.horizon) {
         (Some(length_s), _) => Cut::Windows { length_s },
         (None, Some(horizon_s)) => Cut::Ahead {
             horizon_s,

@@ -24,16 +24,20 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, or a built-in one's name
-    #[arg(value_name = "MODEL")]
+    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, the name of a built-in one, or `-` for standard input
+    #[arg(value_name = "RULES")]
     model: PathBuf,
 
-    /// A table with a column for each input; other columns are copied. `-` is standard input
-    #[arg(value_name = "POINTS.csv", default_value = "-")]
+    /// A table with a column for each input; other columns are copied [default: standard input]
+    #[arg(
+        value_name = "POINTS.csv",
+        default_value = "-",
+        hide_default_value = true
+    )]
     points: PathBuf,
 
-    /// The file for the table with the outputs; `-` is standard output
-    #[arg(short, long, value_name = "OUT.csv", default_value = "-", value_parser = output::table_path)]
+    /// The file to write: the table with the outputs [default: standard output]
+    #[arg(short, long, value_name = "OUT.csv", default_value = "-", hide_default_value = true, value_parser = output::table_path)]
     output: PathBuf,
 
     /// Suffix of the output columns: `_model`. Needed where a column has an output's name; its measured values are then compared:
@@ -41,7 +45,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SUFFIX", default_value = "")]
     suffix: String,
 
-    /// Add columns that explain the outputs
+    /// Add columns that explain the outputs: several with commas, or the option repeated
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
     with: Vec<With>,
 

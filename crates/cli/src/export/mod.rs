@@ -23,7 +23,7 @@ use fuzzy::drawing::visible;
 use crate::{
     diagnostics::is_meant_as_rules,
     failure::{Exit, Failure},
-    output::{Files, Replace, say},
+    output::{self, Files, Replace, say},
     profile, rule_set,
 };
 
@@ -35,13 +35,13 @@ mod rust;
 #[derive(clap::Args)]
 #[command(group = clap::ArgGroup::new("language").required(true))]
 pub(crate) struct Arguments {
-    /// Write Rust: a profile for the crate `flagred`, a rule set for `flagred-fuzzy`, with `default-features = false`
+    /// Write Rust: a profile for the crate `flagred`, a rule set for `flagred-fuzzy`, both without their default features
     #[arg(long, group = "language")]
     rust: bool,
     /// Write C for `flagred.h` and the library of `flagred-c`
     #[arg(long, group = "language")]
     c: bool,
-    /// Write a Lua script that ArduPilot runs from its card: docs/firmware.md
+    /// Write a Lua script that ArduPilot runs from its memory card (docs/firmware.md)
     #[arg(long, group = "language")]
     lua: bool,
     /// Write a rule set as FIS, for MATLAB and Octave
@@ -62,12 +62,22 @@ pub(crate) struct Arguments {
     /// Profile (Rust, C, Lua) or rule set (all but Lua): `flagred`, `flagred-battery`, `flagred-paper`, or a file
     #[arg(value_name = "FILE", default_value = profile::DEFAULT)]
     file: String,
-    /// The file to write; `-` is standard output
-    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    /// The file to write [default: standard output]
+    #[arg(
+        short,
+        long,
+        value_name = "FILE",
+        default_value = "-",
+        hide_default_value = true
+    )]
     output: PathBuf,
+    /// Replace a rule set of another program if it exists
+    #[arg(long)]
+    force: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    arguments.check_ending()?;
     if let Some(format) = arguments.format() {
         return to_program(arguments, format);
     }
@@ -107,6 +117,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 impl Arguments {
+    /// Refuses a file whose ending is of another kind: a rule set that stands there by mistake is not replaced.
+    fn check_ending(&self) -> Result<(), Failure> {
+        let (what, endings): (&str, &[&str]) = match self.format() {
+            Some(Format::Fis) => ("FIS", &["fis"]),
+            Some(Format::Fll) => ("FLL", &["fll"]),
+            Some(Format::Fcl) => ("FCL", &["fcl"]),
+            Some(Format::Fml) => ("FML", &["xml", "fml"]),
+            None if self.rust => ("Rust", &["rs"]),
+            None if self.c => ("C", &["h", "c"]),
+            None => ("Lua", &["lua"]),
+        };
+        let text = self.output.to_string_lossy();
+        let checked = output::path_of(&text, &format!("this writes {what}"), endings);
+        checked.map(drop).map_err(|wrong| {
+            Failure::usage(format!("`{text}` has the ending of another format")).help(wrong)
+        })
+    }
+
     /// The format of another program.
     fn format(&self) -> Option<Format> {
         let chosen = [self.fis, self.fll, self.fcl, self.fml];
@@ -123,7 +151,8 @@ fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
     // The name of a built-in profile is that of its rule set, too.
     let source = rule_set::read(path)?;
     let model = rule_set::engine(&source, &arguments.file)?.model();
-    let output = Files::reading([path])?.output(&arguments.output, Replace::Yes)?;
+    let replace = Replace::forced(arguments.force);
+    let output = Files::reading([path])?.output(&arguments.output, replace)?;
     let losses = match arguments.lossy {
         true => Losses::Accept,
         false => Losses::Refuse,

@@ -17,7 +17,7 @@ use fuzzy::diagnostic::suggest;
 
 use crate::{
     failure::{Exit, Failure},
-    output::{Files, Replace, Stdout},
+    output::{self, Files, Replace, Stdout},
     rows,
     table::{Cell, Format, Table},
 };
@@ -32,47 +32,47 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "COLUMN")]
     target: String,
 
-    /// The file for the rule set; `-` is standard output
-    #[arg(short, long, value_name = "OUT.yaml")]
+    /// The file to write; `-` is standard output
+    #[arg(short, long, value_name = "OUT.yaml", value_parser = output::rules_path)]
     output: PathBuf,
 
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
 
-    /// Use this column, and no other than those that are named; without it, those that help are found
-    #[arg(long, value_name = "COLUMN", conflicts_with = "most_inputs")]
+    /// Use only this column as an input; may be repeated [default: the columns that reduce the error]
+    #[arg(long, value_name = "COLUMN", conflicts_with = "max_inputs")]
     input: Vec<String>,
 
-    /// Leave this column out
+    /// Do not use this column; may be repeated
     #[arg(long, value_name = "COLUMN", conflicts_with = "input")]
     ignore: Vec<String>,
 
-    /// The most inputs
+    /// Maximum number of inputs
     #[arg(long, default_value_t = 4, value_name = "COUNT", value_parser = count(1, 20))]
-    most_inputs: u32,
+    max_inputs: u32,
 
-    /// The most terms of an input
+    /// Maximum number of terms of an input
     #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = count(2, MOST_TERMS as i64))]
-    most_terms: u32,
+    max_terms: u32,
 
-    /// The most rules
+    /// Maximum number of rules
     #[arg(long, default_value_t = 25, value_name = "COUNT", value_parser = count(2, 1000))]
-    most_rules: u32,
+    max_rules: u32,
 
-    /// Make a rule of each cluster of rows (subtractive clustering) instead of each combination of terms
-    #[arg(long, conflicts_with = "most_terms")]
+    /// Make one rule per cluster of rows (subtractive clustering) instead of one per combination of terms
+    #[arg(long, conflicts_with = "max_terms")]
     clusters: bool,
 
     /// Use linear consequents instead of constants
     #[arg(long)]
     lines: bool,
 
-    /// Least relative gain in cross-validation error per step
+    /// Minimum relative gain in cross-validation error per step
     #[arg(long, default_value_t = 0.02, value_name = "SHARE", value_parser = rows::share)]
-    least_gain: f64,
+    min_gain: f64,
 
-    /// The fewest rows of a rule
+    /// Minimum number of rows for a rule
     #[arg(long, default_value_t = 1, value_name = "ROWS")]
     min_support: usize,
 
@@ -84,7 +84,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "COLUMN")]
     weight: Option<String>,
 
-    /// Leave out all rows with one value of this column together: `vehicle`
+    /// In cross-validation, leave out all rows with one value of this column together: `vehicle`
     #[arg(long, value_name = "COLUMN")]
     group_by: Option<String>,
 
@@ -187,10 +187,10 @@ fn settings(arguments: &Arguments) -> Identification {
         false => Consequents::Constants,
     };
     settings.inputs = arguments.input.clone();
-    settings.most_inputs = arguments.most_inputs as usize;
-    settings.most_terms = arguments.most_terms as usize;
-    settings.most_rules = arguments.most_rules as usize;
-    settings.least_gain = arguments.least_gain;
+    settings.max_inputs = arguments.max_inputs as usize;
+    settings.max_terms = arguments.max_terms as usize;
+    settings.max_rules = arguments.max_rules as usize;
+    settings.min_gain = arguments.min_gain;
     settings.least_support = arguments.min_support;
     settings.folds = arguments.folds;
     settings.seed = arguments.seed;
@@ -260,7 +260,7 @@ fn failure(arguments: &Arguments, names: &[String], error: &TuneError) -> Failur
     match error {
         TuneError::NoWeight => failure.help("give rows a weight above 0, or leave out `--weight`"),
         TuneError::NoInputHelps => failure
-            .help("give columns that have to do with it, more rows, or a smaller `--least-gain`"),
+            .help("give columns that have to do with it, more rows, or a smaller `--min-gain`"),
         TuneError::TooManyColumns { .. } => failure.help(
             "name those that may be inputs with `--input`, or leave some out with `--ignore`",
         ),

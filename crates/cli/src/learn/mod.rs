@@ -34,11 +34,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value = "strongest", value_name = "HOW")]
     resolve: Resolve,
 
-    /// The fewest rows that make a rule
+    /// Minimum number of rows for a rule
     #[arg(long, default_value_t = 1, value_name = "ROWS")]
     min_support: u64,
 
-    /// The lowest confidence of a rule
+    /// Minimum confidence of a rule
     #[arg(long, default_value_t = 0.0, value_name = "DEGREE")]
     min_degree: f64,
 
@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     complete: bool,
 
-    /// Keep the rules of MODEL, which the learned ones replace otherwise
+    /// Keep the rules of the rule set; otherwise the learned rules replace them
     #[arg(long)]
     keep_rules: bool,
 
@@ -76,7 +76,9 @@ struct Outcome {
     coverage: Option<(f64, f64)>,
     errors: Option<Errors>,
     gaps: Option<GapComparison>,
-    /// Where the output does not go the way that was asked for.
+    /// Claims about the output: `--rising`, `--falling`.
+    claims: Vec<check::Monotone>,
+    /// Counterexamples to the claims.
     counterexamples: Vec<Counterexample>,
 }
 
@@ -91,7 +93,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if !arguments.keep_rules {
         model.rules.clear();
     }
-    let settings = settings(arguments);
+    let learned = whole.measured_output();
+    let learned = learned.and_then(|output| whole.outputs.get(output));
+    let learned = learned.map_or("", |output| output.variable.name.as_str());
+    let claims = arguments.rows.claims.about(learned)?;
+    let settings = settings(arguments, &claims);
     let mut learner = Learner::new(&model, settings.clone()).map_err(wrong)?;
     let data = rows::read(&arguments.rows, whole)?;
     let mut rows = Vec::with_capacity(data.rows.len());
@@ -115,7 +121,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let examined = |error: ExamineError| Failure::unreadable(error.to_string());
     let coverage = coverage(&learned.model, &gap)?;
     let whole = chain.joined(&learned.model);
-    let counterexamples = counterexamples(arguments, &whole)?;
+    let counterexamples = counterexamples(&claims, &whole)?;
     let outcome = Outcome {
         model: whole,
         kept: model.rules.len(),
@@ -134,6 +140,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             false => None,
         },
         learned,
+        claims,
         counterexamples,
     };
     output.write(&report::rule_set(arguments, &outcome, source.text())?)?;
@@ -152,12 +159,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     })
 }
 
-fn settings(arguments: &Arguments) -> Settings {
-    let directed = |claim: check::Monotone| match claim.direction {
-        check::Direction::Increasing => (claim.input, Direction::Rising),
-        check::Direction::Decreasing => (claim.input, Direction::Falling),
+fn settings(arguments: &Arguments, claims: &[check::Monotone]) -> Settings {
+    let directed = |claim: &check::Monotone| match claim.direction {
+        check::Direction::Increasing => (claim.input.clone(), Direction::Rising),
+        check::Direction::Decreasing => (claim.input.clone(), Direction::Falling),
     };
-    let monotone = arguments.rows.claims().into_iter().map(directed).collect();
     let mut settings = Settings::default();
     settings.resolution = match arguments.resolve {
         Resolve::Strongest => Resolution::Strongest,
@@ -167,30 +173,27 @@ fn settings(arguments: &Arguments) -> Settings {
     settings.min_support = arguments.min_support;
     settings.min_degree = arguments.min_degree;
     settings.complete = arguments.complete;
-    settings.monotone = monotone;
+    settings.monotone = claims.iter().map(directed).collect();
     settings
 }
 
-/// Where the learned rules contradict `--rising` and `--falling`, as `flagred check --monotone` finds it.
-fn counterexamples(arguments: &Arguments, model: &Model) -> Result<Vec<Counterexample>, Failure> {
+/// Where the learned rules contradict `--rising` and `--falling`, as `flagred check` finds it.
+fn counterexamples(
+    claims: &[check::Monotone],
+    model: &Model,
+) -> Result<Vec<Counterexample>, Failure> {
     let engine = Engine::new(model).map_err(unusable)?;
-    let output = model.measured_output();
-    let output = output.and_then(|output| engine.output_names().nth(output));
-    let mut claims = arguments.rows.claims();
-    for claim in &mut claims {
-        claim.output = output.map(Into::into);
-    }
-    check::counterexamples(&engine, &claims).map_err(unusable)
+    check::counterexamples(&engine, claims).map_err(unusable)
 }
 
 /// What would make the output monotone, where that is known: inference by product and sum does not bend monotone rules where
 /// every combination of terms has one.
-fn monotone_help(arguments: &Arguments, outcome: &Outcome) -> Option<&'static str> {
+fn monotone_help(outcome: &Outcome) -> Option<&'static str> {
     let mut model = outcome.model.clone();
     model.operators.and = Conjunction::Product;
     model.operators.implication = Implication::Product;
     model.operators.aggregation = Aggregation::Sum;
-    let holds = counterexamples(arguments, &model).is_ok_and(|found| found.is_empty());
+    let holds = counterexamples(&outcome.claims, &model).is_ok_and(|found| found.is_empty());
     match (holds, outcome.learned.missing) {
         (true, _) => Some(
             "the same rules hold it with `operators: {and: product, implication: product, aggregation: sum}`",

@@ -79,7 +79,7 @@ pub(super) fn words(
     for antecedent in learned.missing_antecedents.iter().take(SHOWN) {
         writeln!(out, "           {}", visible(&antecedent.to_string()))?;
     }
-    if !arguments.rows.claims().is_empty() {
+    if !arguments.rows.claims.is_empty() {
         let found = &outcome.counterexamples;
         let holds = if found.is_empty() { "yes" } else { "no" };
         writeln!(
@@ -90,7 +90,7 @@ pub(super) fn words(
         for found in found {
             writeln!(out, "           {}", visible(&found.to_string()))?;
         }
-        let help = (!found.is_empty()).then(|| super::monotone_help(arguments, outcome));
+        let help = (!found.is_empty()).then(|| super::monotone_help(outcome));
         if let Some(help) = help.flatten() {
             writeln!(out, "           help: {help}")?;
         }
@@ -276,7 +276,7 @@ impl<'a> Document<'a> {
                 count: learned.missing,
                 antecedents: missing.map(ToString::to_string).collect(),
             },
-            monotone: (!arguments.rows.claims().is_empty()).then(|| Monotone {
+            monotone: (!arguments.rows.claims.is_empty()).then(|| Monotone {
                 holds: outcome.counterexamples.is_empty(),
                 moved: learned.moved,
                 counterexamples: &outcome.counterexamples,

@@ -32,17 +32,17 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A rule set, or a profile: its rule set, interpolated as the profile says. A file, a built-in profile's name, or `-` for
-    /// standard input
-    #[arg(value_name = "MODEL")]
+    /// The rule set: a file in YAML, FIS, FLL, FCL or FML, the name of a built-in one, or `-` for standard input; or a profile:
+    /// its rule set, with the interpolation of the profile
+    #[arg(value_name = "RULES")]
     model: PathBuf,
 
     /// Points along each axis [default: 51; fewer with `--csv` and more than two inputs]
     #[arg(long, value_name = "POINTS", value_parser = clap::value_parser!(u16).range(2..=1001))]
     points: Option<u16>,
 
-    /// Hold an input at a value: `battery=0.8`. An input that is neither held nor an axis is held at the middle of its
-    /// range, or at the peak of a term where the output varies more
+    /// Hold an input at a value: `battery=0.8`; may be repeated. An input that is neither held nor an axis is held at the middle
+    /// of its range, or at the peak of a term if the output varies more there
     #[arg(long, value_name = "INPUT=VALUE", value_parser = hold)]
     hold: Vec<(String, f64)>,
 
@@ -55,32 +55,32 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     y: Option<AxisChoice>,
 
-    /// The output to show [default: the last that no other output reads; of a profile, its risk]
+    /// The output to show [default: the last that no other output reads; for a profile, its risk]
     #[arg(long, value_name = "OUTPUT")]
     of: Option<String>,
 
     /// The file to write [default: standard output]
-    #[arg(short, long, value_name = "FILE", value_parser = text_path)]
+    #[arg(short, long, value_name = "FILE", value_parser = output::text_path)]
     output: Option<PathBuf>,
 
-    /// How to interpolate cells where no rule applies [default: none; of a profile, as it says]
+    /// How to interpolate cells where no rule applies [default: none; for a profile, its own]
     #[arg(long, value_enum, value_name = "METHOD")]
     fill: Option<Fill>,
 
-    /// With an interpolation: interpolate cells in which all firing strengths are below this [default: from AND and the
+    /// With an interpolation: interpolate cells in which all firing strengths are below this [default: depends on AND and the
     /// terms; 0.5 for the minimum]
     #[arg(long, value_name = "DEGREE")]
     coverage_below: Option<f64>,
 
-    /// Write an SVG picture to this file; `-` is standard output
+    /// Write an SVG picture to this file instead of text; `-` is standard output
     #[arg(long, value_name = "FILE", value_parser = output::svg_path, conflicts_with = "output")]
     svg: Option<PathBuf>,
 
     /// Draw a surface in three dimensions instead of a flat map, as SVG
-    #[arg(long, requires = "svg")]
+    #[arg(long, requires = "svg", conflicts_with = "csv")]
     surface: bool,
 
-    /// Show in each cell the rule with the largest firing strength instead of the value
+    /// Show the rule with the largest firing strength in each cell instead of the value
     #[arg(long, conflicts_with = "surface")]
     activations: bool,
 
@@ -103,27 +103,13 @@ pub(crate) struct Arguments {
     )]
     sample: Option<u32>,
 
-    /// Compare the outputs with a table that `map --csv` or `eval` wrote before: exit code 1 where a value differs
+    /// Compare the outputs with a table that `map --csv` or `eval` wrote before; exit with 1 if a value differs
     #[arg(
         long,
         value_name = "TABLE.csv",
         conflicts_with_all = ["points", "hold", "x", "y", "of", "output", "svg", "activations", "values", "csv"]
     )]
     check: Option<PathBuf>,
-}
-
-/// A file for a map as text.
-fn text_path(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    let is_svg = path
-        .extension()
-        .is_some_and(|other| other.eq_ignore_ascii_case("svg"));
-    match is_svg {
-        true => Err(format!(
-            "this writes text; for a picture write `--svg {text}`"
-        )),
-        false => Ok(path),
-    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -307,6 +293,10 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
         Some(fill) => fill.method(),
         None => profile.map(|profile| profile.gap.method),
     };
+    if method.is_none() && arguments.coverage_below.is_some() {
+        let message = "`--coverage-below` needs an interpolation, and there is none";
+        return Err(Failure::usage(message).help("choose one with `--fill`"));
+    }
     let settings = |method| {
         let mut settings = GapSettings::default();
         settings.method = method;

@@ -24,6 +24,25 @@ pub(crate) fn svg_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the picture is SVG", &["svg"])
 }
 
+/// A file for a rule set or a profile. A table that stands here by mistake is not replaced.
+pub(crate) fn rules_path(text: &str) -> Result<PathBuf, String> {
+    path_of(text, "the file is YAML", &["yaml", "yml"])
+}
+
+/// A file for text or a table. A rule set that stands here by mistake is not replaced.
+pub(crate) fn text_path(text: &str) -> Result<PathBuf, String> {
+    if has_ending(Path::new(text), &["svg"]) {
+        return Err(format!(
+            "this writes text; for a picture write `--svg {text}`"
+        ));
+    }
+    path_of(
+        text,
+        "this writes text",
+        &["txt", "csv", "tsv", "json", "md", "ansi"],
+    )
+}
+
 /// A file for a report. A log that stands here by mistake is not replaced.
 pub(crate) fn html_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the report is HTML", &["html", "htm"])
@@ -44,16 +63,24 @@ pub(crate) fn table_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the table is CSV", &["csv", "tsv", "txt"])
 }
 
-fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<PathBuf, String> {
+/// A path whose ending is one of these, if it has one.
+///
+/// # Errors
+///
+/// What is written and the path with the first ending.
+pub(crate) fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
-    let fits = |other: &std::ffi::OsStr| extensions.iter().any(|e| other.eq_ignore_ascii_case(e));
-    match (path.extension(), extensions.first()) {
-        (Some(other), Some(first)) if !fits(other) => Err(format!(
-            "{what}; write `{}`",
-            path.with_extension(first).display()
-        )),
+    match extensions.first() {
+        Some(first) if path.extension().is_some() && !has_ending(&path, extensions) => Err(
+            format!("{what}; write `{}`", path.with_extension(first).display()),
+        ),
         _ => Ok(path),
     }
+}
+
+fn has_ending(path: &Path, extensions: &[&str]) -> bool {
+    let ending = path.extension();
+    ending.is_some_and(|ending| extensions.iter().any(|e| ending.eq_ignore_ascii_case(e)))
 }
 
 /// Writes a text to a file, or to standard output; on a terminal in its colours.

@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "file")]
     read_only: bool,
 
-    /// The port on this machine [default: one that is free]
+    /// The port on this machine [default: a free port]
     #[arg(
         long,
         value_name = "NUMBER",
@@ -51,7 +51,7 @@ pub(crate) struct Arguments {
     )]
     port: u16,
 
-    /// Open no browser: the address is printed
+    /// Do not open a browser, only print the address
     #[arg(long)]
     no_browser: bool,
 
@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE", value_parser = output::page_path, conflicts_with_all = ["file", "port", "no_browser"])]
     html: Option<PathBuf>,
 
-    /// The page to take instead of the one in the program
+    /// Serve the page in this file instead of the built-in one
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
 }

@@ -42,11 +42,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value = "squared", value_name = "LOSS")]
     loss: LossName,
 
-    /// Move only this variable, or only this term: `heat`, `heat.warm`
+    /// Move only this variable or term: `heat`, `heat.warm`; may be repeated
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
 
-    /// Leave this variable, or this term, as it is
+    /// Do not move this variable or term; may be repeated
     #[arg(long, value_name = "NAME")]
     fix: Vec<String>,
 
@@ -54,9 +54,9 @@ pub(crate) struct Arguments {
     #[arg(long = "rule-weights")]
     weights: bool,
 
-    /// The least distance between neighbouring peaks, as a share of the range
+    /// Minimum distance between neighbouring peaks, as a share of the range
     #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = rows::share)]
-    least_distance: f64,
+    min_distance: f64,
 
     /// Let constants leave the range of the output, by its width at most
     #[arg(long)]
@@ -70,7 +70,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
     starts: u32,
 
-    /// The most steps per start
+    /// Maximum number of steps per start
     #[arg(long, default_value_t = 100, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     iterations: u32,
 
@@ -78,8 +78,8 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     seed: u64,
 
-    /// Keep the best rule set so far in this file, and begin with it where it exists
-    #[arg(long, value_name = "FILE.yaml")]
+    /// Save the best rule set so far to this file; if the file exists, start from it
+    #[arg(long, value_name = "FILE.yaml", value_parser = output::rules_path)]
     checkpoint: Option<PathBuf>,
 
     /// Number of cross-validation folds
@@ -90,7 +90,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "no_validation")]
     learning_curve: bool,
 
-    /// Draw the variables that moved, before and after, as an SVG picture
+    /// Also write an SVG picture of the variables that moved, before and after, to this file
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 }
@@ -148,10 +148,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let name = arguments.rows.rewrite.model.display().to_string();
     let source = rule_set::read(&arguments.rows.rewrite.model)?;
     let original = rule_set::engine(&source, &name)?.model();
-    let resumed = resumed(arguments, original)?;
+    let settings = settings(arguments)?;
+    let resumed = resumed(arguments, original, &settings)?;
     let begun = resumed.as_ref().unwrap_or(original);
     let (data, refused) = data(arguments, begun)?;
-    let settings = settings(arguments);
     let failed = |error: TuneError| failure(&name, original, &error);
 
     let stop = Arc::new(AtomicBool::new(false));
@@ -217,20 +217,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
 }
 
-fn settings(arguments: &Arguments) -> Settings {
+fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
     let mut settings = Settings::default();
     settings.loss = arguments.loss();
     settings.only = arguments.only.clone();
     settings.fix = arguments.fix.clone();
     settings.weights = arguments.weights;
-    settings.least_distance = arguments.least_distance;
-    settings.monotone = arguments.rows.claims();
+    settings.min_distance = arguments.min_distance;
+    settings.monotone = arguments.rows.claims.monotone()?;
     settings.beyond_range = arguments.beyond_range;
     settings.digits = arguments.round.0;
     settings.starts = arguments.starts;
     settings.seed = arguments.seed;
     settings.iterations = arguments.iterations;
-    settings
+    Ok(settings)
 }
 
 /// The rows as columns, and why others cannot be used.
@@ -244,7 +244,11 @@ fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Fai
 }
 
 /// The rule set to tune with the numbers of a checkpoint that exists and differs in nothing else.
-fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failure> {
+fn resumed(
+    arguments: &Arguments,
+    model: &Model,
+    settings: &Settings,
+) -> Result<Option<Model>, Failure> {
     let Some(path) = arguments.checkpoint.as_ref().filter(|path| path.exists()) else {
         return Ok(None);
     };
@@ -256,9 +260,9 @@ fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failur
         let message = format!("`{}` is a checkpoint of another rule set", path.display());
         return Err(Failure::usage(message).help("name a new file, or remove this one"));
     }
-    let fixed = resumed.as_ref().and_then(|resumed| {
-        flagred_tuning::moved_although_fixed(model, resumed, &settings(arguments))
-    });
+    let fixed = resumed
+        .as_ref()
+        .and_then(|resumed| flagred_tuning::moved_although_fixed(model, resumed, settings));
     if let Some(Moved {
         of,
         name,
@@ -294,7 +298,7 @@ fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
         }
         TuneError::OneClass => "ranking needs rows of 1 and rows of 0",
         TuneError::NotMonotone { .. } => {
-            "`flagred check --monotone` shows where; begin with a rule set that holds it: `flagred learn --rising`"
+            "`flagred check` with the same options shows where; start from a rule set without counterexamples: `flagred learn --rising`"
         }
         _ => "`flagred check` shows what is wrong with the rule set",
     };

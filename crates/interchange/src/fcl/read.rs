@@ -69,6 +69,15 @@ impl<'r, 't> Reader<'r, 't> {
         is
     }
 
+    /// Whether a section ends here. A text that ends before is cut off, which is an error.
+    pub(super) fn ends(&mut self, keyword: &str) -> bool {
+        let is_cut_off = self.peek().is_none();
+        if is_cut_off {
+            self.unexpected(&format!("`{keyword}`"));
+        }
+        is_cut_off || self.take(keyword)
+    }
+
     pub(super) fn word(&mut self) -> Option<&'t str> {
         let word = self.peek()?;
         self.next += 1;
@@ -149,7 +158,10 @@ impl<'r, 't> Reader<'r, 't> {
             self.unexpected("`FUNCTION_BLOCK`");
             return;
         }
-        while let Some(word) = self.word() {
+        loop {
+            let Some(word) = self.word() else {
+                return self.unexpected("`END_FUNCTION_BLOCK`");
+            };
             match word.to_ascii_uppercase().as_str() {
                 "VAR_INPUT" => self.variables(false),
                 "VAR_OUTPUT" => self.variables(true),
@@ -169,7 +181,7 @@ impl<'r, 't> Reader<'r, 't> {
 
     pub(super) fn skip(&mut self, section: &str) {
         let end = format!("END_{}", section.to_ascii_uppercase());
-        while self.peek().is_some() && !self.take(&end) {
+        while !self.ends(&end) {
             self.next += 1;
         }
     }

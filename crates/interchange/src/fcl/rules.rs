@@ -40,7 +40,7 @@ impl Reader<'_, '_> {
         }
         let mut block = Block::new(name.unwrap_or_default());
         let (mut and, mut or) = (None, None);
-        while !self.take("END_RULEBLOCK") && self.peek().is_some() {
+        while !self.ends("END_RULEBLOCK") {
             if self.take("AND") {
                 and = self.setting("AND", words::CONJUNCTIONS);
             } else if self.take("OR") {

@@ -16,13 +16,9 @@ use crate::{
 impl<'t> Reader<'_, 't> {
     /// `name : REAL;` up to END_VAR.
     pub(super) fn variables(&mut self, outputs: bool) {
-        while !self.take("END_VAR") {
+        while !self.ends("END_VAR") {
             let statement = self.statement(&["END_VAR"]);
             let Some(&name) = statement.first() else {
-                if self.peek().is_none() {
-                    self.unexpected("`END_VAR`");
-                    return;
-                }
                 continue;
             };
             if outputs {
@@ -79,7 +75,7 @@ impl<'t> Reader<'_, 't> {
         let mut variable = Variable::new(name, f64::NAN, f64::NAN);
         let mut spans = VariableSpans::default();
         spans.name = self.draft.span(name);
-        while !self.take("END_FUZZIFY") && self.peek().is_some() {
+        while !self.ends("END_FUZZIFY") {
             if !self.part(&mut variable, &mut spans) {
                 self.unexpected("`TERM`, `RANGE` or `END_FUZZIFY`");
                 return self.skip("FUZZIFY");
@@ -113,7 +109,7 @@ impl<'t> Reader<'_, 't> {
         let mut accumulation = None;
         let mut spans = VariableSpans::default();
         spans.name = self.draft.span(name);
-        while !self.take("END_DEFUZZIFY") && self.peek().is_some() {
+        while !self.ends("END_DEFUZZIFY") {
             if self.take("METHOD") {
                 if let Some(method) = self.setting("METHOD", words::DEFUZZIFIERS) {
                     output.defuzzifier = method;

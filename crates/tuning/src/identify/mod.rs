@@ -53,13 +53,13 @@ pub struct Identification {
     /// The inputs to use, by their names; empty: those that help.
     pub inputs: Vec<String>,
     /// The most inputs, where those that help are looked for.
-    pub most_inputs: usize,
+    pub max_inputs: usize,
     /// The most terms of an input, from 2 to [`MOST_TERMS`].
-    pub most_terms: usize,
+    pub max_terms: usize,
     /// The most rules.
-    pub most_rules: usize,
+    pub max_rules: usize,
     /// By what share of it a step must make the error on rows left out smaller.
-    pub least_gain: f64,
+    pub min_gain: f64,
     /// The fewest rows that must fire a rule more strongly than any other, or there is no such rule.
     pub least_support: usize,
     /// Into how many parts the rows or groups are divided to choose a step.
@@ -75,10 +75,10 @@ impl Default for Identification {
             antecedents: Antecedents::Partitions,
             consequents: Consequents::Constants,
             inputs: Vec::new(),
-            most_inputs: 4,
-            most_terms: 5,
-            most_rules: 25,
-            least_gain: 0.02,
+            max_inputs: 4,
+            max_terms: 5,
+            max_rules: 25,
+            min_gain: 0.02,
             least_support: 1,
             folds: 5,
             seed: 0,
@@ -244,7 +244,7 @@ impl Search<'_> {
             // Inputs that were asked for are taken whatever they gain.
             let is_asked_for =
                 structure.inputs().len() > best.inputs().len() && !self.wanted.is_empty();
-            let least = least_of_all.max(self.settings.least_gain * error);
+            let least = least_of_all.max(self.settings.min_gain * error);
             if !is_asked_for && left_out >= error - least {
                 break;
             }
@@ -272,7 +272,7 @@ impl Search<'_> {
             low < high && !used.contains(input)
         };
         let fresh: Vec<usize> = match self.wanted {
-            [] if used.len() >= self.settings.most_inputs => Vec::new(),
+            [] if used.len() >= self.settings.max_inputs => Vec::new(),
             [] => (0..self.data.inputs.len()).filter(is_open).collect(),
             wanted => wanted.iter().copied().filter(is_open).collect(),
         };
@@ -288,7 +288,7 @@ impl Search<'_> {
             .flat_map(|input| RADII.map(|radius| (*input, radius)));
         let found = all.map(|(input, radius)| {
             let inputs: Vec<usize> = used.iter().copied().chain([input]).collect();
-            let clusters = Clusters::find(self.data, &inputs, radius, self.settings.most_rules);
+            let clusters = Clusters::find(self.data, &inputs, radius, self.settings.max_rules);
             (input, clusters.centers.len(), Structure::Clusters(clusters))
         });
         found.collect()
@@ -302,13 +302,13 @@ impl Search<'_> {
         let mut grown = Vec::new();
         let mut take = |input: usize, terms: usize, axes: Vec<Axis>| {
             let structure = Structure::Grid(axes);
-            if structure.rules() <= self.settings.most_rules {
+            if structure.rules() <= self.settings.max_rules {
                 grown.push((input, terms, structure));
             }
         };
-        let most_terms = self.settings.most_terms.min(MOST_TERMS);
+        let max_terms = self.settings.max_terms.min(MOST_TERMS);
         for input in fresh {
-            for terms in 2..=most_terms.min(3) {
+            for terms in 2..=max_terms.min(3) {
                 if let Some(axis) = self.axis(*input, terms) {
                     take(*input, terms, axes.iter().cloned().chain([axis]).collect());
                 }
@@ -316,7 +316,7 @@ impl Search<'_> {
         }
         for (i, axis) in axes.iter().enumerate() {
             let terms = axis.peaks.len() + 1;
-            if terms <= most_terms
+            if terms <= max_terms
                 && let Some(axis) = self.axis(axis.input, terms)
             {
                 let mut axes = axes.clone();

@@ -67,7 +67,7 @@ fn a_model_survives_being_written_and_read() {
                 "{text}"
             );
             assert!(Engine::new(&found.model).is_ok());
-            assert!(found.model.rules.len() <= settings.most_rules);
+            assert!(found.model.rules.len() <= settings.max_rules);
             assert_eq!(found, identify(&names, "level", &data, &settings).unwrap());
         }
     }
@@ -107,7 +107,7 @@ fn combinations_without_rows_have_no_rule() {
         .collect();
     data = data.filtered(|row| rows[row]);
     let settings = Identification {
-        most_rules: 9,
+        max_rules: 9,
         least_support: 5,
         ..Identification::default()
     };

@@ -7,7 +7,7 @@ use fuzzy::{
     tree::{Entry, Fields, Node, Value},
 };
 
-use super::{Found, Least, number};
+use super::{Bounds, Found, number};
 use crate::{
     profile::{ProfileInput, Ratio},
     source::{Motors, Signal, Source, Statistic},
@@ -89,7 +89,7 @@ fn input(
         return None;
     };
     let behind = fields.get(key)?;
-    let window_s = number(&fields, "window_s", window_s, Least::Above0, found);
+    let window_s = number(&fields, "window_s", window_s, Bounds::Above0, found);
     let plain = STATISTICS.iter().find(|(name, _)| name == key);
     let (statistic, observed) = match plain {
         Some((_, statistic)) => {
@@ -105,6 +105,15 @@ fn input(
             (*statistic, behind)
         }
         None => {
+            if let Value::Scalar(word) = &behind.value
+                && word.as_number().is_none()
+            {
+                let message = format!("`{key}` takes a number, and `of` the signal");
+                let help = format!("write `{{{key}: 95, of: {}}}`", word.text);
+                found
+                    .push(Diagnostic::error("wrong-type", behind.span.clone(), message).help(help));
+                return None;
+            }
             let number = behind.finite(&format!("`{key}`"), found)?;
             let (_, of_number) = WITH_NUMBER.iter().find(|(name, _)| name == key)?;
             let help = format!("name the signal: `{{{key}: {number}, of: battery_v}}`");
@@ -170,7 +179,7 @@ fn input(
             statistic,
             motors,
             signal,
-            window_s: number(&fields, "time_constant_s", window_s, Least::Above0, found),
+            window_s: number(&fields, "time_constant_s", window_s, Bounds::Above0, found),
             exponential: exponential.is_some(),
         },
         ratio: match RATIO.iter().any(|key| fields.get(key).is_some()) {
@@ -187,7 +196,7 @@ fn ratio(fields: &Fields, entry: &Entry, entries: &[Entry], found: &mut Found) -
     let per = fields.require("per", help, found);
     let least = fields.require("at_least", help, found);
     let per = per.and_then(|node| other(node, entry, entries, found));
-    let at_least = least.map(|_| number(fields, "at_least", 1.0, Least::Above0, found));
+    let at_least = least.map(|_| number(fields, "at_least", 1.0, Bounds::Above0, found));
     Some(Ratio {
         per: per?,
         at_least: at_least?,
@@ -213,14 +222,32 @@ fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Op
     None
 }
 
+/// The name of a signal, which is neither a number nor a computation.
+fn signal_name<'n>(node: &'n Node, what: &str, found: &mut Found) -> Option<&'n str> {
+    let name = node.words(what, found)?.text.as_str();
+    let message = if name.parse::<f64>().is_ok() {
+        format!("{what} is a name, not the number {name}")
+    } else if [" / ", " * ", " - ", " + "]
+        .iter()
+        .any(|sign| name.contains(sign))
+    {
+        format!("{what} is a name, not a computation: `{name}`")
+    } else {
+        return Some(name);
+    };
+    let help = "name a signal of the log; `difference`, `ratio` and `product` take two: `{mean: {ratio: [battery_a, battery_v]}}`";
+    found.push(Diagnostic::error("signal", node.span.clone(), message).help(help));
+    None
+}
+
 /// Signals made of two others.
 const PAIRS: [&str; 3] = ["difference", "ratio", "product"];
 
 /// `motor_margin`, `{min: motor_margin}`, `{motor: 3, of: motor_margin}` or `{difference: [yaw_des_deg, yaw_deg]}`.
 fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)> {
     if !matches!(node.value, Value::Mapping(_)) {
-        let name = node.words(&format!("the signal of {what}"), found)?;
-        return Some((Motors::Pooled, Signal::named(&name.text)));
+        let name = signal_name(node, &format!("the signal of {what}"), found)?;
+        return Some((Motors::Pooled, Signal::named(name)));
     }
     let statistics = MOTORS.iter().map(|(name, _)| *name);
     let keys: Vec<&str> = statistics
@@ -248,7 +275,7 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         }
         (None, [key] | [key @ "ratio", "unknown_below"]) if PAIRS.contains(key) => {
             let [a, b] = pair(key, fields.get(key)?, found)?;
-            let unknown_below = number(&fields, "unknown_below", 0.0, Least::From0, found);
+            let unknown_below = number(&fields, "unknown_below", 0.0, Bounds::From0, found);
             let signal = match *key {
                 "difference" => Signal::Difference { a, b },
                 "product" => Signal::Product { a, b },
@@ -277,7 +304,7 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
             return None;
         }
     };
-    let name = &node.words(&format!("the signal of {what}"), found)?.text;
+    let name = signal_name(node, &format!("the signal of {what}"), found)?;
     let signal = Signal::named(name);
     if !signal.is_of_motors() {
         let message = format!("`{name}` has one value, not one for each motor");
@@ -311,7 +338,7 @@ fn pair(key: &str, node: &Node, found: &mut Found) -> Option<[String; 2]> {
         return None;
     };
     let mut name = |node: &Node| {
-        let name = &node.words(&format!("a signal of `{key}`"), found)?.text;
+        let name = signal_name(node, &format!("a signal of `{key}`"), found)?;
         if Signal::names().any(|known| known == name) {
             let message = format!("`{key}` takes signals of the vehicle, not `{name}`");
             found.push(
@@ -320,7 +347,7 @@ fn pair(key: &str, node: &Node, found: &mut Found) -> Option<[String; 2]> {
             );
             return None;
         }
-        Some(name.clone())
+        Some(name.to_owned())
     };
     let (a, b) = (name(a), name(b));
     Some([a?, b?])

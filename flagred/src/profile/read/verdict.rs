@@ -4,7 +4,7 @@ use alloc::format;
 
 use fuzzy::{diagnostic::Diagnostic, tree::Fields};
 
-use super::{Found, Least, number};
+use super::{Bounds, Found, number};
 use crate::verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings};
 
 pub(super) fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
@@ -26,12 +26,18 @@ pub(super) fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
     else {
         return default;
     };
-    let mut seconds = |key, default| number(&fields, key, default, Least::From0, found);
+    let mut seconds = |key, default| number(&fields, key, default, Bounds::From0, found);
     let settings = VerdictSettings {
         clear_after_s: seconds("clear_after_s", default.clear_after_s),
         quiet_after_take_off_s: seconds("quiet_after_take_off_s", default.quiet_after_take_off_s),
         quiet_before_landing_s: seconds("quiet_before_landing_s", default.quiet_before_landing_s),
-        idle_below: seconds("idle_below", default.idle_below),
+        idle_below: number(
+            &fields,
+            "idle_below",
+            default.idle_below,
+            Bounds::Below1,
+            found,
+        ),
         ..default
     };
     VerdictSettings {
@@ -68,7 +74,7 @@ pub(super) fn level(
                 .help("write `risk`, `elevated_risk` or both, in %"),
         );
     }
-    let after_s = number(&fields, "after_s", default.after_s, Least::From0, found);
+    let after_s = number(&fields, "after_s", default.after_s, Bounds::From0, found);
     let mut until = raise;
     if let Some(node) = fields.get("until")
         && let Some(fields) = node.fields("`until`", &["risk", "elevated_risk"], found)
@@ -120,9 +126,8 @@ fn limit(fields: &Fields, key: &str, side: &str, found: &mut Found) -> Option<Li
     let what = format!("`{key}`");
     let fields = fields.get(key)?.fields(&what, &[side, "after_s"], found)?;
     let help = format!("write `{key}: {{{side}: 0.1, after_s: 3}}`");
-    let value = fields
-        .require(side, &help, found)?
-        .finite(&format!("`{side}`"), found)?;
-    let after_s = number(&fields, "after_s", 0.0, Least::From0, found);
+    fields.require(side, &help, found)?;
+    let value = number(&fields, side, 0.0, Bounds::Below1, found);
+    let after_s = number(&fields, "after_s", 0.0, Bounds::From0, found);
     Some(Limit { value, after_s })
 }
