@@ -268,7 +268,16 @@ pub fn rules<E>(
                 "profile `{}` names the rule set `{}`, which is neither a file beside it nor built in",
                 profile.name, profile.rules
             ))
+            .help(format!("built in are {}; a path starts at the folder of the profile", built_in()))
         })
+}
+
+/// The names of the built-in rule sets.
+fn built_in() -> String {
+    let names = shipped::RULE_SETS
+        .iter()
+        .map(|known| format!("`{}`", known.name));
+    names.collect::<Vec<_>>().join(", ")
 }
 
 /// Whether a line of a text begins with a key that only rule sets and profiles have. No other file is quoted: it may hold

@@ -284,7 +284,8 @@ impl core::error::Error for Findings {}
 /// The candidate that an author who wrote `word` may have meant.
 ///
 /// Nearness is the number of letters to insert, delete, replace or swap (optimal string alignment), at most a third
-/// of the longer word's length; case does not count. Of equally near candidates the first one counts. Where none is near,
+/// of the longer word's length; case does not count. Of equally near candidates the first one counts. If none is
+/// equal but for a letter, one with all words of `word` is preferred: `battery_remaining_pct` for `battery_pct`. If none is near,
 /// one that begins with the word is what was meant: `min` is short for `minimum`.
 pub fn nearest<'a>(
     word: &str,
@@ -307,7 +308,7 @@ pub fn nearest<'a>(
         let other = fold(candidate);
         // At least one letter stays, or any letter would be near any other.
         let longest = word.len().max(other.len());
-        let allowed = longest.div_ceil(3).min(longest.saturating_sub(1));
+        let allowed = (longest / 3).max(1).min(longest.saturating_sub(1));
         if other.len() > LONGEST || word.len().abs_diff(other.len()) > allowed {
             continue;
         }
@@ -316,11 +317,31 @@ pub fn nearest<'a>(
             best = Some((distance, candidate));
         }
     }
+    if best.is_none_or(|(distance, _)| distance > 1)
+        && let Some(whole) = candidates
+            .clone()
+            .find(|candidate| has_parts(&fold(candidate), &word))
+    {
+        return Some(whole);
+    }
     best.map(|(_, candidate)| candidate).or_else(|| {
         const SHORTEST: usize = 3;
         let begins = |candidate: &str| word.len() >= SHORTEST && fold(candidate).starts_with(&word);
         candidates.find(|candidate| begins(candidate))
     })
+}
+
+/// Whether a name has all parts of another one of several parts: `battery_remaining_pct` those of `battery_pct`.
+fn has_parts(name: &[char], parts: &[char]) -> bool {
+    let mut parts = parts.split(|c| *c == '_').peekable();
+    let several = parts
+        .next()
+        .is_some_and(|first| parts.peek().is_some() && has_part(name, first));
+    several && parts.all(|part| has_part(name, part))
+}
+
+fn has_part(name: &[char], part: &[char]) -> bool {
+    name.split(|c| *c == '_').any(|one| one == part)
 }
 
 /// The optimal string alignment distance, three rows at a time.

@@ -359,7 +359,8 @@ impl MembershipFunction {
     }
 
     /// The number of a constant; of a linear function or a formula, only where it reads no variable.
-    pub(crate) fn number(&self) -> Option<f64> {
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
         match self {
             MembershipFunction::Constant { value } => Some(*value),
             MembershipFunction::Linear {

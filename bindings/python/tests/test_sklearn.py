@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("sklearn", reason="scikit-learn is not installed: `pip install flagred[sklearn]`")
 
 from sklearn.base import clone
-from sklearn.datasets import load_breast_cancer, load_diabetes
+from sklearn.datasets import load_breast_cancer, load_diabetes, load_iris
 from sklearn.metrics import roc_auc_score
 from sklearn.model_selection import GridSearchCV, GroupKFold, cross_val_predict, cross_val_score
 from sklearn.pipeline import make_pipeline
@@ -16,10 +16,10 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
 import flagred
-from flagred.sklearn import FuzzyRegressor, FuzzyRiskClassifier
+from flagred.sklearn import FuzzyClassifier, FuzzyRegressor, FuzzyRiskClassifier
 
 
-@parametrize_with_checks([FuzzyRegressor(), FuzzyRiskClassifier()])
+@parametrize_with_checks([FuzzyClassifier(), FuzzyRegressor(), FuzzyRiskClassifier()])
 def test_scikit_learn_checks(estimator, check):
     check(estimator)
 
@@ -138,3 +138,21 @@ def test_settings_that_cannot_be_used(wave, settings, message):
 def test_one_class_is_no_risk():
     with pytest.raises(ValueError, match="1 class"):
         FuzzyRiskClassifier().fit([[0.0], [1.0]], [1, 1])
+
+
+def test_many_classes_have_a_rule_set_each():
+    X, y = load_iris(return_X_y=True)
+    names = np.array(["setosa", "versicolor", "virginica"])[y]
+    scores = cross_val_score(FuzzyClassifier(), X[:, 2:], names, cv=5)
+    assert scores.mean() > 0.93, scores
+    classifier = FuzzyClassifier().fit(X[:, 2:], names)
+    assert len(classifier.rule_sets_) == 3
+    assert classifier.n_rules_ == sum(len(rule_set.rules) for rule_set in classifier.rule_sets_)
+    probabilities = classifier.predict_proba(X[:, 2:])
+    assert np.allclose(probabilities.sum(axis=1), 1)
+    explained = classifier.explain(X[:2, 2:])
+    degrees = np.array([[one.outputs[0].value for one in row] for row in explained])
+    assert np.allclose(degrees / degrees.sum(axis=1, keepdims=True), probabilities[:2])
+    with pytest.raises(ValueError, match="two classes"):
+        FuzzyClassifier(monotonic_cst=[1, 0]).fit(X[:, 2:], names)
+

@@ -12,7 +12,7 @@ use fuzzy::{
     yaml::LARGEST_BYTES,
 };
 
-use crate::failure::Failure;
+use crate::failure::{Failure, cannot_read};
 
 /// Draws findings with their lines. `colored` text goes through `anstream`, which drops colours that a terminal lacks.
 pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: bool) -> String {
@@ -73,9 +73,7 @@ pub(crate) fn read_bytes(file: fs::File, shown: &str) -> Result<Vec<u8>, Failure
 
 /// The bytes of a rule set or profile that could be read and is not too large.
 fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
-    let bytes = bytes.map_err(|error| {
-        Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
-    })?;
+    let bytes = bytes.map_err(|error| cannot_read(shown, &error))?;
     match bytes.len() > LARGEST_BYTES {
         true => {
             let limit = LARGEST_BYTES / 1_000_000;

@@ -70,6 +70,16 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
 
 /// What to write for a number with a decimal comma or a unit.
 fn number_advice(text: &str) -> Option<String> {
+    if ["nan", "na", ""]
+        .iter()
+        .any(|unknown| text.eq_ignore_ascii_case(unknown))
+    {
+        return Some("an unknown value leaves nothing to explain; write a number".into());
+    }
+    let joined = text.replace([',', '_', ' ', '\''], "");
+    if joined.contains('.') && joined != text && joined.parse::<f64>().is_ok() {
+        return Some(format!("write the number without separators: `{joined}`"));
+    }
     let with_point = text.replacen(',', ".", 1);
     if with_point.parse::<f64>().is_ok() {
         return Some(format!("the decimal mark is a point: `{with_point}`"));

@@ -135,9 +135,27 @@ pub(crate) fn command_forgotten(error: &clap::Error) -> Option<Failure> {
         return None;
     };
     Path::new(word).exists().then(|| {
-        Failure::usage(format!("`{word}` is a file, and no command"))
-            .help(format!("how risky a flight was: `flagred assess {word}`"))
+        let path = Path::new(word);
+        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let rules = ["yaml", "yml", "fis", "fll", "fcl", "fml"];
+        let help = match rules.iter().any(|rules| ending == *rules) {
+            true => format!("the errors of a rule set or profile: `flagred check {word}`"),
+            false => format!("how risky a flight was: `flagred assess {word}`"),
+        };
+        Failure::usage(format!("`{word}` is a file, not a command")).help(help)
     })
+}
+
+/// A file that cannot be read: exit code 3.
+pub(crate) fn cannot_read(shown: &str, error: &io::Error) -> Failure {
+    match error.kind() {
+        io::ErrorKind::IsADirectory => {
+            Failure::unreadable(format!("`{shown}` is a folder")).help("name the files in it")
+        }
+        _ => {
+            Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
+        }
+    }
 }
 
 /// A log that cannot be read: exit code 3.
@@ -149,9 +167,14 @@ impl From<flagred_flightlog::ReadError> for Failure {
 
 /// Ends the program for a command line that clap refuses, or that asks for help. What the user typed is shown as text.
 pub(crate) fn refuse(error: &clap::Error) -> ExitCode {
-    let text = error.render().to_string();
+    let mut text = error.render().to_string();
+    if let Some(tip) = text.find("  tip: to pass '--") {
+        // Nobody has a file of such a name.
+        let end = text.get(tip..).and_then(|tip| tip.find("\n\n"));
+        text.replace_range(tip..end.map_or(text.len(), |end| tip + end + 2), "");
+    }
     let shown = visible_lines(&text);
-    if shown == text {
+    if shown == error.render().to_string() {
         error.exit();
     }
     // Nothing is left to tell a user whose standard error is closed.

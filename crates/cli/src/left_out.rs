@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use flagred_tuning::Interval;
+use flagred_tuning::{Confusion, Interval};
 use fuzzy::drawing::{short, visible};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -24,11 +24,67 @@ pub(crate) fn figure(Interval { value, low, high }: &Interval) -> String {
     format!("{} [{}, {}]", short(*value), short(*low), short(*high))
 }
 
+/// The confusion table of rows left out; `name` gives the name of a class. Names are shown if all classes have one.
+pub(crate) fn confusion(
+    out: &mut dyn Write,
+    confusion: &Confusion,
+    name: impl Fn(f64) -> Option<String>,
+) -> std::io::Result<()> {
+    let classes = &confusion.classes;
+    let names: Option<Vec<String>> = classes.iter().map(|class| name(*class)).collect();
+    let names = names.unwrap_or_else(|| classes.iter().map(|class| short(*class)).collect());
+    let counts = confusion.rows.iter().flatten().map(usize::to_string);
+    let lengths = names.iter().cloned().chain(counts);
+    let width = lengths.map(|text| text.chars().count()).max().unwrap_or(0);
+    writeln!(
+        out,
+        "classes     {:.1} % of rows left out are predicted as their class; for each class, the rows predicted as",
+        100.0 * confusion.accuracy()
+    )?;
+    let line = |cells: &mut dyn Iterator<Item = String>| {
+        let cells: Vec<String> = cells.map(|cell| format!("{cell:>width$}")).collect();
+        cells.join("  ")
+    };
+    writeln!(
+        out,
+        "            {:width$}  {}",
+        "",
+        line(&mut names.iter().cloned())
+    )?;
+    for (name, row) in names.iter().zip(&confusion.rows) {
+        let counts = line(&mut row.iter().map(usize::to_string));
+        writeln!(out, "            {name:<width$}  {counts}")?;
+    }
+    Ok(())
+}
+
 /// What cross-validation divides into parts.
 pub(crate) fn divided(group_by: Option<&String>) -> String {
     match group_by {
         Some(column) => format!("groups of `{}`", visible(column)),
         None => "rows".to_owned(),
+    }
+}
+
+/// The confusion table of rows left out.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Confusion")]
+pub(crate) struct OfClasses {
+    /// The classes: values of the output, ascending.
+    classes: Vec<f64>,
+    /// For each class, the number of its rows that were predicted as each class.
+    rows: Vec<Vec<usize>>,
+    /// The share of rows that were predicted as their class.
+    accuracy: f64,
+}
+
+impl From<&Confusion> for OfClasses {
+    fn from(confusion: &Confusion) -> OfClasses {
+        OfClasses {
+            classes: confusion.classes.clone(),
+            rows: confusion.rows.clone(),
+            accuracy: confusion.accuracy(),
+        }
     }
 }
 

@@ -165,7 +165,15 @@ pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure>
     let names: Vec<&str> = variables.iter().map(|v| v.name.as_str()).collect();
     let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
     let format = &arguments.rewrite.format;
-    let mut data = columns(tables(&arguments.data, format), format, &names, optional)?;
+    // The names of constants: `failed` in place of 1.
+    let terms = variables.last().map(|output| output.terms.iter());
+    let labels: Vec<(String, f64)> = terms
+        .into_iter()
+        .flatten()
+        .filter_map(|term| Some((term.name.clone(), term.membership_function.number()?)))
+        .collect();
+    let tables = tables(&arguments.data, format);
+    let mut data = columns(tables, format, &names, &labels, optional)?;
     if arguments.clamp {
         clamp(&mut data, &variables);
     }
@@ -206,11 +214,13 @@ pub(crate) fn tables<'a>(
     paths.iter().map(|path| Table::read(path, format.delimiter))
 }
 
-/// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows.
+/// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows. `labels` are the
+/// words that stand for values of the last variable.
 pub(crate) fn columns(
     tables: impl Iterator<Item = Result<Table, Failure>>,
     format: &Format,
     names: &[&str],
+    labels: &[(String, f64)],
     [weight, group]: [Option<&str>; 2],
 ) -> Result<Data, Failure> {
     let mut data = Data {
@@ -238,7 +248,21 @@ pub(crate) fn columns(
                     f64::NAN
                 })
             };
-            let values: Vec<f64> = columns.iter().map(|column| number(*column)).collect();
+            let label = columns.last().and_then(|output| {
+                let text = table.text(row, *output).trim();
+                let mut labels = labels.iter();
+                labels
+                    .find(|(label, _)| label == text)
+                    .map(|(_, value)| *value)
+            });
+            let values: Vec<f64> = match (columns.split_last(), label) {
+                (Some((_, inputs)), Some(label)) => inputs
+                    .iter()
+                    .map(|column| number(*column))
+                    .chain([label])
+                    .collect(),
+                _ => columns.iter().map(|column| number(*column)).collect(),
+            };
             let weight = weight.map_or(1.0, &mut number);
             if !bad.is_empty() {
                 data.refused.append(&mut bad);

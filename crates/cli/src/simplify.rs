@@ -101,6 +101,7 @@ fn rows(arguments: &Arguments, model: &Model) -> Result<(Vec<Vec<f64>>, Vec<Stri
         rows::tables(&arguments.data, format),
         format,
         &names,
+        &[],
         [None; 2],
     )?;
     if !refused.is_empty() && !format.skip_bad_rows {

@@ -12,7 +12,7 @@ use std::{
 
 use fuzzy::diagnostic::quoted;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, cannot_read};
 
 /// Bytes of a row, with the comments above it.
 const LONGEST_ROW: usize = 1_000_000;
@@ -134,9 +134,10 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
     let source: Box<dyn Read + Send> = if path == Path::new("-") {
         Box::new(std::io::stdin())
     } else {
-        Box::new(File::open(path).map_err(|error| {
-            Failure::unreadable(format!("`{file}` cannot be read: {error}")).help("check the path")
-        })?)
+        if path.is_dir() {
+            return Err(cannot_read(&file, &std::io::ErrorKind::IsADirectory.into()));
+        }
+        Box::new(File::open(path).map_err(|error| cannot_read(&file, &error))?)
     };
     let left = Arc::new(AtomicUsize::new(LONGEST_ROW));
     let source = Bounded {

@@ -6,6 +6,9 @@ use crate::{Flight, Format, VehicleKind};
 /// Rate in rows a second below which a spread over a window means little.
 const SLOWEST_HZ: f64 = 5.0;
 
+/// The motors of a tricopter.
+const LEAST_MOTORS: usize = 3;
+
 /// Whether motor outputs are logged: as RCOU, or as MOT before ArduCopter 3.2.
 fn logs_motors(log_bitmask: u32) -> bool {
     log_bitmask & (1 << 10) != 0
@@ -45,6 +48,12 @@ pub enum Gap {
         found: usize,
         /// Motors that the vehicle has, by its frame and the numbers of the known ones.
         expected: usize,
+    },
+    /// Fewer motors are known than the smallest multirotor has.
+    #[error("the log has {found} motor{}, and a multirotor has at least {LEAST_MOTORS}", if *found == 1 { "" } else { "s" })]
+    TooFewMotors {
+        /// Motors whose outputs are known.
+        found: usize,
     },
     /// Motors are known, but their commands were not logged.
     #[error("the commands of the motors are not in the log{}", without_motors(*log_bitmask))]
@@ -93,7 +102,7 @@ impl Gap {
     ///
     /// # Example
     /// ```
-    /// let flight = flagred_flightlog::read("t_s,pwm1\n0,1500\n".as_bytes(), &flagred_flightlog::Options::default())?;
+    /// let flight = flagred_flightlog::read("t_s,pwm1,pwm2,pwm3\n0,1500,1500,1500\n".as_bytes(), &flagred_flightlog::Options::default())?;
     /// let gap = &flight.gaps()[0];
     /// assert_eq!(gap.to_string(), "the range of the motor commands is not in the log");
     /// assert_eq!(gap.help(), Some("add `# pwm_low_us:` and `# pwm_high_us:` above the names"));
@@ -107,6 +116,9 @@ impl Gap {
             | Self::NoCommandsInAir
             | Self::NeverArmed
             | Self::NeverInAir => return None,
+            Self::TooFewMotors { .. } => {
+                "a flight CSV has a column for each motor: pwm1, pwm2 .. or motor1, motor2 ..; for another vehicle use a profile that reads no motor"
+            }
             Self::NoMotors { format } => match format {
                 DataFlash | DataFlashText => {
                     "log from boot, so that the SERVOn_FUNCTION parameters are in the log"
@@ -172,7 +184,10 @@ impl Gap {
     pub(crate) fn stops_statistics(&self) -> bool {
         !matches!(
             self,
-            Self::NoAttitude | Self::TooSlow { .. } | Self::MotorsMissing { .. }
+            Self::NoAttitude
+                | Self::TooSlow { .. }
+                | Self::MotorsMissing { .. }
+                | Self::TooFewMotors { .. }
         )
     }
 }
@@ -182,7 +197,7 @@ impl Flight {
     /// vehicle that is not a multirotor, that is the only gap.
     ///
     /// ```
-    /// let log = "t_s,motor1\n0,0.5\n1,0.4\n2,0.4\n";
+    /// let log = "t_s,motor1,motor2,motor3\n0,0.5,0.5,0.5\n1,0.4,0.4,0.4\n2,0.4,0.4,0.4\n";
     /// let flight = flagred_flightlog::read(log.as_bytes(), &flagred_flightlog::Options::default())?;
     /// let gaps: Vec<String> = flight.gaps().iter().map(ToString::to_string).collect();
     /// assert_eq!(gaps, [
@@ -220,6 +235,8 @@ impl Flight {
         let found = self.motors.len();
         if let Some(expected) = expected.filter(|&expected| expected > found && found > 0) {
             gaps.push(Gap::MotorsMissing { found, expected });
+        } else if (1..LEAST_MOTORS).contains(&found) {
+            gaps.push(Gap::TooFewMotors { found });
         }
         if self.range.is_none() && !self.motors.is_empty() {
             gaps.push(Gap::NoRange { format });

@@ -11,6 +11,7 @@
 //!
 //! [`identify`] finds inputs, partitions and rules where none are known; [`simplify()`] says the same with fewer rules.
 
+mod confusion;
 mod consequents;
 mod data;
 mod folds;
@@ -30,6 +31,7 @@ use std::ops::ControlFlow;
 
 use fuzzy::{Model, check, model::MembershipFunction};
 
+pub use confusion::Confusion;
 pub use data::Data;
 pub use folds::Interval;
 pub use numbers::{Moved, Number, moved_although_fixed, numbers, with_numbers_of};

@@ -107,6 +107,12 @@ impl<'a> Objective<'a> {
         self.measure_of(&point.predictions, self.data)
     }
 
+    /// Predictions as values of the output.
+    pub(crate) fn values(&self, predictions: &[f64]) -> Vec<f64> {
+        let value = |prediction: &f64| self.low + prediction * self.width;
+        predictions.iter().map(value).collect()
+    }
+
     /// The loss of other predictions, with the weights of these rows.
     pub(crate) fn measure_of(&self, predictions: &[f64], data: &Data) -> f64 {
         let loss = self.settings.loss;

@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use fuzzy::Model;
 
 use crate::{
-    Data, Interval, Loss, Progress, Settings, TuneError,
+    Confusion, Data, Interval, Loss, Progress, Settings, TuneError,
+    confusion::confusion,
     folds::Folds,
     objective::Objective,
     parameters::Parameters,
@@ -26,6 +27,8 @@ pub struct Validation {
     pub gain: Interval,
     /// With truths of 0 and 1: what was predicted of rows left out, beside what came, by tenths of the range.
     pub reliability: Vec<Bin>,
+    /// What was predicted for rows left out of each class, if the truths are classes and not a ranking.
+    pub confusion: Option<Confusion>,
 }
 
 /// Tunes without a part of the rows and predicts that part, for each part in turn. Rows of a group stay together.
@@ -62,6 +65,11 @@ pub fn cross_validate(
         before,
         after: after_interval,
         gain,
+        confusion: match settings.loss {
+            Loss::Ranking => None,
+            Loss::Squared => confusion(&whole.values(&after), data),
+            Loss::Log => confusion(&after, data),
+        },
         reliability: match settings.loss {
             Loss::Squared => Vec::new(),
             _ => reliability(&after, data),

@@ -284,6 +284,14 @@ fn partition(
                 let peak = format!("the peak of `{}` of {what}", entry.key);
                 let before = findings.len();
                 found.extend(entry.value.finite(&peak, findings));
+                if matches!(entry.value.value, Value::Mapping(_) | Value::List(_))
+                    && let Some(finding) = findings.get_mut(before)
+                {
+                    finding.help = Some(
+                        "a partition has a peak for each term; membership functions are in `terms`"
+                            .into(),
+                    );
+                }
                 // `{dry, wet}`
                 if entries.iter().all(|entry| entry.value.is_null())
                     && let Some(finding) = findings.get_mut(before)
@@ -464,6 +472,9 @@ fn term(
         findings.push(finding.help(match &entry.value.value {
             Value::List(items) if items.len() == 4 => "name it: `{trapezoid: [0, 1, 2, 3]}`",
             Value::List(_) => "name it: `{triangle: [0, 1, 2]}`",
+            Value::Scalar(scalar) if scalar.as_number().is_some() => {
+                "numbers alone are peaks: `partition: {low: 0, high: 10}` in place of `terms`; a term is a membership function: `{triangle: [0, 1, 2]}`"
+            }
             _ => "write one: `{triangle: [0, 1, 2]}`",
         }));
         return None;

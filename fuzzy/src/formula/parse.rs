@@ -411,6 +411,14 @@ impl Mistake<'_> {
             }
             Wrong::Operator => {
                 let message = format!("expected an operator or the end, found {shown}");
+                let before = text.get(..start).unwrap_or("").trim_end();
+                let before = before.rsplit(|c: char| !c.is_alphanumeric()).next();
+                let is_function = |(operation, word, _): &&(Operation, &str, usize)| {
+                    operation.binds().is_none() && Some(*word) == before
+                };
+                if let Some((_, name, _)) = Operation::ALL.iter().find(is_function) {
+                    return error(found.len(), message).help(format!("write `{name}({found})`"));
+                }
                 let help = match found {
                     "=" | "===" => "write `==` to compare",
                     "**" => "write `^` for a power",
@@ -439,7 +447,10 @@ impl Mistake<'_> {
                 let mut finding = error(name.len(), format!("there is no function `{name}`"));
                 let functions = Operation::ALL.iter();
                 let functions = functions.filter(|(operation, ..)| operation.binds().is_none());
-                finding.help = suggest(name, functions.map(|(_, word, _)| *word));
+                finding.help = match name.eq_ignore_ascii_case("if") {
+                    true => Some("a comparison is 1 or 0: for a where c holds and b elsewhere write `(c) * a + (1 - (c)) * b`".into()),
+                    false => suggest(name, functions.map(|(_, word, _)| *word)),
+                };
                 finding
             }
             Wrong::Count(name, takes, has) => {

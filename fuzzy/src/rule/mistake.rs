@@ -99,6 +99,9 @@ impl Mistake<'_> {
                         "there is no `XOR`: write `(a AND NOT b) OR (NOT a AND b)` with the conditions a and b"
                             .into(),
                     ),
+                    _ if ["FOR", "DURING", "SINCE", "WITHIN"].iter().any(|word| found.eq_ignore_ascii_case(word)) => Some(
+                        "a rule sees one moment: add an input that measures how long, and name a term of that".into(),
+                    ),
                     Some(word) => Some(format!("did you mean `{word}`?")),
                     None => sign(rest).or_else(|| joint(rest)),
                 };
@@ -202,6 +205,12 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
             .chain(&["WITH", ")"])
             .any(|w| w.eq_ignore_ascii_case(found))
     {
+        if ["TRUE", "ALWAYS"]
+            .iter()
+            .any(|word| name.eq_ignore_ascii_case(word))
+        {
+            return Some("for a rule that always fires write `input IS any`".into());
+        }
         // `x IS low OR high`: the name is a term, and what it is a term of stands before it.
         let before = text.get(..start).unwrap_or("");
         let mut words = before.split_whitespace().rev();
@@ -278,11 +287,37 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
     sign(rest)
 }
 
+/// Verbs that speak of a change.
+const CHANGES: [&str; 8] = [
+    "RISES",
+    "FALLS",
+    "INCREASES",
+    "DECREASES",
+    "GROWS",
+    "DROPS",
+    "RISING",
+    "FALLING",
+];
+
 /// What to write for a phrase of another language behind the name of a variable: `IN (mild, hot)`, `NOT IS hot`, and
 /// `IS more or less hot`, where `less` was taken for a name.
 fn spoken(name: &str, rest: &str, before: &str) -> Option<String> {
     let found = found_here(rest);
     let behind = rest.get(found.len()..).unwrap_or("").trim_start();
+    let is = |words: &[&str]| words.iter().any(|word| found.eq_ignore_ascii_case(word));
+    if is(&["ISN", "ISNT"]) {
+        let term = found_here(
+            behind
+                .trim_start_matches(['\'', '\u{2019}', 't', 'T'])
+                .trim_start(),
+        );
+        return Some(format!("write `{name} IS NOT {term}`"));
+    }
+    if is(&CHANGES) {
+        return Some(format!(
+            "a rule sees the value of `{name}`, not its change: add an input with the rate of change, and name a term of that"
+        ));
+    }
     if found.eq_ignore_ascii_case("IN") {
         let list = behind.strip_prefix(['(', '[', '{'])?;
         let terms = list
@@ -334,6 +369,9 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
             _ if input => "add a condition: `input IS term`".into(),
             _ => "add a term".into(),
         });
+    }
+    if JOINTS.iter().any(|joint| is(joint)) {
+        return Some(format!("add a term before `{found}`"));
     }
     Rule::is_keyword(found).then(|| {
         format!(
@@ -424,8 +462,15 @@ fn behind_conclusion(rest: &str, weighted: bool) -> Option<String> {
     if is("unless") || is("except") {
         return Some("there is no `UNLESS`: write `AND NOT (condition)` before `THEN`".into());
     }
-    if is("weight") || is("weighted") || is("weights") {
-        return Some("a weight stands behind `WITH`: `WITH 0.5`".into());
+    if ["weight", "weighted", "weights", "confidence", "cf"]
+        .iter()
+        .any(|word| is(word))
+    {
+        let mut words = rest.split_whitespace().skip(1);
+        let number = words
+            .find(|word| word.parse::<f64>().is_ok())
+            .unwrap_or("0.5");
+        return Some(format!("a weight stands after `WITH`: `WITH {number}`"));
     }
     if let Some(number) = rest.strip_prefix(',')
         && number.starts_with(|c: char| c.is_ascii_digit())

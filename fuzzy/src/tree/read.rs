@@ -350,10 +350,13 @@ impl Node {
             return Some(COMMENT.into());
         }
         if let Some(percent) = text.strip_suffix('%').and_then(plain) {
-            return Some(format!(
-                "write the number alone: `{percent}` or `{}`",
-                percent / 100.0
-            ));
+            return Some(match percent {
+                0.0 => "write the number alone: `0`".into(),
+                _ => format!(
+                    "write the number alone, in the unit of the value: `{percent}` in percent, `{}` as a share",
+                    percent / 100.0
+                ),
+            });
         }
         if plain(&text.replacen(',', ".", 1)).is_some() {
             return Some(format!(
@@ -368,13 +371,32 @@ impl Node {
         {
             return Some(format!("write the number, not a calculation: `{value}`"));
         }
+        let digits = text.replace(['O', 'o'], "0").replace('l', "1");
+        if plain(&digits).is_some() {
+            return Some(format!(
+                "did you mean `{digits}`, with digits in place of letters?"
+            ));
+        }
         let number: String = text
             .chars()
             .take_while(|c| c.is_ascii_digit() || matches!(c, '.' | '-' | '+'))
             .collect();
+        let unit = text.get(number.len()..).unwrap_or("").trim();
+        if let (Some(small), Some((_, larger))) = (
+            plain(&number),
+            MILLI.iter().find(|(milli, _)| *milli == unit),
+        ) {
+            return Some(format!(
+                "write the number without its unit: `{}` if it is in {larger}, `{number}` if in {unit}",
+                small / 1000.0
+            ));
+        }
         plain(&number).map(|_| format!("write the number without its unit: `{number}`"))
     }
 }
+
+/// Units that are easily confused, and the larger one.
+const MILLI: [(&str, &str); 4] = [("ms", "s"), ("mm", "m"), ("mV", "V"), ("mA", "A")];
 
 impl Scalar {
     /// The number it is, if it is one: YAML's forms of decimal numbers, infinities and NaN.

@@ -117,9 +117,12 @@ impl Validator<'_> {
                 let here = spans.parameters.get(i).unwrap_or(&spans.name);
                 let message = format!("{what}: the formula of a fuzzy set reads `{name}`");
                 let own = &variable.name;
-                let help = format!(
-                    "write `{own}` for the value of the variable; formulas over several variables are for outputs with `weighted_average` or `weighted_sum`"
-                );
+                let help = match name {
+                    "e" => "write `exp(x)` for a power of e".into(),
+                    _ => format!(
+                        "write `{own}` for the value of the variable; formulas over several variables are for outputs with `weighted_average` or `weighted_sum`"
+                    ),
+                };
                 self.error("wrong-term", here, message, &help);
             }
         }

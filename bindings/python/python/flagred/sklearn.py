@@ -16,7 +16,7 @@ from ._core import Explanation
 from ._learning import learn, tune
 from ._model import Model
 
-__all__ = ["FuzzyRegressor", "FuzzyRiskClassifier"]
+__all__ = ["FuzzyClassifier", "FuzzyRegressor", "FuzzyRiskClassifier"]
 
 Floats = NDArray[np.float64]
 
@@ -359,3 +359,89 @@ class FuzzyRiskClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[mis
         tags = super().__sklearn_tags__()
         tags.classifier_tags.multi_class = False
         return tags
+
+
+class FuzzyClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[misc]
+    """A classifier of two or more classes: one rule set for each, the degree to which a row belongs to the class, from 0 to 1.
+
+    Each rule set is learned as that of :class:`FuzzyRiskClassifier`, for its class against all others. The probabilities
+    are these degrees divided by their sum.
+
+    Parameters
+    ----------
+    n_terms, n_output_terms, spacing, min_support, complete, tune, iterations, starts, random_state
+        As for :class:`FuzzyRegressor`.
+    monotonic_cst
+        As for :class:`FuzzyRegressor`; only for two classes, where it concerns the second.
+
+    Attributes
+    ----------
+    classes_
+        The classes, sorted.
+    rule_sets_
+        The rule set of each class, each a :class:`flagred.Model`; of two classes, that of the second alone.
+    n_rules_
+        The number of their rules.
+    n_features_in_, feature_names_in_
+        The features.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from flagred.sklearn import FuzzyClassifier
+    >>> size = np.linspace(0, 3, 90)[:, None]
+    >>> kind = np.array(["small", "medium", "large"])[size[:, 0].astype(int).clip(0, 2)]
+    >>> sizes = FuzzyClassifier(n_terms=5).fit(size, kind)
+    >>> sizes.predict([[0.3], [1.5], [2.8]]).tolist()
+    ['small', 'medium', 'large']
+    >>> sizes.predict_proba([[1.5]]).sum().round(6).item()
+    1.0
+    """
+
+    classes_: NDArray[Any]
+    rule_sets_: list[Model]
+
+    def fit(self, X: ArrayLike, y: ArrayLike, sample_weight: ArrayLike | None = None) -> FuzzyClassifier:
+        """Learns the rule sets from rows ``X`` and their classes ``y``."""
+        rows, classes = validate_data(self, X, y, dtype=np.float64)
+        check_classification_targets(classes)
+        weight = _weights(sample_weight, rows)
+        self.classes_, places = np.unique(classes, return_inverse=True)
+        if len(np.unique(places[weight > 0])) < 2:
+            raise ValueError("FuzzyClassifier needs rows of 2 classes; there is 1 class")
+        if len(self.classes_) > 2 and self.monotonic_cst is not None:
+            raise ValueError("monotonic_cst is for two classes")
+        peaks = (np.arange(self.n_output_terms) + 0.5) / max(self.n_output_terms, 1)
+        first = 1 if len(self.classes_) == 2 else 0
+        self.rule_sets_ = []
+        for place in range(first, len(self.classes_)):
+            of_class = (places == place).astype(np.float64)
+            self._fit(rows, of_class, weight, "degree", peaks, (0.0, 1.0), "log")
+            self.rule_sets_.append(self.rule_set_)
+        del self.rule_set_
+        self.n_rules_ = sum(len(rule_set.rules) for rule_set in self.rule_sets_)
+        return self
+
+    def predict_proba(self, X: ArrayLike) -> Floats:
+        """The probability of each class at each of the rows ``X``."""
+        check_is_fitted(self, "rule_sets_")
+        rows: Floats = validate_data(self, X, reset=False, dtype=np.float64)
+        degrees = np.column_stack([rule_set(*rows.T) for rule_set in self.rule_sets_])
+        if degrees.shape[1] == 1:
+            return np.column_stack((1.0 - degrees, degrees))
+        sums = degrees.sum(axis=1, keepdims=True)
+        even = np.full_like(degrees, 1.0 / degrees.shape[1])
+        found: Floats = np.divide(degrees, sums, out=even, where=sums > 0)
+        return found
+
+    def predict(self, X: ArrayLike) -> NDArray[Any]:
+        """The class with the greatest probability at each of the rows ``X``; the first of equal ones."""
+        places = np.argmax(self.predict_proba(X), axis=1)
+        found: NDArray[Any] = self.classes_[places]
+        return found
+
+    def explain(self, X: ArrayLike) -> list[list[Explanation]]:  # type: ignore[override]
+        """Why each rule set gives its degree: for each of the rows ``X``, the explanation of each of ``rule_sets_``."""
+        check_is_fitted(self, "rule_sets_")
+        rows: Floats = validate_data(self, X, reset=False, dtype=np.float64)
+        return [[rule_set.explain(*row.tolist()) for rule_set in self.rule_sets_] for row in rows]

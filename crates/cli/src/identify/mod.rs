@@ -134,6 +134,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(Ok(first)) => columns(arguments, first)?,
         _ => (arguments.input.clone(), Vec::new()),
     };
+    if let Some(Ok(first)) = tables.peek() {
+        has_numbers(arguments, first)?;
+    }
     let failed = |error: TuneError| failure(arguments, &names, &error);
     check_columns(names.len()).map_err(failed)?;
     let (data, refused) = data(arguments, tables, &names)?;
@@ -230,6 +233,24 @@ fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<Str
     Ok((named(numbers), named(others)))
 }
 
+/// Refuses a target of words, such as `good` and `bad`.
+fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
+    let column = arguments
+        .format
+        .columns(&[&arguments.target], &table.header)?;
+    let mut cells = (0..table.len()).map(|row| {
+        let text = column.first().map_or("", |column| table.text(row, *column));
+        Cell::of(text.as_bytes())
+    });
+    if table.len() == 0 || cells.any(|cell| matches!(cell, Cell::Number(_))) {
+        return Ok(());
+    }
+    let message = format!("`{}` holds no number", arguments.target);
+    Err(Failure::unreadable(message).help(
+        "for two classes write 0 and 1; `FuzzyClassifier` of the Python package takes words and many classes",
+    ))
+}
+
 /// The rows as columns, and why others cannot be used.
 fn data(
     arguments: &Arguments,
@@ -245,6 +266,7 @@ fn data(
         tables,
         &arguments.format,
         &all,
+        &[],
         [&arguments.weight, &arguments.group_by].map(Option::as_deref),
     )?;
     let (data, refused) = rows::in_columns(read, names.len(), Loss::Squared);

@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::{Arguments, Outcome};
 use crate::{
     failure::Failure,
-    left_out::{self, OfInterval, divided, figure},
+    left_out::{self, OfClasses, OfInterval, divided, figure},
     provenance,
 };
 
@@ -110,6 +110,9 @@ fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io
         figure(&judged.linear)
     )?;
     writeln!(out, "            {} of the mean", figure(&judged.mean))?;
+    if let Some(confusion) = &judged.confusion {
+        left_out::confusion(out, confusion, |_| None)?;
+    }
     if judged.without_value > 0 {
         writeln!(
             out,
@@ -184,6 +187,8 @@ struct Validation {
     mean: OfInterval,
     /// `identified` divided by `linear`.
     ratio: OfInterval,
+    /// The rows left out by class and predicted class, where the target has 2 to 10 whole numbers; else null.
+    confusion: Option<OfClasses>,
 }
 
 impl<'a> Document<'a> {
@@ -217,6 +222,7 @@ impl<'a> Document<'a> {
                 linear: (&judged.linear).into(),
                 mean: (&judged.mean).into(),
                 ratio: (&judged.ratio).into(),
+                confusion: judged.confusion.as_ref().map(Into::into),
             }),
         }
     }

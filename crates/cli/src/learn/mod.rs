@@ -117,6 +117,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(rows::refuse(&refused, "learned from"));
     }
     let learned = learner.finish();
+    if learned.model.rules.is_empty() {
+        let message = format!("no rule is left from {} rows", rows.len());
+        return Err(
+            Failure::usage(message).help("lower `--min-support` and `--min-degree`, or add rows")
+        );
+    }
     let gap = GapSettings::default();
     let examined = |error: ExamineError| Failure::unreadable(error.to_string());
     let coverage = coverage(&learned.model, &gap)?;

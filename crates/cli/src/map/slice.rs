@@ -133,6 +133,19 @@ pub(super) fn cut(
             short(*value)
         )
     });
-    let notes: Vec<String> = held_at.chain(parts).collect();
+    let beyond = axes.into_iter().filter_map(|(_, axis)| {
+        let (input, axis) = axis?;
+        let input = model.inputs.get(*input)?;
+        let Scale { low, high } = axis.scale();
+        (low < input.low || high > input.high).then(|| {
+            format!(
+                "`{}` goes from {} to {}; values beyond are clamped to that",
+                input.name,
+                short(input.low),
+                short(input.high)
+            )
+        })
+    });
+    let notes: Vec<String> = held_at.chain(parts).chain(beyond).collect();
     Ok((slice, notes))
 }

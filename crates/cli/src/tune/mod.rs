@@ -238,7 +238,13 @@ fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Fai
     let read = rows::read(&arguments.rows, model)?;
     let (data, refused) = rows::in_columns(read, model.inputs.len(), arguments.loss());
     if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
-        return Err(rows::refuse(&refused, "used"));
+        let failure = rows::refuse(&refused, "used");
+        return Err(match arguments.loss() {
+            Loss::Squared => failure,
+            Loss::Log | Loss::Ranking => failure.help(
+                "`log` and `ranking` are for outcomes of 0 and 1; for other values use `--loss squared`, or skip rows with `--skip-bad-rows`",
+            ),
+        });
     }
     Ok((data, refused))
 }

@@ -5,7 +5,7 @@ use std::io::Write;
 use flagred_tuning::{Bin, Moved};
 use fuzzy::{
     drawing::{short, visible},
-    model::{LossChange, Step},
+    model::{LossChange, Step, Term},
 };
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::{Arguments, LossName, Outcome};
 use crate::{
     failure::Failure,
-    left_out::{self, OfInterval, divided, figure},
+    left_out::{self, OfClasses, OfInterval, divided, figure},
     provenance,
     rows::word,
 };
@@ -122,6 +122,16 @@ pub(super) fn words(
                 out,
                 "{title:<11} {predicted:.3} predicted, {observed:.3} observed, {rows} rows{said}"
             )?;
+        }
+        if let Some(confusion) = &validation.confusion {
+            let model = &outcome.tuned.model;
+            let output = model.measured_output();
+            let output = output.and_then(|output| model.outputs.get(output));
+            left_out::confusion(out, confusion, |class| {
+                let terms = &output?.variable.terms;
+                let is_class = |term: &&Term| term.membership_function.number() == Some(class);
+                Some(terms.iter().find(is_class)?.name.clone())
+            })?;
         }
     }
     for (i, point) in outcome.curve.iter().flatten().enumerate() {
@@ -241,6 +251,8 @@ struct OfValidation {
     gain: OfInterval,
     /// The rows left out by tenths of their predictions, where truths are 0 and 1; else empty.
     reliability: Vec<OfBin>,
+    /// The rows left out by class and predicted class, where the output's column has 2 to 10 whole numbers; else null.
+    confusion: Option<OfClasses>,
 }
 
 #[derive(Serialize, JsonSchema)]
@@ -306,6 +318,7 @@ impl<'a> Document<'a> {
                 after: (&validation.after).into(),
                 gain: (&validation.gain).into(),
                 reliability: validation.reliability.iter().map(bin).collect(),
+                confusion: validation.confusion.as_ref().map(Into::into),
             }),
             learning_curve: outcome.curve.as_ref().map(|curve| {
                 let points = curve.iter().map(|point| OfPoint {

@@ -336,7 +336,11 @@ impl Rows {
         let (line, from, to) = self.first_step?;
         (self.is_whole && steps.len() >= LEAST_STEPS && middle >= LEAST_STEP_MS).then(|| {
             let text = format!("`t_s` goes from {from} to {to} in one row, and is in seconds");
-            problem(line, text, "divide milliseconds by 1000")
+            problem(
+                line,
+                text,
+                "divide milliseconds by 1000; rows that are seconds apart are too few to assess",
+            )
         })
     }
 

@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use fuzzy::Engine;
 
 use crate::{
-    Interval, TuneError,
+    Confusion, Interval, TuneError,
+    confusion::confusion,
     data::{Data, range},
     folds::Folds,
 };
@@ -30,6 +31,8 @@ pub struct Judged {
     pub identified: Interval,
     /// The last divided by that of the line.
     pub ratio: Interval,
+    /// What the identified models predicted for rows left out of each class, if the truths are classes.
+    pub confusion: Option<Confusion>,
     /// The rows for which no rule fires; the mean of the other rows stands for them.
     pub without_value: usize,
 }
@@ -106,6 +109,7 @@ pub fn judge(
         linear,
         identified,
         ratio,
+        confusion: confusion(&predictions[2], data),
         without_value,
     }))
 }
