@@ -284,7 +284,7 @@ impl core::error::Error for Findings {}
 /// The candidate that an author who wrote `word` may have meant.
 ///
 /// Nearness is the number of letters to insert, delete, replace or swap (optimal string alignment), at most a third
-/// of the longer word's length; case does not count. Of equally near candidates the first one counts. If none is
+/// of the longer word's length, 1 up to four letters; case does not count. Of equally near candidates the first one counts. If none is
 /// equal but for a letter, one with all words of `word` is preferred: `battery_remaining_pct` for `battery_pct`. If none is near,
 /// one that begins with the word is what was meant: `min` is short for `minimum`.
 pub fn nearest<'a>(
@@ -306,9 +306,14 @@ pub fn nearest<'a>(
     let mut best: Option<(usize, &str)> = None;
     for candidate in candidates.clone() {
         let other = fold(candidate);
-        // At least one letter stays, or any letter would be near any other.
         let longest = word.len().max(other.len());
-        let allowed = (longest / 3).max(1).min(longest.saturating_sub(1));
+        let allowed = match longest {
+            // Any letter would be near any other.
+            0 | 1 => 0,
+            // `mild` is not `cold`.
+            2..=4 => 1,
+            _ => longest.div_ceil(3),
+        };
         if other.len() > LONGEST || word.len().abs_diff(other.len()) > allowed {
             continue;
         }

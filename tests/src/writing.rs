@@ -83,7 +83,7 @@ pub fn commands(folder: &Folder) -> Vec<Writing> {
         writing(&["export", "--c", "-o", c], &[c]),
         writing(&["studio", "--page", &page, "--html", studio], &[studio]),
         writing(
-            &["man", "--all", pages],
+            &["man", "--folder", pages],
             &[&out("pages/flagred.1"), &out("pages/flagred-new.1")],
         ),
     ]

@@ -23,7 +23,7 @@ fn what_stands_in_the_wrong_place_is_told_where_it_belongs() {
         (
             &[STEADY][..],
             2,
-            "is a file, and no command",
+            "is a file, not a command",
             "`flagred assess ",
         ),
         (

@@ -79,7 +79,7 @@ fn no_output_replaces_an_input() {
         assert!(
             told.contains("as well")
                 || told.contains("which is read")
-                || told.contains("the report is HTML"),
+                || told.contains("; write `"),
             "{arguments:?}: {told}"
         );
         assert!(fs::read(input).unwrap() == before, "{arguments:?}");

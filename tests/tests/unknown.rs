@@ -198,10 +198,10 @@ fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
     assert_eq!(short.rebooted_in_air_s, [61.0]);
     assert_eq!(assess(&short, &estimator, None).verdict.to_string(), "NA");
     // A motor that is unknown around the reboot is unknown for that, not for itself.
-    let mut csv = String::from("t_s,motor1,motor2,in_air\n");
+    let mut csv = String::from("t_s,motor1,motor2,motor3,motor4,in_air\n");
     for i in 0..1500 {
         let first = if (1000..1200).contains(&i) { "" } else { "0.5" };
-        let _ = writeln!(csv, "{},{first},0.5,1", f64::from(i) * 0.04);
+        let _ = writeln!(csv, "{},{first},0.5,0.5,0.5,1", f64::from(i) * 0.04);
     }
     let verdict = |csv: &str| assess(&read(csv.as_bytes()), &estimator, None).verdict;
     let Verdict::NotAvailable(Reason::MotorUnknown { .. }) = verdict(&csv) else {

@@ -29,6 +29,7 @@ fn mistakes_get_advice_that_helps() {
         ("header.csv", "temperature,humidity,fan\n"),
         ("numbers.csv", "24,70\n1,2\n"),
         ("semicolons.csv", "t_s;motor1\n0,5;0,5\n"),
+        ("words.csv", "heat,kind\n1,good\n2,bad\n"),
         ("fan.m", "fis = mamfis('Name', 'fan');\n"),
         ("fan.py", "import skfuzzy\n"),
     ]);
@@ -92,6 +93,56 @@ fn mistakes_get_advice_that_helps() {
             "for a picture write `--svg map.svg`",
         ),
         ("map fan.yaml --check fan.yaml", 3, "`fan.yaml`"),
+        ("fan.yaml", 2, "`flagred check fan.yaml`"),
+        (
+            "explain fan.yaml temperature=nan humidity=3",
+            2,
+            "an unknown value leaves nothing to explain",
+        ),
+        (
+            "explain fan.yaml temperature=1,000.5 humidity=3",
+            2,
+            "write the number without separators: `1000.5`",
+        ),
+        ("check .", 3, "`.` is a folder"),
+        ("eval fan.yaml .", 3, "`.` is a folder"),
+        (
+            "learn fan.yaml rows.csv -o out.csv",
+            2,
+            "the file is YAML; write `out.yaml`",
+        ),
+        ("export --fis fan.yaml -o fan.fll", 2, "write `fan.fis`"),
+        ("map fan.yaml --csv -o fan.yaml", 2, "write `fan.txt`"),
+        (
+            "map fan.yaml --coverage-below 0.2",
+            2,
+            "choose one with `--fill`",
+        ),
+        (
+            "learn fan.yaml rows.csv -o out.yaml --min-support 9",
+            2,
+            "lower `--min-support`",
+        ),
+        (
+            "learn fan.yaml rows.csv -o out.yaml --rising temperature --falling temperature",
+            2,
+            "with `--rising` and with `--falling`",
+        ),
+        (
+            "learn fan.yaml rows.csv -o out.yaml --rising temperature:humidity",
+            2,
+            "name `fan`, or the input alone",
+        ),
+        (
+            "tune fan.yaml rows.csv -o out.yaml --loss log",
+            3,
+            "`--loss squared`",
+        ),
+        (
+            "identify words.csv --target kind -o out.yaml",
+            3,
+            "for two classes write 0 and 1",
+        ),
     ] {
         let words: Vec<&str> = typed.split(' ').collect();
         let (exit, _, errors) = flagred(folder.path(), &words);

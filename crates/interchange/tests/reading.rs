@@ -337,6 +337,21 @@ fn one_function_block_of_several_is_read_by_its_name() {
     assert_eq!(findings.0[0].help.as_deref(), Some("did you mean `twice`?"));
 }
 
+/// A file that ends within a section lacks rules or terms: what is left would be another rule set.
+#[test]
+fn an_fcl_that_is_cut_off_is_refused() {
+    let lines: Vec<&str> = FCL.lines().collect();
+    for length in 1..lines.len() {
+        let text = lines[..length].join("\n");
+        let found = flagred_interchange::read(&text, Format::Fcl, Losses::Accept).unwrap_err();
+        let is_cut_off = |message: &str| message.contains("the text ends");
+        assert!(
+            found.0.iter().any(|finding| is_cut_off(&finding.message)),
+            "{text}\n{found}"
+        );
+    }
+}
+
 #[test]
 fn no_damage_makes_a_reader_panic() {
     damage(2_000);

@@ -28,8 +28,14 @@ const FIRST_US: u64 = (1 << 32) - 60_000_000;
 
 /// The sources of Lua 5.3, which come with the package `lua-src`.
 fn sources() -> PathBuf {
+    // Packages for other platforms are not on every machine.
+    let version = Command::new("rustc").arg("-vV").output().unwrap();
+    let version = String::from_utf8(version.stdout).unwrap();
+    let mut lines = version.lines();
+    let host = lines.find_map(|line| line.strip_prefix("host: ")).unwrap();
     let metadata = Command::new(env!("CARGO"))
         .args(["metadata", "--format-version", "1", "--offline"])
+        .args(["--filter-platform", host])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .unwrap();

@@ -320,6 +320,13 @@ inputs:
   constant: {mean: battery_v, time_constant_s: 0}
   engine: {mean: motor_margin, if_missing: 0.2}
   full: {last: battery_v, if_missing: full}
+  number: {last: 5}
+  divided: {last: battery_a / battery_v}
+  doubled: {mean: {product: [battery_v, 2]}}
+  whole: {percentile: battery_v}
+verdict:
+  idle_below: 10
+  reserve: {below: 15}
 other_risks:
   risk: {}
   other: {verdict: {}, warn: {risk: 120}}
