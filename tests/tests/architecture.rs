@@ -291,7 +291,7 @@ fn every_invariant_names_what_holds_it() {
     assert!(invariants.len() >= 10);
     for invariant in invariants {
         let (_, behind) = invariant
-            .split_once("Held by")
+            .split_once("Enforced by")
             .unwrap_or_else(|| panic!("{invariant}"));
         let files = behind.split('`').skip(1).step_by(2);
         let held = files.filter(|file| root().join(file).is_file()).count();
