@@ -3,13 +3,13 @@
 //! The steps from a model to an outcome, for the rules `IF heat IS low THEN speed IS slow` and
 //! `IF heat IS high THEN speed IS fast`, with three triangles for each variable from 0 to 10:
 //!
-//! 1. `compile` gives each proposition a number: `heat IS low` is literal 0, `heat IS high` literal 1. Rules become drafts of
-//!    indices, and each output gets firing strengths: 0 to 2 for `slow`, `medium` and `fast`.
+//! 1. `compile` assigns a number to each proposition: `heat IS low` is literal 0, `heat IS high` is literal 1. Rules become
+//!    drafts that contain indices, and each output gets firing strengths: 0 to 2 for `slow`, `medium` and `fast`.
 //! 2. `strategy` chooses how the output is computed and how rules fire. Here the output is a partition, and all rules are in
-//!    a table of one axis with two cells.
-//! 3. `rules` and `arrays` lay all that out as the arrays of a [`Table`]; its [module](table) shows them for this example.
-//! 4. An evaluation at 8 finds the degrees of the two literals alive there (0 and 0.6), raises the firing strengths to
-//!    (0, 0, 0.6) and has `table/closed.rs` compute the centroid 8.14.
+//!    a table with one axis and two cells.
+//! 3. `rules` and `arrays` store the result in the arrays of a [`Table`]; its [module](table) shows them for this example.
+//! 4. An evaluation at 8 computes the degrees of the two literals (0 and 0.6), sets the firing strengths to (0, 0, 0.6), and
+//!    computes the centroid 8.14 in `table/closed.rs`.
 
 use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::ops::Range;
