@@ -41,7 +41,7 @@
 //! - `std` and `yaml` (default): the standard library; rule sets as YAML, and `Model: FromStr`.
 //! - `serde`: models in any format that serde supports; outcomes, explanations and findings as data.
 //! - `check`, `learn`: the modules of these names.
-//! - `drawing`: pictures of rule sets, as SVG and as text; `schema`: JSON Schemas of the serialised types.
+//! - `drawing`: drawings of rule sets, as SVG and as text; `schema`: JSON Schemas of the serialised types.
 //! - `simd`: wide vectors for batches and for single evaluations of common rule sets; `parallel`: batches and maps on
 //!   all cores.
 //! - `alloc` without `std` builds models and engines for `no_std`; without any feature only compiled tables are

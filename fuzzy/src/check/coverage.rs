@@ -11,7 +11,7 @@ use crate::model::{Model, Variable};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Uncovered {
-    /// The output.
+    /// The name of the output.
     pub output: String,
     /// The firing strength that no rule reaches; 0 if `silent`.
     pub coverage: f64,
@@ -34,7 +34,7 @@ pub struct Uncovered {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Side {
-    /// The input.
+    /// The name of the input.
     pub input: String,
     /// The lower end.
     pub low: f64,
@@ -47,9 +47,9 @@ pub struct Side {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Antecedent {
-    /// The input.
+    /// The name of the input.
     pub input: String,
-    /// The term.
+    /// The name of the term.
     pub term: String,
 }
 

@@ -13,7 +13,7 @@ use super::{
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Jump {
-    /// The output.
+    /// The name of the output.
     pub output: String,
     /// The value of each input; the value of `input` is just below the jump.
     pub at: Vec<Coordinate>,

@@ -133,7 +133,7 @@ pub struct Report {
 /// # Errors
 /// A claim of `options` names an input or output that the model does not have.
 ///
-/// # Example: a rule is missing
+/// # Example: a rule set in which a rule is missing
 /// ```
 /// use fuzzy::{Engine, check};
 ///

@@ -14,7 +14,7 @@ use super::{
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Monotone {
-    /// The input.
+    /// The name of the input.
     pub input: String,
     /// The claimed direction of the output as the input increases.
     pub direction: Direction,

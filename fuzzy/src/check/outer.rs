@@ -25,7 +25,7 @@ pub(super) const NEAR: f64 = 0.01;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Unreached {
-    /// The term.
+    /// The name of the term.
     pub term: String,
     /// The peak of the term; for a plateau, the end that is nearer to the values of the output.
     pub peak: f64,

@@ -17,7 +17,7 @@ use crate::{
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Coordinate {
-    /// The input.
+    /// The name of the input.
     pub input: String,
     /// Its value.
     pub value: f64,

@@ -13,7 +13,7 @@ use super::{
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Reach {
-    /// The output.
+    /// The name of the output.
     pub output: String,
     /// The smallest value found.
     pub low: f64,

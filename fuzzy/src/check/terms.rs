@@ -10,7 +10,7 @@ use crate::model::{MembershipFunction, Model, Term, Variable};
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TermOf {
-    /// The input or output.
+    /// The name of the input or output.
     pub variable: String,
     /// The term; `None` if no term of the variable is used.
     pub term: Option<String>,
@@ -22,7 +22,7 @@ pub struct TermOf {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Hole {
-    /// The input.
+    /// The name of the input.
     pub input: String,
     /// The lower end.
     pub low: f64,
@@ -36,11 +36,11 @@ pub struct Hole {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct EqualTerms {
-    /// The input or output.
+    /// The name of the input or output.
     pub variable: String,
-    /// The earlier term.
+    /// The name of the earlier term.
     pub first: String,
-    /// The later term.
+    /// The name of the later term.
     pub second: String,
 }
 

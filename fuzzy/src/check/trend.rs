@@ -17,9 +17,9 @@ use crate::{
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct AgainstTrend {
-    /// The input.
+    /// The name of the input.
     pub input: String,
-    /// The output.
+    /// The name of the output.
     pub output: String,
     /// The direction of most steps along the input.
     pub trend: Direction,

@@ -72,7 +72,7 @@ pub struct Axis {
 /// One cell of a slice.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Cell {
-    /// The value of the output; `None` where it is unknown.
+    /// The value of the output; `None` if it is unknown.
     pub value: Option<f64>,
     /// The largest firing strength of a rule.
     pub coverage: f64,

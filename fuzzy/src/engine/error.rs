@@ -30,17 +30,17 @@ pub enum EvaluateError {
     },
     /// The model has no input of this name.
     UnknownInput {
-        /// The name.
+        /// The unknown name.
         name: String,
     },
     /// An input has no value.
     MissingInput {
-        /// The input.
+        /// The name of the input.
         name: Arc<str>,
     },
     /// An input has two values.
     RepeatedInput {
-        /// The input.
+        /// The name of the input.
         name: Arc<str>,
     },
     /// The value is not a struct or map of numbers.

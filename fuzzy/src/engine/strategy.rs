@@ -13,14 +13,14 @@
 //! | weighted average, weighted sum | `Sugeno` | `defuzzify/weighted.rs` | `table/closed.rs` | 24 |
 //! | Tsukamoto | `Tsukamoto` | - | `table/closed.rs` | 46 |
 //! | terms that are all singletons | `Integrated`, as singletons | `defuzzify/singletons.rs` | the same | 122 |
-//! | `samples` are given | `Integrated`, as samples | `defuzzify/sampled.rs` | the same | 36 a sample |
+//! | `samples` are given | `Integrated`, as samples | `defuzzify/sampled.rs` | the same | 36 per sample |
 //! | centroid, minimum or product with maximum, a partition | `Partition` | `defuzzify/partition.rs` | `table/closed.rs` | 27 |
 //! | centroid, product with sum, up to 64 terms, no formula | `Moments` | `defuzzify/prepared.rs` | `table/closed.rs` | 23 |
-//! | centroid, minimum with maximum, straight terms as above | `Layered` | `defuzzify/layers.rs` | `table/layers.rs` | 60 |
+//! | centroid, minimum with maximum, straight terms (limits as above) | `Layered` | `defuzzify/layers.rs` | `table/layers.rs` | 60 |
 //! | minimum or product with maximum, or with sum except for maxima, up to 64 terms, no formula | `Prepared` | `defuzzify/prepared.rs` | `table/set.rs` | 73 to 1,200 |
 //! | any other | `Integrated`, in pieces | `defuzzify/curves.rs` | the same | 250 to 3,000 |
 //!
-//! # How firing strengths of rules with the same consequent combine
+//! # How firing strengths of rules with the same consequent are combined
 //!
 //! | defuzzifier and operators | [`Merging`] |
 //! |---|---|
@@ -35,10 +35,10 @@
 //!
 //! | rules | layout | fired by | when |
 //! |---|---|---|---|
-//! | ANDs of straight terms, at most two alive per input | [`Conjunctions::Uniform`] | `table/conjunctions.rs` | up to 6 inputs, 2 consequents a cell |
-//! | other ANDs | [`Conjunctions::Dense`] | `table/conjunctions.rs` | up to 65,536 cells and 32 cells a rule |
+//! | ANDs of straight terms, at most two alive per input | [`Conjunctions::Uniform`] | `table/conjunctions.rs` | up to 6 inputs, 2 consequents per cell |
+//! | other ANDs | [`Conjunctions::Dense`] | `table/conjunctions.rs` | up to 65,536 cells and 32 cells per rule |
 //! | ANDs in larger tables | [`Conjunctions::Trie`] | `table/conjunctions.rs` | always possible |
-//! | other conditions, and ANDs of small rule sets | programs | `table/firing.rs` | always possible |
+//! | any other conditions, and ANDs of small rule sets | programs | `table/firing.rs` | always possible |
 //!
 //! | evaluation | [`Single`] | file | when | ns |
 //! |---|---|---|---|---|
@@ -46,7 +46,7 @@
 //! | one row | `Vectors` | `engine/vectors/uniform.rs` | feature `simd`, a uniform table of 3 or 4 inputs and 1 output | 66 (`four_inputs`) |
 //! | one row | `Cells` | `table/firing.rs` | any other uniform table without programs | 73 (2 outputs) |
 //! | one row | `Rules` | `table/firing.rs` | any other rules | 82 (`tipper`) |
-//! | many rows | - | `engine/batch.rs` | programs alone, if there are few ([`OwnedTable::programs_alone`]); else as laid out | 13 |
+//! | many rows | - | `engine/batch.rs` | programs alone, if there are few ([`OwnedTable::programs_alone`]); otherwise the layout above | 13 |
 
 use super::arrays::OwnedTable;
 #[cfg(feature = "simd")]

@@ -42,7 +42,7 @@ pub enum Effect {
     },
     /// A different rule is the dominant rule of an output.
     Rule {
-        /// The output.
+        /// The name of the output.
         output: String,
         /// The index of the rule in the model, `None` if no rule fires; serialised as the rule number, which counts
         /// from 1.

@@ -132,7 +132,7 @@ pub enum LearnError {
     },
     /// A setting names a variable that is not an input.
     NoInput {
-        /// The name.
+        /// The unknown name.
         name: String,
     },
 }

@@ -72,7 +72,7 @@ pub enum GridError {
     },
     /// There is no axis with this name: it is not an input, or it is fixed.
     NoAxis {
-        /// The name.
+        /// The requested name.
         name: String,
     },
     /// A fixed value is not finite.

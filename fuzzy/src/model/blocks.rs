@@ -1,4 +1,4 @@
-//! Rule blocks: rules with operators and an activation method of their own.
+//! Rule blocks: rules with their own operators and activation method.
 
 use alloc::string::String;
 
@@ -49,7 +49,7 @@ pub struct Block {
 }
 
 impl Block {
-    /// An enabled block without rules, with Mamdani's operators.
+    /// Creates an enabled block without rules, with Mamdani's operators.
     pub fn new(name: impl Into<String>) -> Self {
         Block {
             name: name.into(),

@@ -11,7 +11,7 @@ use crate::rule::{self, Condition, Consequent, Proposition};
 impl Model {
     /// Starts a model that is built in code.
     ///
-    /// # Example: a tip from the service alone
+    /// # Example: a tip that depends only on the service
     /// ```
     /// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
     /// use fuzzy::rule::{Condition, Rule};
@@ -162,7 +162,7 @@ impl Variable {
         self
     }
 
-    /// Adds terms evenly spaced over the range: triangles with shoulders at the ends, whose degrees sum to 1.
+    /// Adds terms evenly spaced over the range: triangles, with shoulders at the ends. Their degrees sum to 1.
     ///
     /// # Example
     /// ```
@@ -179,7 +179,7 @@ impl Variable {
         self.partition_at(names.into_iter().zip(peaks))
     }
 
-    /// Adds terms with these peaks, from left to right: triangles with shoulders at the ends, whose degrees sum to 1.
+    /// Adds terms with these peaks, from left to right: triangles, with shoulders at the ends. Their degrees sum to 1.
     ///
     /// # Example
     /// ```

@@ -43,16 +43,16 @@
 //!
 //! # Terminology
 //!
-//! | word here | meaning in the literature |
+//! | term in this module | meaning in the literature |
 //! |---|---|
 //! | literal | a proposition "input is term", with its hedges |
 //! | alive | a literal whose support contains the value |
-//! | partial | the conjunction of the first literals of an antecedent, while it is over 0 |
+//! | partial | the conjunction of the first literals of an antecedent, while it is above 0 |
 //! | action | a consequent: the rule, its weight, and the firing strength that it raises |
 //! | flank | a part of a membership function that only rises or only falls; its tail is the integral from its foot |
 //! | knot | a node of the tabulated integral of a curved flank |
 //! | section, strand | a part of the output's range on which terms keep their order; a flank on it |
-//! | layer, base | the part of a set between two alpha-levels; the lower one of them |
+//! | layer, base | the part of a set between two alpha-levels; the lower of the two levels |
 
 use core::ops::DerefMut;
 
