@@ -1,4 +1,4 @@
-//! Outer terms of an output whose peak the output never reaches, and suggestions to fix that.
+//! Outer terms of an output whose peak the output never reaches, with suggested changes to the rule set.
 //!
 //! The centroid of a term lies inside the term. The peak of a term at the end of the range is therefore never reached:
 //! a valve whose range starts at 0 never closes completely with the term `off`.

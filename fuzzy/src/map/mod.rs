@@ -199,7 +199,7 @@ impl DecisionMap {
         })
     }
 
-    /// Returns the grid.
+    /// Returns the grid on which the output was evaluated.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }

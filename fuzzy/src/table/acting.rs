@@ -62,13 +62,14 @@ pub(super) fn fires(strength: f64, least: f64) -> f64 {
 
 /// A consumer of the rules that fire.
 pub(super) trait Act<const L: usize> {
-    /// Adds the actions of rules with the degree of their antecedent in one row.
+    /// Performs the actions of rules in one row; `degree` is the degree of their antecedent.
     fn act(&mut self, actions: &[Action], row: usize, degree: f64);
 
-    /// Adds the actions of a rule with its firing strength in each row. The weights of the actions are not used.
+    /// Performs the actions of a rule in all rows; `strength` returns its firing strength in a row. The weights of the
+    /// actions are not used.
     fn act_with(&mut self, actions: &[Action], strength: impl Fn(usize) -> f64);
 
-    /// Adds the actions of cells of a uniform table. The contents of `reached` are unspecified afterwards.
+    /// Performs the actions of cells of a uniform table. The contents of `reached` are unspecified afterwards.
     #[inline(always)]
     fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [Partial<L>]) {
         for cell in reached {

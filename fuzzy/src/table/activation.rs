@@ -18,26 +18,26 @@ pub enum Activation {
     General,
     /// The first rules, in the order of the rule set, with a strength of at least `at_least`.
     First {
-        /// The number of rules.
+        /// The maximum number of rules that fire.
         rules: u32,
         /// The minimum strength of these rules.
         at_least: f64,
     },
     /// The last rules, in the order of the rule set, with a strength of at least `at_least`.
     Last {
-        /// The number of rules.
+        /// The maximum number of rules that fire.
         rules: u32,
         /// The minimum strength of these rules.
         at_least: f64,
     },
     /// The strongest rules; among equally strong ones the first.
     Highest {
-        /// The number of rules.
+        /// The maximum number of rules that fire.
         rules: u32,
     },
     /// The weakest rules that fire; among equally weak ones the first.
     Lowest {
-        /// The number of rules.
+        /// The maximum number of rules that fire.
         rules: u32,
     },
     /// All rules, with their strengths divided by the sum of all strengths of the block.

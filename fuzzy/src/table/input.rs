@@ -90,7 +90,7 @@ impl Line {
     }
 }
 
-/// Computes the degrees of the literals that can be above 0 at the values of each row.
+/// Computes, for each row, the degrees of those literals that can be above 0 at its value.
 #[inline(always)]
 pub(crate) fn degrees_in_rows<A: Arrays, const L: usize>(
     table: &A,

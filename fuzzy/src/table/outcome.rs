@@ -2,7 +2,7 @@
 
 /// The result of an evaluation for one output.
 ///
-/// # Example: a value, or the reason for a missing value
+/// # Example: a value, or the reason why there is none
 /// ```
 /// use fuzzy::engine::{Outcome, State};
 ///
@@ -11,7 +11,7 @@
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Outcome {
-    /// The value, or the reason for a missing value.
+    /// The value, or the reason why there is none.
     pub state: State,
     /// The largest firing strength (including the weight) of a rule of this output, in [0, 1].
     pub coverage: f64,
@@ -22,7 +22,7 @@ pub struct Outcome {
     pub clamped: bool,
 }
 
-/// The value of an output, or the reason for a missing value.
+/// The value of an output, or the reason why it has none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum State {
     /// Rules fired and determined this value.

@@ -135,16 +135,16 @@ pub struct Step {
 pub struct Op(pub u32);
 
 impl Op {
-    /// Push the degree of a literal.
+    /// Pushes the degree of a literal.
     pub const PUSH: Op = Op(0);
-    /// Replace the top by its AND with a literal.
+    /// Replaces the top of the stack by its conjunction with a literal.
     pub const AND_LITERAL: Op = Op(1);
-    /// Replace the top by its OR with a literal.
+    /// Replaces the top of the stack by its disjunction with a literal.
     pub const OR_LITERAL: Op = Op(2);
-    /// Replace the two on top by their AND.
+    /// Replaces the top two degrees by their conjunction.
     pub const AND: Op = Op(3);
-    /// Replace the two on top by their OR.
+    /// Replaces the top two degrees by their disjunction.
     pub const OR: Op = Op(4);
-    /// Replace the top by one minus it.
+    /// Replaces the top of the stack by one minus its degree.
     pub const NOT: Op = Op(5);
 }
