@@ -7,7 +7,8 @@ use super::{
     probe::{Coordinate, Line, MOST_ON_A_LINE, NOTABLE, Probe},
 };
 
-/// A jump of an output.
+/// A discontinuity of an output: between two neighbouring values of an input, the output changes by more than 0.5 % of
+/// its range.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -1,7 +1,7 @@
 //! Outer terms of an output whose peak the output never reaches, with suggested changes to the rule set.
 //!
-//! The centroid of a term lies inside the term. The peak of a term at the end of the range is therefore never reached:
-//! a valve whose range starts at 0 never closes completely with the term `off`.
+//! The centroid of a term lies inside the term, so the output never reaches the peak of a term at the end of the range.
+//! For example, a valve with a range from 0 and a term `off` at 0 never closes completely.
 
 use alloc::{
     format,

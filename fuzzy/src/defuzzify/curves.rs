@@ -250,8 +250,9 @@ impl Curves {
         }
     }
 
-    /// Fills `parts` with the activated terms on a part of the interval of `runs`, except those that are 0 there. If
-    /// the kinks of all terms are known, each term has a single form on it.
+    /// Fills `parts` with the activated terms between `from` and `to`, an interval inside that of `runs`, except those
+    /// that are 0 there. If the kinks of all terms are known, each activated term has the same form on the whole
+    /// interval.
     fn parts(
         &self,
         strengths: Strengths<'_>,

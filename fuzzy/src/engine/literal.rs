@@ -83,7 +83,7 @@ impl Literals {
         }
     }
 
-    /// Iterates over the intervals, with the lines above 0 on each.
+    /// Iterates over the intervals; each item contains the lines above 0 on the interval.
     pub(super) fn intervals(&self) -> impl Iterator<Item = &[Line]> {
         let ends = self.starts.iter().zip(self.starts.iter().skip(1));
         ends.map(|(start, end)| &self.lines[*start as usize..*end as usize])

@@ -27,7 +27,7 @@ pub(super) struct Draft {
     pub(super) block: usize,
 }
 
-/// The settings by which the rules of a stage fire.
+/// The operators and activation methods with which the rules of a stage fire.
 #[derive(Debug, Clone)]
 pub(super) struct Firing {
     pub(super) and: Conjunction,
@@ -37,7 +37,7 @@ pub(super) struct Firing {
     pub(super) blocks: Vec<FiringBlock>,
 }
 
-/// The settings by which the rules of a block fire.
+/// The operators and the activation method with which the rules of a block fire.
 #[derive(Debug, Clone)]
 pub(super) struct FiringBlock {
     pub(super) index: usize,

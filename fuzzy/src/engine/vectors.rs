@@ -76,8 +76,8 @@ impl And {
         }
     }
 
-    /// Combines the degrees of two lines per input. Returns, in this order, the combinations of first and first, second
-    /// and first, first and second, second and second line.
+    /// Combines the degrees of two lines of each of two inputs. With pairs (line of the first input, line of the second
+    /// input), the result is in the order (1, 1), (2, 1), (1, 2), (2, 2).
     #[inline(always)]
     fn cells<S: Simd>(self, simd: S, degrees: f64x4<S>) -> f64x4<S> {
         let [a, b, c, d] = degrees.to_array();

@@ -373,7 +373,7 @@ fn shape(form: &Form) -> Node {
     any_of(form.about, options)
 }
 
-/// Returns the schema of operators; without the aggregation for blocks.
+/// Returns the schema of operators. `all` adds the aggregation, which blocks do not have.
 fn operators(description: &str, all: bool) -> Node {
     let properties = [
         ("and", words("AND; minimum where absent", &CONJUNCTIONS)),

@@ -64,7 +64,7 @@ impl SetDefuzzifier {
 pub struct FuzzySet {
     /// The unit of length of areas.
     pub unit: f64,
-    /// The defuzzifier, an index in [`SetDefuzzifier::ALL`].
+    /// The defuzzifier, as an index in [`SetDefuzzifier::ALL`].
     pub defuzzifier: u32,
     /// 1 if the aggregation is the sum, 0 if it is the maximum.
     pub sum: u32,
@@ -115,9 +115,9 @@ pub struct Strand {
     pub left: f64,
     /// The degree just inside the upper end.
     pub right: f64,
-    /// The area and moment of the flank's tail up to the lower end.
+    /// The area and moment of the flank's tail up to the lower end of the section.
     pub left_tail: [f64; 2],
-    /// The area and moment of the flank's tail up to the upper end.
+    /// The area and moment of the flank's tail up to the upper end of the section.
     pub right_tail: [f64; 2],
     /// The index of its firing strength among those of the output.
     pub strength: u32,

@@ -19,10 +19,10 @@ struct Cuts<'a> {
 }
 
 impl Curves {
-    /// Fills `workspace` with the cuts of the aggregated set on the interval of its runs, from left to right: its ends,
-    /// kinks and steps. Returns whether all of them are known; this is not the case for formulas, and if the memory is
-    /// exhausted. A kink may be missed where curves meet twice between two cuts; the integration then takes longer but
-    /// is equally accurate.
+    /// Fills `workspace.cuts` with the cuts of the aggregated set between `from` and `to`, in ascending order: the
+    /// ends, kinks and steps. Returns whether all of them are known. They are not if a term is a formula or the memory
+    /// is exhausted. A kink may also be missed if curves meet twice between two cuts; the integration then takes longer
+    /// but is equally accurate.
     pub(super) fn kinks(
         &self,
         strengths: Strengths<'_>,
