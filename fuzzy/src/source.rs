@@ -60,7 +60,7 @@ impl Source {
     /// Returns the syntax tree of the text, parsed as YAML.
     ///
     /// # Errors
-    /// The syntax errors of [`yaml::parse`].
+    /// Fails like [`yaml::parse`], but only for syntax errors.
     #[doc(hidden)] // For the packages of this repository.
     pub fn tree(&self) -> Result<&Node, Findings> {
         kept(&self.tree, || yaml::read(&self.text))
@@ -69,7 +69,7 @@ impl Source {
     /// Returns the rule set with the positions of its parts.
     ///
     /// # Errors
-    /// The errors of [`yaml::parse`].
+    /// Fails like [`yaml::parse`].
     pub fn document(&self) -> Result<&Document, Findings> {
         kept(&self.document, || yaml::document(self.tree()?, &self.text))
     }
@@ -77,7 +77,7 @@ impl Source {
     /// Returns the compiled rule set.
     ///
     /// # Errors
-    /// The errors of [`document`](Self::document); or the rule set has no rules, which is allowed in a document.
+    /// Fails like [`document`](Self::document), and if the rule set has no rules (a document may have none).
     pub fn engine(&self) -> Result<&Engine, Findings> {
         let compile = || {
             let document = self.document()?;

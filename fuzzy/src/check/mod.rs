@@ -219,7 +219,7 @@ pub fn counterexamples(
     self::claims(engine, claims).map(|(found, _)| found)
 }
 
-/// Works as [`counterexamples`], and also returns whether all selected points were evaluated.
+/// Works like [`counterexamples`], and also returns whether all selected points were evaluated.
 fn claims(
     engine: &Engine,
     claims: &[Monotone],
@@ -236,7 +236,7 @@ fn claims(
 /// findings with positions. `engine` must be compiled from the document.
 ///
 /// # Errors
-/// The errors of [`check`].
+/// Fails like [`check`].
 pub fn document(
     document: &Document,
     engine: &Engine,

@@ -100,7 +100,7 @@ pub fn distinct(i: usize) -> Colour {
     OKABE_ITO[i % OKABE_ITO.len()].mix(Colour::WHITE, lighter)
 }
 
-/// Works as [`distinct`], but the colours are dark enough for a thin line on white: there is no yellow, and darker
+/// Works like [`distinct`], but the colours are dark enough for a thin line on white: there is no yellow, and darker
 /// colours follow.
 pub fn distinct_line(i: usize) -> Colour {
     const ORDER: [usize; 6] = [5, 4, 2, 6, 1, 0];

@@ -23,7 +23,7 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     replaced(text, |_, _| false)
 }
 
-/// Works as [`visible`], for a text of several lines: line breaks and tabs are kept.
+/// Works like [`visible`], for a text of several lines: line breaks and tabs are kept.
 pub fn visible_lines(text: &str) -> Cow<'_, str> {
     replaced(text, |c, rest| match c {
         '\n' | '\t' => true,

@@ -52,10 +52,10 @@ impl Engine {
         Ok(outcomes)
     }
 
-    /// Works as [`Engine::evaluate_batch`], into `outcomes`, which has one element per row and output.
+    /// Works like [`Engine::evaluate_batch`], into `outcomes`, which has one element per row and output.
     ///
     /// # Errors
-    /// The errors of [`Engine::evaluate_batch`]; or the number of outcomes is wrong.
+    /// Fails like [`Engine::evaluate_batch`], and if the number of outcomes is wrong.
     pub fn evaluate_batch_into(
         &self,
         columns: &[&[f64]],
@@ -93,7 +93,7 @@ impl Engine {
     /// equal to [`Outcome::value`] of [`Engine::evaluate`].
     ///
     /// # Errors
-    /// The errors of [`Engine::evaluate_batch`]; or `values` does not have one column per output, or its columns differ
+    /// Fails like [`Engine::evaluate_batch`], and if `values` does not have one column per output, or its columns differ
     /// in length from those of the inputs.
     ///
     /// # Example: a column of temperatures

@@ -82,7 +82,7 @@ impl Document {
     /// Compiles the model; `text` is the text that it was read from.
     ///
     /// # Errors
-    /// The errors of [`validate`](Self::validate).
+    /// Fails like [`validate`](Self::validate).
     pub fn compile(&self, text: &str) -> Result<Engine, Findings> {
         self.validate(text)?;
         Ok(Engine::compile(&self.model))

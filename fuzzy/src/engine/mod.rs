@@ -282,10 +282,10 @@ impl Engine {
         Ok(outcomes)
     }
 
-    /// Works as [`Engine::evaluate`], without allocation: `outcomes` has one element per output.
+    /// Works like [`Engine::evaluate`], without allocation: `outcomes` has one element per output.
     ///
     /// # Errors
-    /// The errors of [`Engine::evaluate`]; or the length of `outcomes` differs from the number of outputs.
+    /// Fails like [`Engine::evaluate`], and if the length of `outcomes` differs from the number of outputs.
     ///
     /// # Example: a loop that does not allocate
     /// ```

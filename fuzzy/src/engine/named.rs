@@ -68,7 +68,7 @@ impl Engine {
     /// names of the outputs.
     ///
     /// # Errors
-    /// The errors of [`Engine::evaluate`]; or a name is not an input, or an input has no value or two values.
+    /// Fails like [`Engine::evaluate`], and if a name is not an input, or an input has no value or two values.
     ///
     /// # Example
     /// ```
@@ -100,10 +100,10 @@ impl Engine {
         })
     }
 
-    /// Works as [`Engine::explain`], with values identified by the names of the inputs, in any order.
+    /// Works like [`Engine::explain`], with values identified by the names of the inputs, in any order.
     ///
     /// # Errors
-    /// The errors of [`Engine::evaluate_named`].
+    /// Fails like [`Engine::evaluate_named`].
     ///
     /// # Example
     /// ```
@@ -152,10 +152,10 @@ impl Engine {
         Ok(values)
     }
 
-    /// Works as [`Engine::evaluate_named`] with a struct or map of numbers, whose fields are the inputs.
+    /// Works like [`Engine::evaluate_named`] with a struct or map of numbers, whose fields are the inputs.
     ///
     /// # Errors
-    /// The errors of [`Engine::evaluate_named`]; or `inputs` is not a struct or map of numbers.
+    /// Fails like [`Engine::evaluate_named`], and if `inputs` is not a struct or map of numbers.
     ///
     /// # Example
     /// ```

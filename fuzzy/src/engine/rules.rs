@@ -86,7 +86,7 @@ type Plain<'d> = (&'d [u32], &'d [Action]);
 /// The maximum number of cells of a dense table, and its maximum number of cells per rule.
 const MOST_CELLS: usize = 1 << 16;
 const MOST_CELLS_A_RULE: usize = 32;
-/// With more axes an evaluation would visit more than 64 cells, most of them with degree 0.
+/// The maximum number of axes. With more, an evaluation would visit more than 64 cells, most of them with degree 0.
 const MOST_AXES: usize = 6;
 const MOST_ACTIONS_A_CELL: usize = 2;
 /// The maximum number of steps for which evaluating all rules is faster than finding those that fire.

@@ -94,7 +94,7 @@ impl<'e> Sequence<'e> {
     /// unchanged.
     ///
     /// # Errors
-    /// The errors of [`Engine::evaluate`].
+    /// Fails like [`Engine::evaluate`].
     pub fn evaluate(&mut self, inputs: &[f64]) -> Result<&[Outcome], EvaluateError> {
         self.engine.fits(inputs, &self.outcomes)?;
         self.next(inputs);
@@ -106,7 +106,7 @@ impl<'e> Sequence<'e> {
     /// [`Engine::evaluate_batch_into`], this evaluates the rows in order and therefore on one core.
     ///
     /// # Errors
-    /// The errors of [`Engine::evaluate_batch_into`].
+    /// Fails like [`Engine::evaluate_batch_into`].
     pub fn evaluate_batch_into(
         &mut self,
         columns: &[&[f64]],

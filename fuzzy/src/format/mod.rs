@@ -52,7 +52,7 @@ pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     })
 }
 
-/// Works as [`read`] for an unfinished rule set, which may have no outputs and no rules. If there are errors, only
+/// Works like [`read`] for an unfinished rule set, which may have no outputs and no rules. If there are errors, only
 /// these are returned.
 #[doc(hidden)]
 pub fn read_unfinished(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
@@ -248,7 +248,7 @@ pub fn write(model: &Model) -> Node {
     write::model(model)
 }
 
-/// Works as [`write`], but uses lists of named entries for mappings whose order is significant, because many formats
+/// Works like [`write`], but uses lists of named entries for mappings whose order is significant, because many formats
 /// sort keys.
 #[cfg(feature = "serde")]
 pub(crate) fn write_lists(model: &Model) -> Node {

@@ -42,7 +42,7 @@ impl Consequents {
         Some((term, degree))
     }
 
-    /// Works as [`Consequents::highest`], but returns the term with the nearest peak if all degrees are 0.
+    /// Works like [`Consequents::highest`], but returns the term with the nearest peak if all degrees are 0.
     pub(super) fn nearest(&self, output: &Variable, value: f64) -> u16 {
         let highest = self.highest(output, value);
         highest.map_or_else(|| self.nearest_peak(value), |(term, _)| term)

@@ -1,4 +1,6 @@
-//! The rule language: its syntax tree, parser and printer. `IF heat IS high AND humidity IS very high THEN speed IS fast WITH 0.8`.
+//! The rule language: its syntax tree, parser and printer.
+//!
+//! An example is `IF heat IS high AND humidity IS very high THEN speed IS fast WITH 0.8`.
 //!
 //! The precedence, from high to low, is NOT, AND, OR; parentheses group.
 

@@ -69,9 +69,9 @@ fn smooth(foot: f64, top: f64, degree: f64) -> f64 {
     }
 }
 
-/// Returns the value at which straight lines between points, whose degrees only rise or only fall, have a degree. In
-/// the rising direction, it is the first such value. A degree below all of them gives the start of the slope, a degree
-/// above all of them its end.
+/// Returns the value at which a piecewise linear function has a degree. The degrees of its points must only rise or
+/// only fall. If several values have the degree, the result is the first one in the direction in which the degrees
+/// rise. A degree below all of them gives the start of the slope, a degree above all of them its end.
 fn piecewise(points: &[[f64; 2]], degree: f64) -> f64 {
     match (points.first(), points.last()) {
         (Some([_, first]), Some([_, last])) if first > last => {

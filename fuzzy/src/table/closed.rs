@@ -137,7 +137,7 @@ impl Pair {
         (area, alone - self.middle[side] * common)
     }
 
-    /// Works as [`Pair::cut`], for a term that is scaled.
+    /// Works like [`Pair::cut`], for a term that is scaled.
     #[inline(always)]
     pub(crate) fn scaled(&self, side: usize, h: f64, right: f64) -> (f64, f64) {
         let t = h / larger(h + right, f64::MIN_POSITIVE);
@@ -224,7 +224,7 @@ pub(super) fn closed<A: Arrays, const L: usize>(
     true
 }
 
-/// Works as [`closed`]. It is a separate function because its code would take registers from that of partitions.
+/// Works like [`closed`]. It is a separate function because its code would take registers from that of partitions.
 #[inline(never)]
 pub(super) fn closed_apart<A: Arrays, const L: usize>(
     table: &A,
@@ -237,7 +237,7 @@ pub(super) fn closed_apart<A: Arrays, const L: usize>(
     closed(table, output, strengths, bases, inputs, values)
 }
 
-/// Works as [`closed`], for a partition.
+/// Works like [`closed`], for a partition.
 #[inline(always)]
 pub(super) fn partition<A: Arrays, const L: usize>(
     table: &A,

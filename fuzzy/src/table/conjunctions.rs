@@ -34,7 +34,7 @@ impl Partial {
 }
 
 impl<const L: usize> Partial<L> {
-    /// A value to initialise memory, with degree 0.
+    /// The initial content of memory, with degree 0.
     pub const NONE: Self = Partial {
         degree: [0.0; L],
         at: [0; L],

@@ -37,7 +37,7 @@ pub(crate) fn fire<A, N, P, S, const L: usize, const CELLS: bool>(
     }
 }
 
-/// Works as [`fire`], for rules of any kind in one row.
+/// Works like [`fire`], for rules of any kind in one row.
 #[inline(always)]
 pub(crate) fn fire_row<A, N, P, S>(table: &A, scratch: &mut Buffers<N, P, S>)
 where
@@ -156,7 +156,7 @@ pub(super) fn fire_row_into<A: Arrays>(
     }
 }
 
-/// Works as [`fire_row_into`], but is compiled only once for all operators; for rare calls.
+/// Works like [`fire_row_into`], but is compiled only once for all operators; for rare calls.
 pub(super) fn fire_row_by_any<A: Arrays>(
     table: &A,
     mut finding: Finding<'_, 1>,

@@ -86,7 +86,7 @@ impl<'a> Fields<'a> {
 }
 
 impl<'a> Entry<'a> {
-    /// Works as [`Node::fields`] of the value; missing keys are reported at the key.
+    /// Works like [`Node::fields`] of the value; missing keys are reported at the key.
     pub fn fields(
         &self,
         what: &str,

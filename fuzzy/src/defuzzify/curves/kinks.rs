@@ -160,7 +160,7 @@ impl Cuts<'_> {
         }
     }
 
-    /// Works as `at_sign_change` for a function that may have an extremum in between, and therefore two sign changes.
+    /// Works like `at_sign_change` for a function that may have an extremum in between, and therefore two sign changes.
     /// `slope` returns its slope at `x`, given the width of the interval.
     fn at_sign_changes(&mut self, f: impl Fn(f64) -> f64, slope: impl Fn(f64, f64) -> f64) {
         let (a, b) = self.between;

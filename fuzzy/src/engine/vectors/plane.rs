@@ -63,7 +63,7 @@ pub(super) struct Region {
 }
 
 impl Plane {
-    /// Works as [`Engine::evaluate_with`](crate::Engine::evaluate_with).
+    /// Works like [`Engine::evaluate_with`](crate::Engine::evaluate_with).
     #[inline(always)]
     pub(in super::super) fn evaluate(&self, inputs: &[f64; 2], outcome: &mut Outcome) {
         fearless_simd::dispatch!(self.level, simd => self.evaluate_by(simd, inputs, outcome));
