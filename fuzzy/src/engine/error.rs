@@ -45,7 +45,7 @@ pub enum EvaluateError {
     },
     /// The value is not a struct or map of numbers.
     NoFields {
-        /// The message of the serializer.
+        /// The error message, which states the expected type.
         message: String,
     },
     /// An input is NaN or infinite, so there is nothing to explain.

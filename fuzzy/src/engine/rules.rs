@@ -312,9 +312,9 @@ impl OwnedTable {
         Some(())
     }
 
-    /// Adds the node of a trie for rules that share their first `depth` literals. Returns its index and the maximum
-    /// length of the queue of nodes during a traversal. The queue contains either all children of the node, of which
-    /// the last is visited first, or fewer children and the nodes below one of them.
+    /// Adds the node of a trie for rules that share their first `depth` literals. Returns its index, and the maximum
+    /// size of the stack of nodes during a traversal. The stack contains either all children of the node, of which the
+    /// last one is visited first, or fewer children and the nodes below one of them.
     fn node(&mut self, rules: &[Plain<'_>], depth: usize) -> (u32, u32) {
         let node = self.nodes.len();
         self.nodes.push(Node::default());

@@ -102,7 +102,8 @@ fn changed(mut tree: Node, change: &mut impl FnMut(&str, &mut Node)) -> Node {
     tree
 }
 
-/// Converts a list of named entries to a mapping; `None` for other values, including lists that contain no mapping.
+/// Converts a list of named entries to a mapping; `None` for other values, including lists of which no entry is a
+/// mapping.
 fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<Node> {
     let Value::List(items) = &list.value else {
         return None;

@@ -90,7 +90,7 @@ impl Model {
     }
 
     /// Returns the index of the output whose values are measured in data: the only output that no other output reads,
-    /// or, if there are several, the only one of them without rules. `None` if that leaves more than one.
+    /// or, if there are several, the only one of them without rules. `None` if there is no such output.
     pub fn measured_output(&self) -> Option<usize> {
         let last = self.last_outputs();
         let is_bare = |index: &&usize| {

@@ -28,7 +28,7 @@ pub struct Document {
     pub model: Model,
     /// The positions of its parts.
     pub spans: Spans,
-    /// Warnings: problems that do not prevent the model from being used.
+    /// Warnings: problems that do not prevent the model from being read.
     pub warnings: Findings,
 }
 

@@ -135,8 +135,8 @@ pub enum NoRuleFires {
     Error,
     /// The output has this value.
     Value(f64),
-    /// The output keeps the value of the previous evaluation in a `Sequence`. For the first evaluation of a sequence
-    /// and for single evaluations, the output has the value given here, or is undefined.
+    /// The output keeps the value of the previous evaluation in a `Sequence`. As long as there is no previous value,
+    /// and in single evaluations, the output has the value given here, or is undefined.
     Previous(Option<f64>),
 }
 

@@ -29,7 +29,7 @@ pub(super) enum Wrong<'a> {
     HedgeBeforeInput,
     /// A hedge that is not allowed in a conclusion.
     HedgeInConsequent,
-    /// A second word after a term; the field is the term.
+    /// A second word after a term; the field is the second word.
     TwoWords(&'a str),
     /// An unclosed quote.
     OpenQuote,

@@ -58,7 +58,7 @@ impl<'a> Fields<'a> {
         self.meant.iter().any(|meant| meant == key)
     }
 
-    /// Returns all known keys with their values; of repeated keys only the first.
+    /// Returns all keys, including unknown ones, with their values; of repeated keys only the first.
     #[must_use]
     pub fn entries(&self) -> &[Entry<'a>] {
         &self.entries
