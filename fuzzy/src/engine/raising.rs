@@ -245,7 +245,7 @@ impl Chain {
 
 impl Scratch {
     /// Returns the degrees of the literals in the latest evaluation. They are empty if all rules are plain ANDs that a
-    /// table looks up; in that case every proposition of a firing rule is true.
+    /// table looks up; in that case every proposition of a firing rule has a degree above 0.
     pub fn degrees(&self) -> &[f64] {
         let stage = match self.asked.checked_sub(1) {
             None => Some(&self.first),

@@ -4,8 +4,8 @@
 //! 1. Each value of a sample is assigned to the term with its highest membership (the first of equal ones). The terms of
 //!    the inputs are the antecedent, the term of the output is the consequent, and the degree of the vote is the product
 //!    of all memberships, times the weight of the sample. If all terms of the output are constants or singletons, a value
-//!    belongs to its two neighbours in proportion to its distance: with terms 0 and 50, the value 30 belongs to 0 with
-//!    degree 0.4 and to 50 with degree 0.6. Values beyond the outermost terms belong to them with degree 1.
+//!    belongs to its two neighbours, with degrees that decrease linearly with the distance: with terms 0 and 50, the value
+//!    30 belongs to 0 with degree 0.4 and to 50 with degree 0.6. Values beyond the outermost terms belong to them with degree 1.
 //! 2. If the samples of an antecedent disagree, [`Resolution`] selects the consequent.
 //! 3. The rule stores the rejected consequents, the number of its samples (support) and its confidence.
 //!
