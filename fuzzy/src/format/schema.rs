@@ -1,7 +1,7 @@
 //! The file format as a JSON Schema (draft 2020-12), for editors that complete and check while typing.
 //!
 //! The schema is generated from the tables that the reader uses, so it lists exactly the existing membership functions
-//! and operators. Rules that a schema cannot express (the order of parameters, names in rules) are checked by
+//! and operators. Constraints that a schema cannot express (the order of parameters, names in rules) are checked by
 //! [`validate`](crate::validate()).
 
 mod nodes;

@@ -95,8 +95,8 @@ pub struct Settings {
     /// The minimum confidence of a rule.
     pub min_degree: f64,
     /// Whether an antecedent without a rule gets the consequent of the nearest antecedent. The distance is the number
-    /// of steps between terms; among equally near antecedents the one with the highest output is used. Such rules have
-    /// a note.
+    /// of steps between terms; among equally near antecedents the one with the highest output is used. A note of the
+    /// rule states this.
     pub complete: bool,
     /// The inputs in which the consequents are made monotone, by pooling neighbouring antecedents that violate the
     /// direction. Rules that the model already contains are not changed, and inference may yield an output that is not
