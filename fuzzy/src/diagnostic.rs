@@ -1,4 +1,4 @@
-//! Findings: what is wrong, where, and what to do about it.
+//! Findings: problems in a text, each with its position and a suggestion.
 
 use alloc::{
     borrow::Cow,
@@ -10,12 +10,12 @@ use core::{fmt, ops::Range};
 
 use crate::foreign;
 
-/// A finding in a text an author wrote.
+/// A finding: a problem in a text that an author wrote.
 ///
-/// Messages are in lower case without a full stop, the author's own words in backticks; what to do
-/// stands apart in `help`.
+/// Messages start in lower case, do not end with a full stop, and quote the author's words in backticks. Suggestions
+/// are separate, in `help`.
 ///
-/// # Example: a finding of one's own
+/// # Example: create and locate a finding
 /// ```
 /// use fuzzy::diagnostic::Diagnostic;
 ///
@@ -33,23 +33,23 @@ use crate::foreign;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// The severity.
     pub severity: Severity,
-    /// A stable identifier: `unknown-term`.
+    /// A stable identifier, such as `unknown-term`.
     pub code: &'static str,
-    /// What is wrong.
+    /// The description of the problem.
     pub message: String,
-    /// The bytes of the text it is about; `0..0` for models made in code.
+    /// The byte range of the problem in the text; `0..0` for models built in code.
     pub span: Range<usize>,
-    /// Line and column of the start of the span, where the text is at hand.
+    /// The line and column of the start of the span, if the text is known.
     pub position: Option<Position>,
-    /// What to do about it.
+    /// A suggestion how to fix the problem.
     pub help: Option<String>,
-    /// Other spans that explain it.
+    /// Other positions that explain the problem.
     pub related: Vec<Related>,
 }
 
-/// How bad a finding is.
+/// The severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -63,33 +63,33 @@ pub enum Severity {
     Error,
 }
 
-/// Another span that explains a finding, such as the first of two equal names.
+/// Another position that explains a finding, such as the first of two equal names.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Related {
-    /// The bytes of the text.
+    /// The byte range in the text.
     pub span: Range<usize>,
-    /// What is there.
+    /// The explanation for this position.
     pub message: String,
 }
 
-/// Line and column in a text; both count from 1, the column in characters.
+/// A line and a column in a text. Both start at 1; the column counts characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Position {
-    /// The line.
+    /// The line number.
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub line: usize,
-    /// The character in the line.
+    /// The number of the character in the line.
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub column: usize,
 }
 
 impl Position {
-    /// The position of a byte in a text; bytes behind its end count as its end.
+    /// Returns the position of a byte in a text; bytes after the end count as the end.
     #[must_use]
     pub fn of(text: &str, byte: usize) -> Self {
         let before = text.char_indices().take_while(|&(at, _)| at < byte);
@@ -109,13 +109,14 @@ impl Position {
     }
 }
 
-/// The most characters of a text that a message quotes.
+/// The maximum number of characters of a text that a message quotes.
 const LONGEST_QUOTE: usize = 60;
 
-/// The most characters of a text that a help quotes: it may be a line to write.
+/// The maximum number of characters of a text that a suggestion quotes; it is larger because the text may be a line to
+/// insert.
 const LONGEST_ADVICE: usize = 200;
 
-/// A text from outside as messages quote it: at most 60 characters and `...`.
+/// Shortens a text from the input to quote it in a message: at most 60 characters followed by `...`.
 ///
 /// ```
 /// let digits = "1".repeat(1000);
@@ -133,8 +134,8 @@ fn cut(text: &str, most: usize) -> Cow<'_, str> {
     }
 }
 
-/// Cuts what a message quotes in backticks. A quoted text may have backticks itself, so that what looks like words of the message
-/// is bounded, too.
+/// Shortens the parts of a message that are quoted in backticks. A quoted text may contain backticks itself, so the
+/// parts between the quotes are limited as well.
 fn shortened(message: String, most: usize) -> String {
     const LONGEST_WORDS: usize = 1000;
     if message.len() <= most {
@@ -145,14 +146,14 @@ fn shortened(message: String, most: usize) -> String {
         0 => cut(part, LONGEST_WORDS),
         _ => cut(part, most),
     });
-    // A text of backticks alone has many short parts.
+    // A text of many backticks has many short parts.
     const MOST_PARTS: usize = 1000;
     let parts: Vec<Cow<'_, str>> = parts.take(MOST_PARTS).collect();
     parts.join("`")
 }
 
 impl Diagnostic {
-    /// An error.
+    /// Creates an error.
     pub fn error(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Error,
@@ -165,7 +166,7 @@ impl Diagnostic {
         }
     }
 
-    /// A warning.
+    /// Creates a warning.
     pub fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Warning,
@@ -173,7 +174,7 @@ impl Diagnostic {
         }
     }
 
-    /// A note.
+    /// Creates a note.
     pub fn note(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Note,
@@ -181,14 +182,14 @@ impl Diagnostic {
         }
     }
 
-    /// Adds what to do about it.
+    /// Adds a suggestion how to fix the problem.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(shortened(help.into(), LONGEST_ADVICE));
         self
     }
 
-    /// Adds another span that explains it.
+    /// Adds another position that explains the problem.
     #[must_use]
     pub fn related(mut self, span: Range<usize>, message: impl Into<String>) -> Self {
         let message = shortened(message.into(), LONGEST_QUOTE);
@@ -197,7 +198,7 @@ impl Diagnostic {
     }
 }
 
-/// `3:12: error[unknown-term]: ...`, then the help on a line of its own.
+/// Formats a finding as `3:12: error[unknown-term]: ...`, with the suggestion on a separate line.
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(Position { line, column }) = self.position {
@@ -218,9 +219,9 @@ impl fmt::Display for Diagnostic {
 
 impl core::error::Error for Diagnostic {}
 
-/// All findings of one text or model, in the order of their spans; the error type of reading and compiling.
+/// All findings of one text or model, in the order of their positions. This is the error type of parsing and compiling.
 ///
-/// # Example: all mistakes of a text at once
+/// # Example: all errors of a text are reported together
 /// ```
 /// let findings = fuzzy::yaml::parse("fuzzy: 1\nnam: fan\n").unwrap_err();
 /// let codes: Vec<&str> = findings.0.iter().map(|finding| finding.code).collect();
@@ -233,14 +234,15 @@ impl core::error::Error for Diagnostic {}
 pub struct Findings(pub Vec<Diagnostic>);
 
 impl Findings {
-    /// Sorts findings by span and adds line and column.
+    /// Sorts findings by position, and adds lines and columns.
     #[must_use]
     pub fn locate(mut findings: Vec<Diagnostic>, text: &str) -> Self {
         findings.sort_by_key(|finding| (finding.span.start, finding.span.end));
         let mut here = Position { line: 1, column: 1 };
         let mut at = 0;
         for finding in &mut findings {
-            // One walk through the text for all findings: each starts where the last one ended.
+            // A single pass over the text suffices for all findings: each search starts at the position of the previous
+            // one.
             let start = (0..=finding.span.start.min(text.len()))
                 .rev()
                 .find(|&i| text.is_char_boundary(i))
@@ -260,7 +262,7 @@ impl Findings {
         Findings(findings)
     }
 
-    /// Whether one of them is an error.
+    /// Returns whether any finding is an error.
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|f| f.severity == Severity::Error)
@@ -281,17 +283,18 @@ impl fmt::Display for Findings {
 
 impl core::error::Error for Findings {}
 
-/// The candidate that an author who wrote `word` may have meant.
+/// Returns the candidate that an author who wrote `word` probably meant.
 ///
-/// Nearness is the number of letters to insert, delete, replace or swap (optimal string alignment), at most a third
-/// of the longer word's length, 1 up to four letters; case does not count. Of equally near candidates the first one counts. If none is
-/// equal but for a letter, one with all words of `word` is preferred: `battery_remaining_pct` for `battery_pct`. If none is near,
-/// one that begins with the word is what was meant: `min` is short for `minimum`.
+/// The distance is the number of letters to insert, delete, replace or swap (optimal string alignment), ignoring case.
+/// It must not exceed a third of the length of the longer word, or 1 for words of up to four letters. Among candidates with
+/// the same distance the first one is returned. Unless a candidate differs by one letter only, one that contains all parts
+/// of the word is preferred: `battery_remaining_pct` for `battery_pct`. If no candidate is near, one that starts with the
+/// word is returned: `min` is short for `minimum`.
 pub fn nearest<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
 ) -> Option<&'a str> {
-    // Comparing costs the product of the lengths; nobody means a word longer than this.
+    // A comparison takes time proportional to the product of the lengths. Longer words are not typing errors.
     const LONGEST: usize = 64;
     let fold = |s: &str| {
         s.chars()
@@ -336,7 +339,7 @@ pub fn nearest<'a>(
     })
 }
 
-/// Whether a name has all parts of another one of several parts: `battery_remaining_pct` those of `battery_pct`.
+/// Whether a name contains all parts of another name with several parts: `battery_remaining_pct` those of `battery_pct`.
 fn has_parts(name: &[char], parts: &[char]) -> bool {
     let mut parts = parts.split(|c| *c == '_').peekable();
     let several = parts
@@ -349,7 +352,7 @@ fn has_part(name: &[char], part: &[char]) -> bool {
     name.split(|c| *c == '_').any(|one| one == part)
 }
 
-/// The optimal string alignment distance, three rows at a time.
+/// Returns the optimal string alignment distance, keeping three rows of the matrix in memory.
 fn edit_distance(a: &[char], b: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=b.len()).collect();
@@ -369,7 +372,7 @@ fn edit_distance(a: &[char], b: &[char]) -> usize {
     last.last().copied().unwrap_or(0)
 }
 
-/// The finding for a repeated name.
+/// Returns the finding for a repeated name.
 pub(crate) fn duplicate(
     kind: &str,
     name: &str,
@@ -398,7 +401,8 @@ pub(crate) fn duplicate(
         .help(help)
 }
 
-/// The candidates that a word stands for: what another program calls so, or else the nearest one.
+/// Returns the candidates that a word may refer to: the equivalent of another program's word, or else the nearest
+/// candidate.
 pub(crate) fn meant<'a>(word: &str, candidates: &[&'a str]) -> Vec<&'a str> {
     let mut meant = foreign::meant(word, candidates.iter().copied());
     if meant.is_empty() {
@@ -407,7 +411,7 @@ pub(crate) fn meant<'a>(word: &str, candidates: &[&'a str]) -> Vec<&'a str> {
     meant
 }
 
-/// ``did you mean `heat`?``, or else the candidates: ``there are `heat` and `humidity` ``.
+/// Returns ``did you mean `heat`?``, or else a list of the candidates: ``there are `heat` and `humidity` ``.
 pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
     let meant = meant(word, &candidates);
@@ -425,12 +429,12 @@ pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// Quotes that a word processor writes.
+/// Returns whether a character is a quote as inserted by word processors.
 pub(crate) fn is_curly_quote(c: char) -> bool {
     matches!(c, '\u{2018}'..='\u{201f}' | '«' | '»')
 }
 
-/// `` `A`, `B` or `C` ``
+/// Formats words as `` `A`, `B` or `C` ``
 pub(crate) fn either(words: &[&str]) -> String {
     let quoted: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
     match quoted.split_last() {

@@ -1,4 +1,4 @@
-//! A struct or map of numbers as named numbers: what `Engine::evaluate_struct` takes.
+//! Conversion of a struct or map of numbers to named numbers, for `Engine::evaluate_struct`.
 
 use alloc::{
     format,
@@ -12,7 +12,7 @@ use serde::{
     ser::{Error, Impossible, SerializeMap, SerializeStruct},
 };
 
-/// Why a value is not a struct or map of numbers.
+/// The error for a value that is not a struct or map of numbers.
 #[derive(Debug)]
 pub(crate) struct NoFields(pub(crate) String);
 
@@ -30,18 +30,18 @@ impl Error for NoFields {
     }
 }
 
-/// Collects the fields of a struct or map.
+/// A serializer that collects the fields of a struct or map.
 #[derive(Default)]
 pub(crate) struct Fields {
     found: Vec<(String, f64)>,
     key: String,
 }
 
-/// Takes a number, or a name.
+/// Serializers that accept only a number, or only a name.
 struct Number;
 struct Name;
 
-/// What a serializer of these refuses: every type named.
+/// Defines the methods of a serializer that reject the listed types.
 macro_rules! refuse {
     ($what:literal: $($method:ident($($argument:ty),*))+) => {
         $(fn $method(self, $(_: $argument),*) -> Result<Self::Ok, NoFields> {
@@ -90,7 +90,7 @@ macro_rules! refuse {
     };
 }
 
-/// A value inside something transparent is looked at itself.
+/// Defines the methods of a serializer that unwrap transparent values.
 macro_rules! look_inside {
     () => {
         fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<Self::Ok, NoFields> {
@@ -173,7 +173,7 @@ macro_rules! take_numbers {
     };
 }
 
-/// A number, or none.
+/// Accepts a number, or the absence of one.
 impl Serializer for Number {
     type Ok = Option<f64>;
 

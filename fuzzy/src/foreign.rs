@@ -1,9 +1,9 @@
-//! The words of other programs for shapes, operators, defuzzifiers, keys and hedges.
+//! Terms of other programs for shapes, operators, defuzzifiers, keys and hedges.
 
 use alloc::{string::String, vec::Vec};
 
-/// The words of MATLAB's Fuzzy Logic Toolbox, scikit-fuzzy, fuzzylite and IEC 61131-7, in lower case without `_`, `-` and
-/// blanks, and what they are called here; of several words those that fit the place are meant.
+/// The words of MATLAB's Fuzzy Logic Toolbox, scikit-fuzzy, fuzzylite and IEC 61131-7, in lower case without `_`, `-`
+/// and blanks, with their equivalents here. If there are several, those that are valid at the position are used.
 pub(crate) const WORDS: &[(&str, &[&str])] = &[
     // Membership functions.
     ("trimf", &["triangle"]),
@@ -102,7 +102,7 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("intensify", &["extremely"]),
 ];
 
-/// Keys whose matter has another place in a rule set, and what to write there.
+/// Keys of other programs whose information belongs elsewhere in a rule set, with a suggestion.
 const ELSEWHERE: &[(&str, &str)] = &[
     (
         "weight",
@@ -132,7 +132,7 @@ fn folded(word: &str) -> String {
         .collect()
 }
 
-/// The candidates that another program's word stands for.
+/// Returns the candidates that are equivalent to another program's word.
 pub(crate) fn meant<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     let word = folded(word);
     let known = WORDS.iter().find(|(other, _)| *other == word);
@@ -141,7 +141,7 @@ pub(crate) fn meant<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
     candidates.into_iter().filter(is_meant).collect()
 }
 
-/// What to do about a key whose matter stands elsewhere.
+/// Returns a suggestion for a key whose information belongs elsewhere.
 pub(crate) fn elsewhere(key: &str) -> Option<&'static str> {
     let key = folded(key);
     let found = ELSEWHERE.iter().find(|(other, _)| *other == key);

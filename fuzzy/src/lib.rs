@@ -1,7 +1,7 @@
-//! A fuzzy inference engine: Mamdani and Takagi-Sugeno, exact, without allocation in evaluation.
+//! A fuzzy inference engine for Mamdani and Takagi-Sugeno rule sets, exact and without allocation in evaluation.
 //!
-//! A rule set is text or a [`Model`] built in code. An [`Engine`] is compiled from it once, never changes, and evaluates
-//! inputs to outcomes: a value, or the statement that no rule fires.
+//! A rule set is a text, or a [`Model`] built in code. An [`Engine`] is compiled from it once and is immutable. It
+//! evaluates inputs to outcomes: a value, or the information that no rule fires.
 //!
 //! ```
 //! use fuzzy::{Engine, Model};
@@ -30,19 +30,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - [`yaml::parse`] reads a rule set with the span of each part; [`Findings`] are all errors of a text or model. [`Source`]
-//!   is a text whose tree, rule set and engine are made once.
-//! - [`Model::builder`] makes a model in code; [`rule`] is the rule language.
-//! - [`Engine::evaluate_with`] evaluates into outcomes of the caller: use it in loops, where the allocations of
+//! - [`yaml::parse`] reads a rule set with the position of each part; [`Findings`] contains all errors of a text or
+//!   model. [`Source`] is a text that caches its tree, rule set and engine.
+//! - [`Model::builder`] builds a model in code; [`rule`] is the rule language.
+//! - [`Engine::evaluate_with`] evaluates into a buffer of the caller. Use it in loops: the allocations of
 //!   [`Engine::evaluate`] take longer than the evaluation. [`map`] evaluates a grid.
-//! - `check` analyses a rule set: gaps, contradictions, jumps. `learn` makes rules from data.
+//! - `check` analyses a rule set: gaps, contradictions, jumps. `learn` derives rules from data.
 //!
 //! # Features
 //! - `std` and `yaml` (default): the standard library; rule sets as YAML, and `Model: FromStr`.
-//! - `serde`: models in any format that serde knows; outcomes, explanations and findings as data.
+//! - `serde`: models in any format that serde supports; outcomes, explanations and findings as data.
 //! - `check`, `learn`: the modules of these names.
-//! - `simd`: batches and common single calls with wide vectors; `parallel`: batches and maps on all cores.
-//! - `alloc` alone builds without `std`; without any feature only compiled tables are left, which need `core`.
+//! - `drawing`: drawings of rule sets, as SVG and as text; `schema`: JSON Schemas of the serialised types.
+//! - `simd`: wide vectors for batches and for single evaluations of common rule sets; `parallel`: batches and maps on
+//!   all cores.
+//! - `alloc` without `std` builds models and engines for `no_std`; without any feature only compiled tables are
+//!   available, which need only `core`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[cfg(feature = "alloc")]
@@ -88,7 +91,7 @@ mod source;
     )
 )]
 pub mod table;
-/// Public for the crate `flagred`, which reads its profiles as trees; not part of the API.
+/// Public only for the crate `flagred`, which parses its profiles to trees. Not part of the API.
 #[cfg(feature = "alloc")]
 #[doc(hidden)]
 pub mod tree;
@@ -108,7 +111,7 @@ pub use source::Source;
 #[cfg(feature = "alloc")]
 pub use validate::validate;
 
-/// The example of COMPARE.md, run.
+/// Runs the examples of COMPARE.md as doc tests.
 #[cfg(all(doctest, feature = "yaml"))]
 #[doc = include_str!("../../COMPARE.md")]
 struct Compare;

@@ -1,10 +1,10 @@
-//! Numbers of several rows.
+//! Operations on the numbers of several rows.
 //!
-//! A single evaluation is one of one row. Each step over rows is a loop that the compiler turns into vector instructions; a
-//! choice by a mask keeps it from making a branch for each row. The operations of a row and their order do not depend on the
-//! number of rows, so the bits are the same.
+//! A single evaluation is an evaluation of one row. Each operation on rows is a loop that the compiler turns into
+//! vector instructions; selecting by a mask prevents it from branching per row. The operations of a row and their order
+//! do not depend on the number of rows, so the results are bitwise equal.
 
-/// A number for each row. Unlike [`core::array::from_fn`] it is inlined into functions for wide vectors.
+/// Creates a number per row. Unlike [`core::array::from_fn`], this is inlined into functions for wide vectors.
 #[inline(always)]
 pub(crate) fn each<const L: usize>(mut of_row: impl FnMut(usize) -> f64) -> [f64; L] {
     let mut numbers = [0.0; L];
@@ -14,7 +14,7 @@ pub(crate) fn each<const L: usize>(mut of_row: impl FnMut(usize) -> f64) -> [f64
     numbers
 }
 
-/// Writes a number for each row. Making an array first would fill it with zeros.
+/// Writes a number per row. This avoids filling a new array with zeros first.
 #[inline(always)]
 pub(crate) fn set<const L: usize>(numbers: &mut [f64; L], mut of_row: impl FnMut(usize) -> f64) {
     for (row, number) in numbers.iter_mut().enumerate() {
@@ -22,7 +22,7 @@ pub(crate) fn set<const L: usize>(numbers: &mut [f64; L], mut of_row: impl FnMut
     }
 }
 
-/// Changes the number of each row.
+/// Applies a function to the number of each row.
 #[inline(always)]
 pub(crate) fn change<const L: usize>(numbers: &mut [f64; L], change: impl Fn(f64) -> f64) {
     for number in numbers {
@@ -30,7 +30,7 @@ pub(crate) fn change<const L: usize>(numbers: &mut [f64; L], change: impl Fn(f64
     }
 }
 
-/// Joins the numbers of each row with others.
+/// Combines the numbers of each row with other numbers.
 #[inline(always)]
 pub(crate) fn join<const L: usize>(
     numbers: &mut [f64; L],

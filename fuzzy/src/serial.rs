@@ -1,4 +1,4 @@
-//! Models and results as serde sees them. In results rules count from 1, as in messages.
+//! Serialization of models and results. In results rules are numbered from 1, as in messages.
 
 use alloc::string::ToString;
 
@@ -12,12 +12,12 @@ use crate::{
     tree::Node,
 };
 
-/// The number of a rule.
+/// Serializes the index of a rule as its number.
 pub(crate) fn rule_number<S: Serializer>(index: &usize, serializer: S) -> Result<S::Ok, S::Error> {
     (index + 1).serialize(serializer)
 }
 
-/// The numbers of rules.
+/// Serializes indices of rules as their numbers.
 #[cfg(feature = "check")]
 pub(crate) fn rule_numbers<S: Serializer>(
     indices: &[usize],
@@ -26,8 +26,8 @@ pub(crate) fn rule_numbers<S: Serializer>(
     serializer.collect_seq(indices.iter().map(|index| index + 1))
 }
 
-/// `{value, state, coverage, dominant_rule, clamped}`: `value` is null where there is none, and so is the
-/// number of the dominant rule.
+/// Serializes as `{value, state, coverage, dominant_rule, clamped}`. `value` and `dominant_rule` are null if there is
+/// no value or no rule fired.
 impl Serialize for Outcome {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let state = match self.state {
@@ -47,8 +47,8 @@ impl Serialize for Outcome {
     }
 }
 
-/// As in a file, but that inputs, outputs, terms and blocks are lists of entries with a `name`: their order has a meaning, and many
-/// formats sort keys. Both forms are read.
+/// Serializes like a rule set file, except that inputs, outputs, terms and blocks are lists of entries with a `name`:
+/// their order is significant, and many formats sort keys. Both forms can be deserialized.
 impl Serialize for Model {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         format::write_lists(self).serialize(serializer)

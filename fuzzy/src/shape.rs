@@ -1,5 +1,5 @@
-//! The shapes of membership functions. A shape is a variant of [`MembershipFunction`] and a line in the table of spellings,
-//! both here; a formula, in `formula`; and an outline, in `outline`.
+//! The shapes of membership functions. A new shape takes a variant of [`MembershipFunction`] and a row in the table of
+//! shapes, both in this file; a formula in `formula`; and an outline in `outline`.
 //!
 //! Formulas that several shapes share are in `straight`, `smooth` and `exponential`.
 
@@ -34,9 +34,9 @@ use straight::{along, into_unit};
 #[cfg(feature = "alloc")]
 pub use validate::MembershipError;
 
-/// A membership function's shape, with its parameters in the unit of the variable.
+/// A membership function: a shape with its parameters, in the unit of the variable.
 ///
-/// # Example: a part of a range that people call warm
+/// # Example: the values that count as warm
 /// ```
 /// use fuzzy::model::MembershipFunction;
 ///
@@ -47,220 +47,203 @@ pub use validate::MembershipError;
 #[cfg(feature = "alloc")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum MembershipFunction {
-    /// 0 at `left`, 1 at `peak`, 0 at `right`, straight between; `left = peak` is a closed shoulder.
-    /// MATLAB's `trimf`.
+    /// 0 at `left`, 1 at `peak` and 0 at `right`, with straight lines between them. `left = peak` or `peak = right`
+    /// gives a vertical edge. MATLAB's `trimf`.
     Triangle {
-        /// Where it leaves 0.
+        /// The value at which it starts to rise from 0.
         left: f64,
-        /// Where it is 1.
+        /// The value at which it is 1.
         peak: f64,
-        /// Where it is 0 again.
+        /// The value at which it returns to 0.
         right: f64,
     },
-    /// 0 at `left`, 1 from `left_top` to `right_top`, 0 at `right`, straight between.
-    /// MATLAB's `trapmf`.
+    /// 0 at `left`, 1 from `left_top` to `right_top` and 0 at `right`, with straight lines between them. MATLAB's
+    /// `trapmf`.
     Trapezoid {
-        /// Where it leaves 0.
+        /// The value at which it starts to rise from 0.
         left: f64,
-        /// Where it reaches 1.
+        /// The value at which it reaches 1.
         left_top: f64,
-        /// Where it leaves 1.
+        /// The value at which it starts to fall from 1.
         right_top: f64,
-        /// Where it is 0 again.
+        /// The value at which it returns to 0.
         right: f64,
     },
-    /// 1 up to `top`, straight down to 0 at `foot`.
-    /// MATLAB's `linzmf`.
+    /// 1 up to `top`, then a straight line to 0 at `foot`. MATLAB's `linzmf`.
     LeftShoulder {
-        /// Up to here it is 1.
+        /// The last value at which it is 1.
         top: f64,
-        /// From here on it is 0.
+        /// The first value at which it is 0.
         foot: f64,
     },
-    /// 0 up to `foot`, straight up to 1 at `top`.
-    /// MATLAB's `linsmf`.
+    /// 0 up to `foot`, then a straight line to 1 at `top`. MATLAB's `linsmf`.
     RightShoulder {
-        /// Up to here it is 0.
+        /// The last value at which it is 0.
         foot: f64,
-        /// From here on it is 1.
+        /// The first value at which it is 1.
         top: f64,
     },
-    /// 1 from `left` to `right`, ends included, else 0.
-    /// fuzzylite's `Rectangle`.
+    /// 1 from `left` to `right`, including both ends, else 0. fuzzylite's `Rectangle`.
     Rectangle {
         /// The left end.
         left: f64,
         /// The right end.
         right: f64,
     },
-    /// 1 at `at` alone.
+    /// 1 only at `at`, else 0.
     Singleton {
-        /// The one value.
+        /// The value at which it is 1.
         at: f64,
     },
-    /// Straight between the points, the first and last degree held beyond them.
-    /// fuzzylite's `Discrete`.
+    /// Straight lines between points. Beyond them it keeps the first and the last degree. fuzzylite's `Discrete`.
     Piecewise {
-        /// `(x, degree)` with x never falling; two points of one x are a step.
+        /// The points `(x, degree)`, with non-decreasing x. Two points with the same x are a step.
         points: Vec<(f64, f64)>,
     },
-    /// `exp(-(x - mean)^2 / (2 sd^2))`.
-    /// MATLAB's `gaussmf`.
+    /// `exp(-(x - mean)^2 / (2 sd^2))`. MATLAB's `gaussmf`.
     Gaussian {
         /// The mean.
         mean: f64,
-        /// The standard deviation, over 0.
+        /// The standard deviation, above 0.
         sd: f64,
     },
-    /// The product of two halves: a gaussian up to `left_mean` and 1 beyond it, and 1 up to `right_mean` and a gaussian
-    /// beyond it. From `left_mean` to `right_mean` it is 1; where `left_mean` is the greater one it stays below 1.
-    /// MATLAB's `gauss2mf`, fuzzylite's `GaussianProduct`.
+    /// The product of two halves. The left half is a Gaussian up to `left_mean` and 1 beyond it; the right half is 1 up
+    /// to `right_mean` and a Gaussian beyond it. The product is 1 from `left_mean` to `right_mean`; if `left_mean` is
+    /// the larger one, it is below 1 everywhere. MATLAB's `gauss2mf`, fuzzylite's `GaussianProduct`.
     Gaussian2 {
-        /// Up to here the left half is a gaussian.
+        /// The end of the left flank.
         left_mean: f64,
         /// The standard deviation of the left flank.
         left_sd: f64,
-        /// From here on the right half is a gaussian.
+        /// The start of the right flank.
         right_mean: f64,
         /// The standard deviation of the right flank.
         right_sd: f64,
     },
-    /// `1 / (1 + |(x - center) / width|^(2 slope))`.
-    /// MATLAB's `gbellmf`.
+    /// `1 / (1 + |(x - center) / width|^(2 slope))`. MATLAB's `gbellmf`.
     Bell {
         /// The middle.
         center: f64,
-        /// Half the width at degree 0.5.
+        /// Half of the width at degree 0.5.
         width: f64,
         /// The steepness of the flanks.
         slope: f64,
     },
-    /// `1 / (1 + exp(-slope (x - inflection)))`.
-    /// MATLAB's `sigmf`.
+    /// `1 / (1 + exp(-slope (x - inflection)))`. MATLAB's `sigmf`.
     Sigmoid {
-        /// Where it is 0.5.
+        /// The value at which it is 0.5.
         inflection: f64,
-        /// Its steepness; negative falls.
+        /// The steepness; it falls if this is negative.
         slope: f64,
     },
-    /// `|sigmoid1 - sigmoid2|`.
-    /// MATLAB's `dsigmf`.
+    /// `|sigmoid1 - sigmoid2|`. MATLAB's `dsigmf`.
     SigmoidDifference {
-        /// Inflection of the left sigmoid.
+        /// The inflection of the left sigmoid.
         left_inflection: f64,
-        /// Slope of the left sigmoid.
+        /// The slope of the left sigmoid.
         left_slope: f64,
-        /// Inflection of the right sigmoid.
+        /// The inflection of the right sigmoid.
         right_inflection: f64,
-        /// Slope of the right sigmoid.
+        /// The slope of the right sigmoid.
         right_slope: f64,
     },
-    /// `sigmoid1 sigmoid2`.
-    /// MATLAB's `psigmf`.
+    /// `sigmoid1 sigmoid2`. MATLAB's `psigmf`.
     SigmoidProduct {
-        /// Inflection of the left sigmoid.
+        /// The inflection of the left sigmoid.
         left_inflection: f64,
-        /// Slope of the left sigmoid.
+        /// The slope of the left sigmoid.
         left_slope: f64,
-        /// Inflection of the right sigmoid.
+        /// The inflection of the right sigmoid.
         right_inflection: f64,
-        /// Slope of the right sigmoid.
+        /// The slope of the right sigmoid.
         right_slope: f64,
     },
-    /// 0 up to `foot`, two parabolas up to 1 at `top`.
-    /// MATLAB's `smf`.
+    /// 0 up to `foot`, then two parabolas up to 1 at `top`. MATLAB's `smf`.
     SShape {
-        /// Up to here it is 0.
+        /// The last value at which it is 0.
         foot: f64,
-        /// From here on it is 1.
+        /// The first value at which it is 1.
         top: f64,
     },
-    /// 1 up to `top`, two parabolas down to 0 at `foot`.
-    /// MATLAB's `zmf`.
+    /// 1 up to `top`, then two parabolas down to 0 at `foot`. MATLAB's `zmf`.
     ZShape {
-        /// Up to here it is 1.
+        /// The last value at which it is 1.
         top: f64,
-        /// From here on it is 0.
+        /// The first value at which it is 0.
         foot: f64,
     },
-    /// An S from `left` to `left_top`, 1, a Z from `right_top` to `right`.
-    /// MATLAB's `pimf`.
+    /// An S-shape from `left` to `left_top`, 1 up to `right_top`, and a Z-shape from there to `right`. MATLAB's `pimf`.
     PiShape {
-        /// Where it leaves 0.
+        /// The value at which it starts to rise from 0.
         left: f64,
-        /// Where it reaches 1.
+        /// The value at which it reaches 1.
         left_top: f64,
-        /// Where it leaves 1.
+        /// The value at which it starts to fall from 1.
         right_top: f64,
-        /// Where it is 0 again.
+        /// The value at which it returns to 0.
         right: f64,
     },
-    /// `(1 + cos(2 pi (x - center) / width)) / 2` within half a width of the center, else 0.
-    /// fuzzylite's `Cosine`.
+    /// `(1 + cos(2 pi (x - center) / width)) / 2` within half a width of the center, else 0. fuzzylite's `Cosine`.
     Cosine {
         /// The middle.
         center: f64,
-        /// The whole width.
+        /// The full width.
         width: f64,
     },
-    /// `exp(-|10 (x - center) / width|)`.
-    /// fuzzylite's `Spike`.
+    /// `exp(-|10 (x - center) / width|)`. fuzzylite's `Spike`.
     Spike {
         /// The middle.
         center: f64,
         /// The width.
         width: f64,
     },
-    /// `(end - inflection) / (2 end - inflection - x)` up to `end` where `inflection <= end`, mirrored
-    /// otherwise; 1 beyond `end`.
-    /// fuzzylite's `Concave`.
+    /// `(end - inflection) / (2 end - inflection - x)` up to `end`, and 1 beyond it, if `inflection <= end`; otherwise
+    /// mirrored. fuzzylite's `Concave`.
     Concave {
-        /// Where it is 0.5.
+        /// The value at which it is 0.5.
         inflection: f64,
-        /// Where it reaches 1.
+        /// The value at which it reaches 1.
         end: f64,
     },
-    /// `sqrt(t (2 - t))` with `t = (x - start) / (end - start)`, a quarter of an ellipse: 0 up to `start`, 1 from `end` on;
-    /// mirrored where `end` is left.
-    /// fuzzylite's `Arc`.
+    /// `sqrt(t (2 - t))` with `t = (x - start) / (end - start)`, a quarter of an ellipse: 0 up to `start` and 1 beyond
+    /// `end`; mirrored if `end` is below `start`. fuzzylite's `Arc`.
     Arc {
-        /// Where it leaves 0.
+        /// The value at which it starts to rise from 0.
         start: f64,
-        /// Where it reaches 1.
+        /// The value at which it reaches 1.
         end: f64,
     },
-    /// `2 sqrt(t (1 - t))` with `t = (x - left) / (right - left)`, the upper half of an ellipse, else 0.
-    /// fuzzylite's `SemiEllipse`.
+    /// `2 sqrt(t (1 - t))` with `t = (x - left) / (right - left)`, the upper half of an ellipse, else 0. fuzzylite's
+    /// `SemiEllipse`.
     SemiEllipse {
-        /// Where it leaves 0.
+        /// The value at which it starts to rise from 0.
         left: f64,
-        /// Where it is 0 again.
+        /// The value at which it returns to 0.
         right: f64,
     },
-    /// The same degree everywhere; in a Takagi-Sugeno output, the constant `z` itself.
+    /// The same degree for all values; in a Takagi-Sugeno output, the constant `z`.
     Constant {
         /// The degree, or `z`.
         value: f64,
     },
-    /// A formula: the degree is its value, cut to [0, 1], with the variable's own name for the value; 0 where it has none. In a
-    /// Takagi-Sugeno output it is `z` itself, over inputs and other outputs.
-    /// fuzzylite's `Function`.
+    /// A formula over the variable itself. The degree is its value clamped to [0, 1], or 0 if the value is undefined.
+    /// In a Takagi-Sugeno output, the formula is over inputs and other outputs, and its value is `z`. fuzzylite's
+    /// `Function`.
     Function {
         /// The formula.
         formula: Formula,
     },
     /// Takagi-Sugeno outputs only: `z = constant + sum(coefficient input)`.
     Linear {
-        /// A coefficient for each input named; the others count 0.
+        /// The coefficients by the names of the inputs; all other inputs have the coefficient 0.
         coefficients: Vec<(String, f64)>,
         /// The constant part.
         constant: f64,
     },
 }
 
-// The name of each shape in a rule set, its parameters from left to right, and a line for the schema. Where all
-// parameters are places, they may be written as a list. `piecewise`, `function` and `linear` are written in ways of
-// their own.
+// The name of each shape in a rule set, its parameters from left to right, and a description for the schema. If all
+// parameters are positions, they may be written as a list. `piecewise`, `function` and `linear` have their own syntax.
 #[cfg(feature = "alloc")]
 form::forms! {
     Triangle "triangle" TRIANGLE [left: Ascending, peak: Ascending, right: Ascending]
@@ -309,8 +292,8 @@ form::forms! {
 
 #[cfg(feature = "alloc")]
 impl MembershipFunction {
-    /// Its parameters in the order of a list: name, role and value. None of a piecewise or linear shape or a formula, which have
-    /// no fixed number of them.
+    /// Returns its parameters in the order of a list: name, role and value. Piecewise and linear shapes and formulas
+    /// have no fixed number of parameters, and return none.
     pub fn parameters(&self) -> Vec<(&'static str, Role, f64)> {
         match self.parts() {
             Parts::Fixed(form, values) => {
@@ -323,12 +306,12 @@ impl MembershipFunction {
         }
     }
 
-    /// The same shape with other values of [`MembershipFunction::parameters`], in their order.
+    /// Returns the same shape with different values of [`MembershipFunction::parameters`], in the same order.
     ///
     /// # Errors
-    /// The values make no membership function, or their number is another.
+    /// The number of values is wrong, or they do not define a membership function.
     ///
-    /// # Example: a gaussian moved
+    /// # Example: move a Gaussian
     /// ```
     /// use fuzzy::model::MembershipFunction;
     ///
@@ -350,7 +333,7 @@ impl MembershipFunction {
         Ok(built)
     }
 
-    /// The place of a singleton.
+    /// Returns the value of a singleton; `None` for any other shape.
     pub(crate) fn at(&self) -> Option<f64> {
         match self {
             MembershipFunction::Singleton { at } => Some(*at),
@@ -358,7 +341,7 @@ impl MembershipFunction {
         }
     }
 
-    /// The number of a constant; of a linear function or a formula, only where it reads no variable.
+    /// Returns the number of a constant, or of a linear function or formula that reads no variable.
     #[must_use]
     pub fn number(&self) -> Option<f64> {
         match self {
@@ -375,7 +358,7 @@ impl MembershipFunction {
         }
     }
 
-    /// The names of the variables whose values it reads: those of a linear function or a formula.
+    /// Returns the names of the variables that a linear function or a formula reads.
     pub(crate) fn reads(&self) -> Vec<&str> {
         match self {
             MembershipFunction::Linear { coefficients, .. } => {
@@ -386,18 +369,18 @@ impl MembershipFunction {
         }
     }
 
-    /// The degree of membership of `x`, always in [0, 1] and never NaN.
+    /// Returns the degree of membership of `x`, which is always in [0, 1] and never NaN.
     ///
-    /// The formula of each shape stands at its variant. Everywhere:
-    /// - at a vertical edge (`left = peak`, the ends of a rectangle, a step of a piecewise shape) the
-    ///   higher degree holds, so a shoulder reads 1 at its peak;
-    /// - at minus and plus infinity it is the limit;
-    /// - not a number belongs to no term: degree 0;
-    /// - `Linear` is no membership function: degree 0; a `Constant` outside [0, 1] is cut to it.
+    /// The formula of each shape is documented at its variant. In addition:
+    /// - At a vertical edge (`left = peak`, the ends of a rectangle, a step of a piecewise shape) the result is the
+    ///   higher degree, so a triangle is 1 at its peak.
+    /// - At minus and plus infinity it is the limit.
+    /// - For NaN it is 0.
+    /// - `Linear` is not a membership function; the result is 0. A `Constant` outside [0, 1] is clamped.
     ///
-    /// Straight edges are divided out, `(x - foot) / (top - foot)`: exactly 0 at the foot, exactly 1 at the
-    /// top, and near the foot exact to the last bit. `exp`, `pow` and `cos` are `libm`'s, so the same `x` has
-    /// the same bits on every machine.
+    /// Straight edges are computed as `(x - foot) / (top - foot)`, which is exactly 0 at the foot, exactly 1 at the
+    /// top, and accurate to the last bit near the foot. `exp`, `pow` and `cos` are those of `libm`, so the result for
+    /// an `x` is bitwise equal on every machine.
     pub fn membership(&self, x: f64) -> f64 {
         match self {
             MembershipFunction::Piecewise { .. } if x.is_nan() => 0.0,

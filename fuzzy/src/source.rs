@@ -1,11 +1,10 @@
-//! A text with its tree, rule set and engine, each made once.
+//! A text with its tree, rule set and engine, each computed once.
 
 use std::{string::String, sync::OnceLock};
 
 use crate::{Engine, Findings, format::Document, tree::Node, yaml};
 
-/// A text with what is made of it: its tree, the rule set in it, and the engine. Each is made when it is first asked for,
-/// and kept.
+/// A text with its tree, its rule set and the compiled engine. Each is computed on the first request and cached.
 ///
 /// # Example
 /// ```
@@ -28,12 +27,12 @@ pub struct Source {
     tree: OnceLock<Result<Node, Findings>>,
     document: OnceLock<Result<Document, Findings>>,
     engine: OnceLock<Result<Engine, Findings>>,
-    /// Another reader read it, so the model is not known to be valid.
+    /// Whether another parser read the text, so that the model is not known to be valid.
     is_from_elsewhere: bool,
 }
 
 impl Source {
-    /// A text in YAML.
+    /// Creates a source from a text in YAML.
     pub fn new(text: impl Into<String>) -> Source {
         Source {
             text: text.into(),
@@ -44,7 +43,7 @@ impl Source {
         }
     }
 
-    /// A text in another format, with the rule set that was read from it.
+    /// Creates a source from a text in another format, with the rule set that was parsed from it.
     pub fn with_document(text: impl Into<String>, document: Result<Document, Findings>) -> Source {
         Source {
             document: OnceLock::from(document),
@@ -53,36 +52,36 @@ impl Source {
         }
     }
 
-    /// The text.
+    /// Returns the text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Its tree, as YAML.
+    /// Returns the syntax tree of the text, parsed as YAML.
     ///
     /// # Errors
-    /// As [`yaml::parse`], of the syntax alone.
+    /// Fails like [`yaml::parse`], but only for syntax errors.
     #[doc(hidden)] // For the packages of this repository.
     pub fn tree(&self) -> Result<&Node, Findings> {
         kept(&self.tree, || yaml::read(&self.text))
     }
 
-    /// The rule set with the span of each part.
+    /// Returns the rule set with the positions of its parts.
     ///
     /// # Errors
-    /// As [`yaml::parse`].
+    /// Fails like [`yaml::parse`].
     pub fn document(&self) -> Result<&Document, Findings> {
         kept(&self.document, || yaml::document(self.tree()?, &self.text))
     }
 
-    /// The compiled rule set.
+    /// Returns the compiled rule set.
     ///
     /// # Errors
-    /// As [`document`](Self::document); a rule set without rules, which can be read.
+    /// Fails like [`document`](Self::document), and if the rule set has no rules (a document may have none).
     pub fn engine(&self) -> Result<&Engine, Findings> {
         let compile = || {
             let document = self.document()?;
-            // What was read here is valid but for lacking rules.
+            // A document that was parsed here is valid, except that it may have no rules.
             match self.is_from_elsewhere || document.model.rules.is_empty() {
                 true => document.compile(&self.text),
                 false => Ok(Engine::compile(&document.model)),
@@ -92,7 +91,7 @@ impl Source {
     }
 }
 
-/// What is kept, made now if it is not there yet.
+/// Returns the cached value, computing it first if necessary.
 fn kept<T>(
     place: &OnceLock<Result<T, Findings>>,
     make: impl FnOnce() -> Result<T, Findings>,

@@ -1,7 +1,7 @@
-//! Whether a model means something: all that keeps it from being evaluated on every finite input, or from being written
-//! and read back.
+//! Validation of models: all errors that prevent a model from being evaluated for every finite input, or from being
+//! written and parsed again.
 //!
-//! This is the only place that decides it. Reading a rule set, checking one and compiling one ask the same function.
+//! This is the only implementation of these checks; parsing, checking and compiling a rule set all use it.
 
 use alloc::{collections::BTreeMap, format, string::String, vec::Vec};
 use core::ops::Range;
@@ -19,30 +19,30 @@ mod blocks;
 mod rules;
 mod variables;
 
-/// Inputs and outputs of a model.
+/// The maximum number of inputs and outputs of a model.
 const MOST_VARIABLES: usize = 1000;
-/// Terms of one input or output.
+/// The maximum number of terms of one input or output.
 const MOST_TERMS: usize = 1000;
-/// Terms of all inputs and outputs.
+/// The maximum number of terms of all inputs and outputs.
 const MOST_TERMS_IN_ALL: usize = 10_000;
-/// Points of one `piecewise` term.
+/// The maximum number of points of one `piecewise` term.
 const MOST_POINTS: usize = 2000;
-/// Points of all `piecewise` terms.
+/// The maximum number of points of all `piecewise` terms.
 const MOST_POINTS_IN_ALL: usize = 20_000;
-/// Rules of a model.
+/// The maximum number of rules of a model.
 const MOST_RULES: usize = 100_000;
-/// Conclusions of one rule.
+/// The maximum number of conclusions of one rule.
 const MOST_CONCLUSIONS: usize = 100;
-/// Rule blocks of a model.
+/// The maximum number of rule blocks of a model.
 const MOST_BLOCKS: usize = 1000;
-/// Errors that are told of a model; what follows is not looked at.
+/// The maximum number of errors reported for a model; validation stops after that.
 const MOST_FINDINGS: usize = 1000;
 
 impl Document {
-    /// Whether its model compiles; `text` is what it was read from.
+    /// Validates the model, so that it can be compiled; `text` is the text that it was parsed from.
     ///
     /// # Errors
-    /// What [`validate`] finds, with line and column.
+    /// The errors that [`validate`] finds, with line and column.
     pub fn validate(&self, text: &str) -> Result<(), Findings> {
         let invalid = validate(&self.model, &self.spans);
         match invalid.is_empty() {
@@ -52,8 +52,8 @@ impl Document {
     }
 }
 
-/// All errors of a model, in the order of its parts; none if it compiles. `spans` says where its parts stand in a text;
-/// it is empty for a model made in code, and the findings then have no position.
+/// Returns all errors of a model, in the order of its parts. If there are none, the model compiles. `spans` are the
+/// positions of its parts in a text; they are empty for a model built in code, and the findings then have no position.
 ///
 /// # Example
 /// ```
@@ -80,7 +80,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         .map(|(variable, _)| variable.name.as_str());
     let mut validator = Validator {
         model,
-        // Of two that share a name the first one counts.
+        // If two share a name, the first one is used.
         inputs: model
             .inputs
             .iter()
@@ -142,7 +142,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             spans.unwrap_or(&RuleSpans::default()),
         );
         if spans.is_none() {
-            // Without a text the message says which rule it is about.
+            // Without a text, the message names the rule.
             for finding in validator.findings.iter_mut().skip(first) {
                 finding.message = format!("rule {}: {}", i + 1, finding.message);
             }
@@ -153,7 +153,8 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     validator.findings
 }
 
-/// What a model has too much of: with more its analysis takes minutes, and nobody means it.
+/// Returns a finding if the model exceeds a limit. The analysis of larger models takes minutes, and they are never
+/// intended.
 fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
     let outputs = model.outputs.iter().map(|output| &output.variable);
     let variables = || model.inputs.iter().chain(outputs.clone());
@@ -217,7 +218,7 @@ struct Validator<'m> {
     model: &'m Model,
     inputs: BTreeMap<&'m str, &'m Variable>,
     outputs: BTreeMap<&'m str, &'m Variable>,
-    /// The inputs and outputs whose terms could not be read.
+    /// The inputs and outputs whose terms could not be parsed.
     unread: Vec<&'m str>,
     findings: Vec<Diagnostic>,
 }
@@ -228,7 +229,7 @@ impl<'m> Validator<'m> {
         self.findings.push(finding.help(help));
     }
 
-    /// Variables and terms without a name, and those that share one.
+    /// Reports variables and terms without a name, and those that share a name.
     fn names(&mut self, spans: &Spans) {
         let outputs = self.model.outputs.iter().map(|output| &output.variable);
         let variables = self.model.inputs.iter().zip(spans_of(&spans.inputs));
@@ -271,7 +272,7 @@ fn spans_of(spans: &[VariableSpans]) -> impl Iterator<Item = Option<&VariableSpa
     spans.iter().map(Some).chain(core::iter::repeat(None))
 }
 
-/// A span, or where there is none the wider one that it lies in.
+/// Returns a span or, if it is empty, the span that contains it.
 fn or<'a>(span: &'a Range<usize>, wider: &'a Range<usize>) -> &'a Range<usize> {
     if span.is_empty() { wider } else { span }
 }

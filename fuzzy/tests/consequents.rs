@@ -1,4 +1,5 @@
-//! What conclusions can say: Tsukamoto's places, hedges. Each value against the definition, computed here a second time.
+//! Tests of conclusions: Tsukamoto outputs, hedges, formulas, singletons. Values are compared to an independent
+//! computation from the definition.
 
 #![allow(
     clippy::panic,
@@ -8,7 +9,7 @@
 
 use fuzzy::{Engine, Model};
 
-/// A rule set with one input `x` in [0, 1], whose degree in `high` is its value.
+/// Returns a rule set with one input `x` in [0, 1] whose degree in `high` is its value.
 fn model(outputs: &str, rules: &str) -> Model {
     let text = format!(
         "fuzzy: 1\nname: t\ninputs: {{x: {{range: [0, 1], terms: {{low: {{left_shoulder: [0, 1]}}, high: {{right_shoulder: [0, 1]}}}}}}}}\noutputs: {outputs}\nrules: {rules}"
@@ -21,7 +22,8 @@ fn value(engine: &Engine, x: f64) -> f64 {
     engine.evaluate(&[x]).unwrap()[0].value().unwrap()
 }
 
-/// The values of a term with this function at degrees over 0, and what its membership is there.
+/// Evaluates a term at several firing strengths; returns each strength, the output value, and the membership of that
+/// value.
 fn places(shape: &str, range: &str, height: f64) -> Vec<(f64, f64, f64)> {
     let output = format!(
         "{{y: {{range: {range}, defuzzifier: tsukamoto, terms: {{t: {{{shape}, height: {height}}}}}}}}}"
@@ -54,7 +56,7 @@ fn a_place_is_where_the_term_has_the_degree() {
             assert!((there - w).abs() < 1e-12, "{shape}: {w} at {z} is {there}");
         }
         for (w, z, there) in places(shape, "[0, 10]", 0.8) {
-            // What the term does not reach is at the end of its slope, which a sigmoid does not have.
+            // Degrees that the term does not reach give the end of its slope; a sigmoid has none.
             if w < 0.8 || !shape.starts_with("sigmoid") {
                 let found = (there - w.min(0.8)).abs();
                 assert!(found < 1e-12, "{shape}: {w} at {z} is {there}");
@@ -82,7 +84,8 @@ fn plateaus_steps_and_infinity() {
     assert_eq!(at(steps, 0.6), 4.0);
     assert_eq!(at(steps, 0.7), 6.0);
     assert_eq!(at(steps, 0.9), 6.0);
-    // A sigmoid is 1 nowhere: the end of the range. Near 1 it may lie beyond it.
+    // A sigmoid never reaches 1, which gives the end of the range. For degrees near 1 the value may be outside the
+    // range.
     assert_eq!(at("sigmoid: {inflection: 5, slope: 1}", 1.0), 10.0);
     assert_eq!(at("sigmoid: {inflection: 5, slope: -1}", 1.0), 0.0);
     assert!(at("sigmoid: {inflection: 5, slope: 1}", 0.9999) > 14.0);
@@ -108,7 +111,7 @@ fn places_are_weighed_rule_by_rule() {
         assert!((up.unwrap().value.unwrap() - places[0]).abs() < 1e-14);
         assert_eq!(explained.outputs[0].value, Some(value(&engine, x)));
     }
-    // However weakly a rule fires, its place counts, down to the least strength.
+    // A rule counts however weakly it fires, down to the least strength.
     assert_eq!(value(&engine, 1.0), 8.0);
     let only = Engine::new(&model(output, "[IF x IS high THEN y IS up]")).unwrap();
     assert!((value(&only, 1e-12) - 2.0).abs() < 1e-11);
@@ -128,7 +131,7 @@ fn a_hedge_in_a_conclusion_changes_the_strength_of_that_conclusion() {
     assert_eq!(again, model);
     let engine = Engine::new(&model).unwrap();
     for x in [0.0_f64, 0.2, 0.6, 1.0] {
-        // The weight comes before the hedges, the hedge nearest the term before the others.
+        // The weight is applied before the hedges, and the hedge nearest to the term before the other hedges.
         let very = (0.5 * x).powi(2);
         let expected = (very * 2.0 + (1.0 - x) * 8.0) / (very + 1.0 - x);
         assert!((value(&engine, x) - expected).abs() < 1e-14, "at {x}");
@@ -173,7 +176,7 @@ fn a_formula_gives_a_number_to_a_takagi_sugeno_output() {
         assert!((value(&engine, x) - y).abs() < 1e-15, "at {x}");
         let outcome = engine.evaluate(&[x]).unwrap()[1];
         let z = w * (y.sin() - x * y);
-        // With no rule that fires it has no value.
+        // If no rule fires, there is no value.
         match outcome.value() {
             Some(found) => assert!((found - z).abs() < 1e-15, "at {x}: {found} {z}"),
             None => assert_eq!(x, 0.0),
@@ -194,7 +197,7 @@ fn where_a_formula_has_no_value_neither_has_the_output() {
     let engine = Engine::new(&model(output, rules)).unwrap();
     let outcome = engine.evaluate(&[0.25]).unwrap()[0];
     assert_eq!((outcome.value(), outcome.coverage), (None, 0.75));
-    // A rule that does not fire does not ask its formula.
+    // The formula of a rule that does not fire is not evaluated.
     assert_eq!(value(&engine, 0.0), 4.0);
     assert_eq!(value(&engine, 1.0), 0.5_f64.sqrt());
     let explained = engine.explain(&[0.25]).unwrap();
@@ -218,7 +221,7 @@ rules: [IF x IS very low THEN y IS a, IF x IS high THEN y IS b]
         model
     );
     let engine = Engine::new(&model).unwrap();
-    // A parabola is symmetric, a step from 2 to 3 lies around 2.5; cut to [0, 1] they are degrees.
+    // A parabola is symmetric, and the step from 2 to 3 is centred at 2.5; clamped to [0, 1] they are degrees.
     let low = engine.evaluate(&[1.0]).unwrap()[0];
     assert!((low.value().unwrap() - 3.0).abs() < 1e-12);
     assert_eq!(low.coverage, 0.75 * 0.75);
@@ -227,7 +230,7 @@ rules: [IF x IS very low THEN y IS a, IF x IS high THEN y IS b]
     assert!((high.coverage - 0.9 * (-0.5_f64).exp()).abs() < 1e-15);
     let terms = &engine.explain(&[5.0]).unwrap().inputs[0].terms;
     assert_eq!(terms[0].degree, 0.0);
-    // y (6 - y) / 9 at a strength of 0.75 as a product: the same centroid; the area of an asymmetric part by its integral.
+    // y (6 - y) / 9 scaled by 0.75 has the same centroid; the asymmetric part is computed by its integral.
     let text = text.replace("y * (6 - y) / 9", "y^2 / 36");
     let text = text.replace("rules:", "operators: {implication: product}\nrules:");
     let engine = Engine::new(&text.parse().unwrap()).unwrap();
@@ -255,7 +258,7 @@ fn an_output_of_singletons_is_a_few_places() {
             "{found} is not {expected}"
         );
     };
-    // At 0.7 the strengths are 0.3, 0.7, 0.7 and 0.35, of which the first and the last conclude one place.
+    // At 0.7 the strengths are 0.3, 0.7, 0.7 and 0.35; the first and the last rule conclude the same value.
     near(
         of("centroid", "aggregation: maximum", 0.7),
         (2.0 * 0.35 + 8.0 * 0.7 + 9.0 * 0.5) / (0.35 + 0.7 + 0.5),

@@ -1,5 +1,5 @@
-//! Every implication with every aggregation: against sums over many samples, with the norms written out a second time, and
-//! against integrals by hand.
+//! Tests of every implication with every aggregation: comparisons with sums over many samples, using independent
+//! definitions of the norms, and with integrals computed by hand.
 #![allow(
     clippy::panic,
     clippy::unwrap_used,
@@ -24,7 +24,7 @@ fn model(terms: &str) -> Model {
     text.parse().unwrap()
 }
 
-/// The firing strengths of the rules, each with the index of its term.
+/// Returns the firing strengths of the rules, each with the index of its term.
 fn strengths(x: f64) -> [(f64, usize); 4] {
     let middle = 1.0 - (2.0 * x - 1.0).abs();
     let (low, high) = ((1.0 - 2.0 * x).max(0.0), (2.0 * x - 1.0).max(0.0));
@@ -106,7 +106,7 @@ fn centroids_and_bisectors_are_those_of_many_samples() {
             for aggregation in AGGREGATIONS {
                 model.operators.implication = implication;
                 model.operators.aggregation = aggregation;
-                // What drastic leaves of a curve is a point, or what rounds to it.
+                // With the drastic norm, only a point of a curve remains, or the values that round to it.
                 if implication == Implication::Drastic && terms == CURVED {
                     continue;
                 }
@@ -182,7 +182,7 @@ fn near(found: Option<f64>, expected: f64) {
 fn integrals_by_hand() {
     let one = "IF x IS high THEN y IS a WITH 0.6";
     let two = "IF x IS high THEN y IS a WITH 0.5, IF x IS high THEN y IS b WITH 0.25";
-    // min(0.6, m) where m > 0.4: from 0.8 up to 1.2, level to 5.2, down to 6.8.
+    // min(0.6, m) where m > 0.4: rises from 0.8 to 1.2, is level up to 5.2, and falls to 6.8.
     let nilpotent = centroid(
         "a: {triangle: [0, 2, 10]}",
         one,
@@ -192,7 +192,7 @@ fn integrals_by_hand() {
         + 0.3 * (5.2 * 5.2 - 1.2 * 1.2)
         + (5.0 * (6.8f64.powi(2) - 5.2f64.powi(2)) - (6.8f64.powi(3) - 5.2f64.powi(3)) / 3.0) / 8.0;
     near(nilpotent, moments / (0.4 * 0.5 + 4.0 * 0.6 + 1.6 * 0.5));
-    // m - 0.4 where it is over 0: a triangle [0.8, 2, 6.8].
+    // m - 0.4 where it is above 0: a triangle [0.8, 2, 6.8].
     let bounded = centroid(
         "a: {triangle: [0, 2, 10]}",
         one,
@@ -204,21 +204,21 @@ fn integrals_by_hand() {
     near(drastic, 4.5);
     let nothing = centroid("a: {triangle: [0, 2, 10]}", one, "implication: drastic");
     assert_eq!(nothing, None);
-    // 0.6 m / (0.6 + 0.4 m) of a ramp m = x / 10: an integral of 1.5 x / (15 + x).
+    // 0.6 m / (0.6 + 0.4 m) for a ramp m = x / 10: the integral of 1.5 x / (15 + x).
     let hamacher = centroid("a: {right_shoulder: [0, 10]}", one, "implication: hamacher");
     let logarithm = (25.0f64 / 15.0).ln();
     near(
         hamacher,
         (50.0 - 150.0 + 225.0 * logarithm) / (10.0 - 15.0 * logarithm),
     );
-    // 0.6 m / (1.4 - 0.4 m) of the same ramp: an integral of 1.5 x / (35 - x).
+    // 0.6 m / (1.4 - 0.4 m) for the same ramp: the integral of 1.5 x / (35 - x).
     let einstein = centroid("a: {right_shoulder: [0, 10]}", one, "implication: einstein");
     let logarithm = (35.0f64 / 25.0).ln();
     near(
         einstein,
         (35.0f64.powi(2) * logarithm - 350.0 - 50.0) / (35.0 * logarithm - 10.0),
     );
-    // Two triangles, 1 where they overlap.
+    // Two triangles; 1 where they overlap.
     let drastic = centroid(
         "a: {triangle: [0, 2, 4]}, b: {triangle: [3, 5, 7]}",
         two,
@@ -227,7 +227,7 @@ fn integrals_by_hand() {
     let (left, right) = (0.125, 0.0625);
     let moment = 2.0 + 0.5 * 5.0 - left * (3.0 + 1.0 / 3.0) - right * (3.0 + 2.0 / 3.0) + 3.5;
     near(drastic, moment / (1.0 + 0.5 - left - right + 1.0));
-    // The ramp m and its 0.75 everywhere: the larger up to m = 0.25, 1 beyond.
+    // The ramp m and the constant 0.75: the larger one where m is below 0.25, and 1 beyond.
     let nilpotent = centroid(
         "a: {right_shoulder: [0, 10]}, b: {rectangle: [0, 10]}",
         "IF x IS high THEN y IS a, IF x IS high THEN y IS b WITH 0.75",

@@ -1,5 +1,5 @@
-//! A rule set in somebody's own configuration, read by the YAML organisation's serde crate; and our reader held against
-//! that crate.
+//! Tests of a rule set inside another program's configuration, which is read by the YAML organisation's serde crate,
+//! and a comparison of that crate with our reader.
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use std::{
@@ -11,7 +11,7 @@ use std::{
 use fuzzy::{Engine, Model, yaml};
 use serde::{Deserialize, Serialize};
 
-/// What a program that uses the engine may have as its configuration.
+/// An example configuration of a program that uses the engine.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Config {
     listen: String,
@@ -117,7 +117,7 @@ fn structs_and_maps_are_inputs() {
     );
 }
 
-/// The YAML files below a folder of the repository.
+/// Returns the YAML files below a folder of the repository.
 fn files(folder: &str) -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("..")
@@ -160,7 +160,7 @@ fn every_rule_set_of_the_repository_means_the_same_to_both() {
     );
 }
 
-/// Where the two differ, and why.
+/// Tests the differences between the two readers.
 #[test]
 fn tags_duplicates_and_numbers() {
     let rule_set = |name: &str| {
@@ -172,18 +172,18 @@ fn tags_duplicates_and_numbers() {
     let ours = |text: &str| text.parse::<Model>().map(|model| model.name);
     let theirs = |text: &str| serde_yaml::from_str::<Model>(text).map(|model| model.name);
 
-    // A name that looks like a number keeps its letters here; serde hands over a number.
+    // A name that looks like a number is read as written here; serde passes it as a number.
     let number = rule_set("1.50");
     assert_eq!(
         (ours(&number).unwrap(), theirs(&number).unwrap()),
         ("1.50".into(), "1.5".into())
     );
-    // Hexadecimal and octal numbers are text here, so that no range is one by accident.
+    // Hexadecimal and octal numbers are read as text here, so that they are not used as a range by accident.
     let hexadecimal = rule_set("fan").replace("[0, 1], partition: [a", "[0x0, 0x1], partition: [a");
     assert!(ours(&hexadecimal).is_err() && theirs(&hexadecimal).is_ok());
-    // A tag means nothing in a rule set.
+    // Tags are not supported in rule sets.
     assert!(ours(&rule_set("!!str fan")).is_err() && theirs(&rule_set("!!str fan")).is_ok());
-    // A key that stands twice is an error to both; here it is found together with all others, at its position.
+    // Both report a repeated key as an error; here it is reported with all other findings and its position.
     let twice = rule_set("fan\nname: fun\nunknown: 1");
     let findings = yaml::parse(&twice).unwrap_err();
     let codes: Vec<&str> = findings.0.iter().map(|finding| finding.code).collect();
@@ -191,7 +191,7 @@ fn tags_duplicates_and_numbers() {
     assert!(theirs(&twice).is_err());
 }
 
-/// Names in an order that sorting changes.
+/// Names whose order changes when they are sorted.
 const UNSORTED: &str = "
 fuzzy: 1
 name: unsorted
@@ -206,7 +206,7 @@ blocks:
   first: {operators: {and: product}, rules: [IF speed IS none AND load IS low THEN risk IS small AND alarm IS quiet]}
 ";
 
-/// The keys of all mappings in alphabetical order, as `serde_json` has them without its feature `preserve_order`.
+/// Sorts the keys of all mappings alphabetically, as `serde_json` does without its feature `preserve_order`.
 fn sorted(value: serde_json::Value) -> serde_json::Value {
     match value {
         serde_json::Value::Object(map) => {
@@ -232,7 +232,7 @@ fn every_format_keeps_the_order_of_inputs_outputs_terms_and_blocks() {
         toml::Value::try_from(&model).unwrap().try_into().unwrap(),
         serde_yaml::from_str(&serde_yaml::to_string(&model).unwrap()).unwrap(),
         ron::from_str(&ron::to_string(&model).unwrap()).unwrap(),
-        // What serde writes, the readers of files read.
+        // Text written by serde is parsed by the readers of files.
         serde_json::to_string(&model).unwrap().parse().unwrap(),
     ];
     let engine = Engine::new(&model).unwrap();
@@ -249,7 +249,7 @@ fn every_format_keeps_the_order_of_inputs_outputs_terms_and_blocks() {
             values(&engine),
             "{index}"
         );
-        // The coefficients of a linear function are found by name; their order has no meaning.
+        // The coefficients of a linear function are identified by name, so their order is not significant.
         for output in &mut again.outputs {
             for term in &mut output.variable.terms {
                 if let fuzzy::model::MembershipFunction::Linear { coefficients, .. } =
@@ -263,7 +263,8 @@ fn every_format_keeps_the_order_of_inputs_outputs_terms_and_blocks() {
     }
 }
 
-/// A bad entry in a list of variables, terms or blocks is named, with what was expected, and hides no other finding.
+/// An invalid entry in a list of variables, terms or blocks is reported by its position and the expected content,
+/// together with all other findings.
 #[test]
 fn a_bad_entry_of_a_list_is_named() {
     let list: Model = UNSORTED.parse().unwrap();
@@ -300,11 +301,11 @@ fn a_bad_entry_of_a_list_is_named() {
 
 #[test]
 fn mappings_that_were_sorted_are_read_as_before() {
-    // What earlier versions wrote: the peaks of a partition find their order by their values.
+    // The format of earlier versions: the peaks of a partition are sorted by their values.
     let mut text = UNSORTED.replace("{none: 1, much: 9}", "{much: 9, none: 1}");
     let document = yaml::parse(&text).unwrap();
     assert_eq!(document.model, UNSORTED.parse::<Model>().unwrap());
-    // In a text it may be a mistake.
+    // In a text, the unsorted order may be a mistake.
     assert_eq!(document.warnings.0[0].code, "inverted-parameters");
     assert_eq!(document.warnings.0.len(), 1);
     text = text.replace("much: 9", "much: 1");
@@ -325,7 +326,7 @@ fn steps_survive_formats_without_a_word_for_nothing_and_with_sorted_keys() {
     let steps = r#""steps":[{"name":"zero","below":0},{"name":"fine","below":36},{"name":"over"}]"#;
     assert!(json.contains(steps), "{json}");
     assert_eq!(serde_json::from_str::<Model>(&json).unwrap(), model);
-    // Sorted keys of a mapping find their order by the limits.
+    // With sorted keys, the order of the terms follows from the limits.
     let sorted = text.replace("{zero: 0, fine: 36, over: }", "{fine: 36, over: , zero: 0}");
     assert_eq!(sorted.parse::<Model>().unwrap(), model);
     assert_eq!(yaml::to_string(&model).parse::<Model>().unwrap(), model);

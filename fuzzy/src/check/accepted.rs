@@ -8,7 +8,7 @@ use crate::{
     model::{Model, document::Spans},
 };
 
-/// An entry of [`Model::allow`], and how many findings it accepts.
+/// An entry of [`Model::allow`], with the number of findings that it accepts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -18,17 +18,17 @@ pub struct Accepted {
     pub finding: String,
     /// The author's reason.
     pub because: String,
-    /// How many findings of this code there are.
+    /// The number of findings with this code.
     pub count: usize,
 }
 
-/// The index of the entry that accepts a finding.
+/// Returns the index of the entry that accepts a finding.
 pub(super) fn by(model: &Model, finding: &Diagnostic) -> Option<usize> {
     let mut entries = model.allow.iter();
     entries.position(|one| one.finding == finding.code && finding.severity != Severity::Error)
 }
 
-/// The entries, each with the number of findings that it accepts.
+/// Returns the entries, each with the number of findings that it accepts.
 pub(super) fn counted(report: &Report, model: &Model) -> Vec<Accepted> {
     let entry = |one: &crate::model::Allowed| Accepted {
         finding: one.finding.clone(),
@@ -47,7 +47,7 @@ pub(super) fn counted(report: &Report, model: &Model) -> Vec<Accepted> {
     entries
 }
 
-/// A warning for each entry whose finding does not occur. There is none where the analysis is incomplete.
+/// Returns a warning for each entry whose finding does not occur; none if the analysis is incomplete.
 pub(super) fn unneeded(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let is_complete = report.uncovered_complete && report.reach_complete && report.jumps_complete;
     if !is_complete {

@@ -1,14 +1,14 @@
-//! Values in the range of an input, and where something about its terms changes.
+//! Values in the range of an input, and the values at which a property of its terms changes.
 
 use alloc::vec::Vec;
 
 use crate::model::{MembershipFunction, Parts, Variable};
 
-/// The even steps of a range.
+/// The number of evenly spaced steps over a range.
 const EVENLY_SPACED: usize = 64;
 
-/// Values of a variable to evaluate at: even steps with both ends, and the parameters of the terms that lie in the range.
-/// Rising, no two equal.
+/// Returns the values of a variable to evaluate: evenly spaced ones including both ends, and the parameters of the
+/// terms that are in the range. They are in ascending order without duplicates.
 pub(super) fn values(variable: &Variable) -> Vec<f64> {
     let (low, high) = (variable.low, variable.high);
     let even = (0..=EVENLY_SPACED).map(|i| {
@@ -27,7 +27,7 @@ pub(super) fn values(variable: &Variable) -> Vec<f64> {
     values
 }
 
-/// The parameters of a membership function: its corners and middles, and also widths and slopes.
+/// Returns the parameters of a membership function: corners and middles, but also widths and slopes.
 pub(super) fn marks(shape: &MembershipFunction) -> Vec<f64> {
     match shape.parts() {
         Parts::Fixed(_, parameters) => parameters,
@@ -36,7 +36,7 @@ pub(super) fn marks(shape: &MembershipFunction) -> Vec<f64> {
     }
 }
 
-/// Where `holds` changes between two of the values, by bisection.
+/// Returns the values at which `holds` changes between two of the given values, by bisection.
 pub(super) fn changes(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
     let mut found = Vec::new();
     let Some(&first) = values.first() else {
@@ -53,7 +53,7 @@ pub(super) fn changes(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
     found
 }
 
-/// The values at which alone `holds` is true, and not beside them.
+/// Returns the values at which `holds` is true although it is false at both neighbouring numbers.
 pub(super) fn points(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
     let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
         return Vec::new();
@@ -66,7 +66,7 @@ pub(super) fn points(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
     values.iter().copied().filter(is_alone).collect()
 }
 
-/// The smallest number after `from` where `same` no longer holds. It holds at `from` and not at `to`.
+/// Returns the smallest number after `from` for which `same` is false. `same` must be true at `from` and false at `to`.
 pub(super) fn bisect(mut from: f64, mut to: f64, same: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = 0.5 * (from + to);
@@ -81,7 +81,7 @@ pub(super) fn bisect(mut from: f64, mut to: f64, same: impl Fn(f64) -> bool) -> 
     }
 }
 
-/// Twelve digits: further ones come from rounding in membership functions.
+/// Rounds to twelve digits, because further digits result from rounding in membership functions.
 pub(super) fn rounded(x: f64) -> f64 {
     let text = alloc::format!("{x:.11e}");
     text.parse().unwrap_or(x)

@@ -1,31 +1,31 @@
-//! The regions of the input space that no rule covers.
+//! Regions of the input space that no rule covers.
 
 use alloc::{string::String, vec::Vec};
 
 use super::logic::{Cells, Changes, Extent, Level, Logic, halves};
 use crate::model::{Model, Variable};
 
-/// A box of the input space in which no rule of an output reaches a degree.
+/// A box of the input space in which no rule of an output reaches a firing strength.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Uncovered {
-    /// The output.
+    /// The name of the output.
     pub output: String,
-    /// The degree that no rule reaches; 0 where `silent`.
+    /// The firing strength that no rule reaches; 0 if `silent`.
     pub coverage: f64,
     /// Whether no rule fires at all, so that the output has no value.
     pub silent: bool,
-    /// The sides of the box. An input that is not named has its whole range.
+    /// The sides of the box. Inputs that are not listed span their whole range.
     pub sides: Vec<Side>,
-    /// The fraction of the input space that the box takes.
+    /// The fraction of the input space that the box covers.
     pub share: f64,
     /// Antecedents that would cover the box, as terms of the inputs named in `sides`.
     pub missing: Vec<Vec<Antecedent>>,
-    /// The number of such antecedents that are not listed.
+    /// The number of such antecedents that are omitted from `missing`.
     pub more_missing: usize,
-    /// Inputs whose terms all stay below the degree in a part of the box. A rule cannot cover that part.
+    /// Inputs that have no term above the required degree in a part of the box. No rule can cover that part.
     pub weak: Vec<String>,
 }
 
@@ -34,7 +34,7 @@ pub struct Uncovered {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Side {
-    /// The input.
+    /// The name of the input.
     pub input: String,
     /// The lower end.
     pub low: f64,
@@ -42,35 +42,36 @@ pub struct Side {
     pub high: f64,
 }
 
-/// `input IS term`
+/// A proposition `input IS term`.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Antecedent {
-    /// The input.
+    /// The name of the input.
     pub input: String,
-    /// The term.
+    /// The name of the term.
     pub term: String,
 }
 
-/// Uncovered boxes, and whether the list is complete.
+/// Uncovered boxes, with a flag for whether the list is complete.
 pub(super) struct Boxes {
     pub(super) found: Vec<Uncovered>,
     pub(super) complete: bool,
 }
 
-/// The search stops after so many boxes: an author does not read more.
+/// The maximum number of boxes; the search stops there, because authors do not read more.
 const MOST_BOXES: usize = 50;
-/// The most missing antecedents that are listed for a box.
+/// The maximum number of missing antecedents listed for a box.
 const MOST_MISSING: usize = 16;
-/// For a box with more sides no antecedents are listed: such a rule would be too long to write.
+/// The maximum number of sides for which antecedents are listed; a rule with more conditions would be too long to
+/// write.
 const MOST_SIDES_OF_A_RULE: usize = 6;
-/// The search for an output stops after so many evaluations of formulas.
+/// The maximum number of formula evaluations in the search for one output.
 const MOST_LOOKS: usize = 100_000;
-/// So do those for all outputs together.
+/// The maximum number of formula evaluations in the searches for all outputs together.
 const MOST_LOOKS_IN_ALL: usize = 4_000_000;
 
-/// What the searches for all outputs share.
+/// State that is shared by the searches for all outputs.
 pub(super) struct Shared {
     looks_left: usize,
 }
@@ -82,7 +83,7 @@ impl Shared {
     }
 }
 
-/// The boxes in which no rule of `output` reaches `coverage`, or, with `None`, in which none fires.
+/// Returns the boxes in which no rule of `output` reaches `coverage` or, if it is `None`, in which no rule fires.
 pub(super) fn uncovered(
     model: &Model,
     output: &str,
@@ -113,13 +114,13 @@ pub(super) fn uncovered(
     Boxes { found, complete }
 }
 
-/// The boxes in which no formula is true, and whether the search ended.
+/// Returns the boxes in which no formula is true, and whether the search is complete.
 fn search(logic: &Logic, shared: &mut Shared) -> (Vec<Cells>, bool) {
     let all: Vec<usize> = (0..logic.formulas.len()).collect();
     let mut boxes = Vec::new();
     let most = shared.looks_left.min(MOST_LOOKS);
     let mut looks = 0;
-    // Boxes to search, each with the formulas that may be true in it.
+    // The boxes to search, each with the formulas that may be true in it.
     let mut left = Vec::from([(logic.everywhere(), all)]);
     while let Some((cells, formulas)) = left.pop() {
         let more = formulas.len() + 1;
@@ -144,7 +145,7 @@ fn search(logic: &Logic, shared: &mut Shared) -> (Vec<Cells>, bool) {
     (boxes, true)
 }
 
-/// The formulas that are true in a part of the box; `None` if one is true in the whole box.
+/// Returns the formulas that are true in a part of the box; `None` if one is true in the whole box.
 fn undecided(logic: &Logic, cells: &Cells, formulas: &[usize]) -> Option<Vec<usize>> {
     let mut open = Vec::new();
     for &index in formulas {
@@ -157,7 +158,7 @@ fn undecided(logic: &Logic, cells: &Cells, formulas: &[usize]) -> Option<Vec<usi
     Some(open)
 }
 
-/// Joins neighbouring boxes whose union is a box.
+/// Merges neighbouring boxes whose union is a box.
 fn merged(mut boxes: Vec<Cells>) -> Vec<Cells> {
     loop {
         let before = boxes.len();
@@ -172,7 +173,7 @@ fn merged(mut boxes: Vec<Cells>) -> Vec<Cells> {
                 None => left.push(one),
             }
         }
-        // A joined box may have a new neighbour among the earlier ones.
+        // A merged box may have a new neighbour among the earlier ones.
         if left.len() == before {
             return left;
         }
@@ -180,7 +181,7 @@ fn merged(mut boxes: Vec<Cells>) -> Vec<Cells> {
     }
 }
 
-/// The union of two boxes, if they differ in one input only and touch there.
+/// Returns the union of two boxes if they differ in only one input and are adjacent there.
 fn together(a: &Cells, b: &Cells) -> Option<Cells> {
     let mut differing = a.iter().zip(b).enumerate().filter(|(_, (a, b))| a != b);
     let (input, (&(from, to), &(other_from, other_to))) = differing.next()?;
@@ -199,7 +200,7 @@ fn describe(
     output: &str,
     coverage: Option<f64>,
 ) -> Uncovered {
-    /// A thinner box is a single value with a rounding error. It is reported as that value.
+    /// A thinner box is a single value with a rounding error, and is reported as that value.
     const THIN: f64 = 1e-9;
     let mut sides = Vec::new();
     let mut share = 1.0;
@@ -249,11 +250,11 @@ fn describe(
     }
 }
 
-/// The terms with the highest degree somewhere in a stretch of an input, from left to right.
+/// The terms with the highest degree at some value of an interval of an input, from left to right.
 struct Dominating<'v> {
-    /// Those whose degree reaches the coverage there.
+    /// Those of them whose degree reaches the coverage there.
     terms: Vec<&'v str>,
-    /// Whether no term reaches the coverage somewhere.
+    /// Whether at some value no term reaches the coverage.
     weak: bool,
 }
 
@@ -286,7 +287,7 @@ impl<'v> Dominating<'v> {
     }
 }
 
-/// All combinations of one antecedent of each choice, at most `most`.
+/// Returns the combinations of one antecedent per choice, at most `most` of them.
 fn combinations(choices: &[Vec<Antecedent>], most: usize) -> Vec<Vec<Antecedent>> {
     if choices.is_empty()
         || choices.len() > MOST_SIDES_OF_A_RULE

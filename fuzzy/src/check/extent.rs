@@ -1,4 +1,4 @@
-//! The values that an output can take, from its consequents alone.
+//! The values that an output can take, computed from its consequents only.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -8,16 +8,18 @@ use crate::{
     rule::{Condition, Rule},
 };
 
-/// The firing strengths that are tried for each term: the centroid of a cut set moves with the height of the cut.
+/// The firing strengths to evaluate for each term, because the centroid of a cut set depends on the height of the cut.
 const STRENGTHS: [f64; 7] = [1.0, 0.9, 0.75, 0.5, 0.25, 0.1, 0.01];
 
-/// The smallest and the largest value that one consequent of the rules alone gives to an output, whatever the inputs are.
+/// Returns the smallest and the largest value of an output if only one consequent of its rules is active, for any
+/// inputs.
 ///
-/// Where terms are a partition, several consequents together lie between these values. In general they can go a
-/// little beyond. The value where no rule fires counts too. `None` where the model does not compile, has no such output or
-/// no rule for it, and where values have no bound of this kind: of linear terms and formulas, of the weighted sum, and of Tsukamoto's places.
+/// If the terms form a partition, several active consequents give a value between these two; otherwise the value may
+/// exceed them slightly. The value for inputs at which no rule fires is included. `None` if the model does not compile,
+/// has no such output or no rule for it, or if values are unbounded: for linear terms and formulas, the weighted sum,
+/// and Tsukamoto outputs.
 ///
-/// # Example: the centroid of the last term is not the end of the range
+/// # Example: the centroid of the last term differs from the end of the range
 /// ```
 /// use fuzzy::check;
 ///
@@ -63,7 +65,8 @@ pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
     {
         return None;
     }
-    // A model with one rule for each term, of which one at a time fires: at i + strength, the rule of term i.
+    // Builds a model with one rule per term, of which one fires at a time: the rule of term i fires with `strength` at
+    // 2 i + strength.
     let name = |term: usize| -> String { format!("term {term}") };
     let mut selector = Variable::new("selector", 0.0, 2.0 * terms.len().max(1) as f64);
     let mut alone = Model::builder("extent").operators(model.operators_of_output(found));
@@ -111,7 +114,7 @@ mod tests {
         let output = "{range: [0, 12], partition: [low, medium, high]}";
         let (low, high) = of(output, "[IF x IS a THEN y IS medium]").unwrap();
         assert!((low - 6.0).abs() < 1e-9 && (high - 6.0).abs() < 1e-9);
-        // A ramp that is cut at its foot is as good as flat: its middle moves.
+        // A ramp that is cut near its foot is nearly flat, so its centroid moves.
         let (low, high) = of(output, "[IF x IS a THEN y IS high]").unwrap();
         assert!((high - 10.0).abs() < 1e-9, "{high}");
         assert!((low - 9.0).abs() < 0.02, "{low}");

@@ -1,4 +1,4 @@
-//! A report as located diagnostics.
+//! Conversion of a report to diagnostics with positions.
 
 use alloc::{
     collections::BTreeMap,
@@ -24,10 +24,10 @@ use crate::{
     rule::{Condition, Consequent, Rule},
 };
 
-/// The most boxes that are listed; the others are counted.
+/// The maximum number of boxes that are listed; further boxes are counted.
 const MOST_BOXES_TOLD: usize = 10;
 
-/// The diagnostics of a report, with the spans of the model's parts, whether the author accepts them or not.
+/// Returns the diagnostics of a report, with the spans of the model's parts, including those that the author accepts.
 pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let at = At { model, spans };
     let mut found = Vec::new();
@@ -87,7 +87,7 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
             .filter(|one| !is_missing(one, &gaps))
             .map(|one| at.unused(one)),
     );
-    // Output terms that no rule reaches are told with the rules that never fire.
+    // Output terms that no rule reaches are reported together with the rules that never fire.
     let outside = report.unreachable.iter();
     found.extend(outside.filter_map(|one| at.outside_range(one)));
     found.extend(report.equal_terms.iter().map(|one| at.equal_terms(one)));
@@ -110,7 +110,7 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
     found
 }
 
-/// Equal rules, whatever their weights.
+/// Reports rules that are equal except for their weights.
 fn duplicate_rules(model: &Model, at: &At<'_>, findings: &mut Vec<Diagnostic>) {
     let mut seen: BTreeMap<String, Range<usize>> = BTreeMap::new();
     for (i, rule) in model.rules.iter().enumerate() {
@@ -131,7 +131,7 @@ fn duplicate_rules(model: &Model, at: &At<'_>, findings: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Where the parts of a model stand.
+/// The positions of the parts of a model.
 struct At<'a> {
     model: &'a Model,
     spans: &'a Spans,
@@ -238,13 +238,13 @@ impl At<'_> {
     }
 
     fn side(&self, side: &super::Side) -> String {
-        // An output that rules read is an input of theirs.
+        // An output that rules read is an input of these rules.
         let outputs = self.model.outputs.iter().map(|output| &output.variable);
         let mut variables = self.model.inputs.iter().chain(outputs);
         let input = variables.find(|input| input.name == side.input);
         let (low, high) = input.map_or((f64::NAN, f64::NAN), |input| (input.low, input.high));
         let name = &side.input;
-        // A stretch that ends just inside the range ends at the range for a reader.
+        // An interval that ends just inside the range is displayed as ending at the range.
         let at_end = |x: f64| {
             [low, high]
                 .into_iter()
@@ -292,7 +292,8 @@ impl At<'_> {
             .help("keep one of them; what lies between two terms is a term of its own")
     }
 
-    /// Reported unless a term of its condition is 0 on the whole range, which is a finding.
+    /// Reports a rule that never fires, unless a term of its condition is 0 on the whole range, which is reported on
+    /// its own.
     fn never_fires(&self, index: usize, report: &Report) -> Option<Diagnostic> {
         let rule = &self.model.rules.get(index)?.rule;
         let mut is_told = false;
@@ -320,7 +321,7 @@ impl At<'_> {
         Some(Diagnostic::warning("never-fires", self.rule(index), message).help(help))
     }
 
-    /// A term that is 0 on the whole range; `None` for an output's term that no rule reaches.
+    /// Reports a term that is 0 on the whole range; `None` for an output's term that no rule reaches.
     fn outside_range(&self, one: &TermOf) -> Option<Diagnostic> {
         let term = one.term.as_deref()?;
         let mut inputs = self.model.inputs.iter();
@@ -374,7 +375,7 @@ impl At<'_> {
         })
     }
 
-    /// Reported only if the output leaves its range or stays away from an end of it.
+    /// Reports an output that leaves its range or does not come near an end of it.
     fn reach(&self, one: &Reach, is_complete: bool) -> Option<Diagnostic> {
         const BEYOND: f64 = 1e-9;
         let [low, high] = one.range;
@@ -383,7 +384,7 @@ impl At<'_> {
             return Some(self.outside(one));
         }
         if !is_complete {
-            // It may take other values at the points that were not evaluated.
+            // The output may take other values at points that were not evaluated.
             return None;
         }
         let mut outputs = self.model.outputs.iter();
@@ -424,7 +425,7 @@ impl At<'_> {
         Some(Diagnostic::note("narrow-reach", here, message).help(help))
     }
 
-    /// A Takagi-Sugeno output that takes values outside its range.
+    /// Reports a Takagi-Sugeno output that takes values outside its range.
     fn outside(&self, one: &Reach) -> Diagnostic {
         let [low, high] = one.range;
         let message = format!(
@@ -472,7 +473,7 @@ impl At<'_> {
         ))
     }
 
-    /// What was examined in part, because it would have taken too long.
+    /// Reports the analyses that were stopped early because they would have taken too long.
     fn unexamined(&self, report: &Report) -> Option<Diagnostic> {
         let parts = [
             (report.reach_complete, "the values that outputs reach"),
@@ -510,7 +511,7 @@ impl At<'_> {
 }
 
 pub(super) fn coordinates(at: &[Coordinate]) -> String {
-    /// With very many inputs only the first ones are listed.
+    /// The maximum number of inputs that are listed.
     const MOST: usize = 6;
     let all = at
         .iter()
@@ -523,7 +524,7 @@ pub(super) fn coordinates(at: &[Coordinate]) -> String {
     text
 }
 
-/// `IF a IS low AND b IS high THEN output IS ...`
+/// Returns the text of a missing rule: `IF a IS low AND b IS high THEN output IS ...`
 fn missing_rule(antecedents: &[super::Antecedent], output: &str) -> String {
     let is = |one: &super::Antecedent| Condition::is(&one.input, &one.term);
     let mut parts: Vec<Condition> = antecedents.iter().map(is).collect();

@@ -1,16 +1,18 @@
-//! The gaps of a report, each once: regions without a rule, less those that follow from another finding.
+//! The gaps of a report, each listed once: regions without a rule, except those that follow from another finding.
 
 use alloc::vec::Vec;
 
 use super::{Report, Side, TermOf, Uncovered};
 
-/// A region without a rule, and the parts of it in which none fires at all. One cause gives one of them.
+/// A region without a rule, with the parts of it in which no rule fires at all. Both have the same cause and are
+/// reported together.
 pub(super) struct Gap<'r> {
     pub(super) region: &'r Uncovered,
     pub(super) silent: Vec<&'r Uncovered>,
 }
 
-/// The gaps of a report. A region that no rule could cover, because an input has no term there, is told as a hole.
+/// Returns the gaps of a report. A region that no rule could cover because an input has no term there is reported as a
+/// hole instead.
 pub(super) fn gaps(report: &Report) -> Vec<Gap<'_>> {
     let in_hole = |one: &Uncovered| {
         one.sides.iter().any(|side| {
@@ -49,7 +51,7 @@ pub(super) fn gaps(report: &Report) -> Vec<Gap<'_>> {
     lone.chain(weak).collect()
 }
 
-/// Whether a term stands in no rule because the rules of a gap are missing.
+/// Returns whether a term is unused only because the rules of a gap are missing.
 pub(super) fn is_missing(one: &TermOf, gaps: &[Gap<'_>]) -> bool {
     let mut missing = gaps.iter().flat_map(|gap| &gap.region.missing).flatten();
     one.term

@@ -1,4 +1,4 @@
-//! Where the outputs jump.
+//! Jumps of the outputs.
 
 use alloc::{string::String, vec::Vec};
 
@@ -7,30 +7,31 @@ use super::{
     probe::{Coordinate, Line, MOST_ON_A_LINE, NOTABLE, Probe},
 };
 
-/// A jump of an output.
+/// A discontinuity of an output: between two neighbouring values of an input, the output changes by more than 0.5 % of
+/// its range.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Jump {
-    /// The output.
+    /// The name of the output.
     pub output: String,
-    /// All inputs by name; the named input is just below the jump.
+    /// The value of each input; the value of `input` is just below the jump.
     pub at: Vec<Coordinate>,
-    /// The input along which it jumps.
+    /// The input along which the output jumps.
     pub input: String,
-    /// The output below it.
+    /// The value of the output below the jump.
     pub below: f64,
-    /// The output above it.
+    /// The value of the output above the jump.
     pub above: f64,
 }
 
 impl Probe<'_> {
-    /// The largest jump of each output along each input.
+    /// Returns the largest jump of each output along each input.
     pub(super) fn jumps(&mut self) -> Vec<Jump> {
         let mut found = Vec::new();
         let inputs = self.model.inputs.len();
-        // The inputs share the work; with very many inputs only the first ones are examined.
+        // The inputs share the work. If there are very many inputs, only the first ones are examined.
         let most_inputs = (self.evaluations / (4 * MOST_ON_A_LINE)).max(1);
         for input in 0..inputs.min(most_inputs) {
             let lines = self.lines(input);
@@ -42,7 +43,7 @@ impl Probe<'_> {
     }
 
     fn largest_jump(&mut self, lines: &[Line], input: usize, output: usize) -> Option<Jump> {
-        /// The most steep steps that are bisected.
+        /// The maximum number of steep steps that are bisected.
         const CANDIDATES: usize = 6;
         let variable = &self.model.outputs.get(output)?.variable;
         let notable = NOTABLE * (variable.high - variable.low);
@@ -86,7 +87,7 @@ impl Probe<'_> {
         largest.map(|(_, jump)| jump)
     }
 
-    /// Bisects from `low` to `high`, keeping the steeper half, until no number lies between.
+    /// Bisects from `low` to `high`, keeping the steeper half, until there is no number between them.
     fn close_in(
         &mut self,
         line: &Line,
@@ -105,7 +106,7 @@ impl Probe<'_> {
             if middle <= low || middle >= high {
                 return Some((low, below, above));
             }
-            // A point without a value between two points with one is a gap, not a jump.
+            // A point without a value between two points with a value is a gap, not a jump.
             let value = at(self, middle)?;
             if (value - below).abs() >= (above - value).abs() {
                 (high, above) = (middle, value);

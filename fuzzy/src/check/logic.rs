@@ -1,12 +1,12 @@
-//! Conditions as propositional formulas: in which boxes of the input space a rule reaches a degree.
+//! Conditions as propositional formulas, which determine the boxes of the input space in which a rule reaches a degree.
 //!
 //! With minimum, maximum and `1 - x` as operators, the degree of a condition reaches a level exactly where a formula of
-//! literals is true. A literal says "the degree of this term reaches this level" and is true on some intervals of one input.
-//! Every input is cut at the ends of these intervals. Within a cell between the cuts no literal changes, so statements about
-//! all points follow from one look at each cell.
+//! literals is true. A literal is the statement "the degree of this term reaches this level"; it is true on some
+//! intervals of one input. Every input is cut at the ends of these intervals. Within a cell between the cuts no literal
+//! changes, so evaluating each cell once proves statements about all points.
 //!
-//! Other operators are treated as minimum and maximum, and weights and activation methods are ignored: the analysis asks where
-//! a rule can fire, not how strongly.
+//! Other operators are treated as minimum and maximum, and weights and activation methods are ignored: the analysis
+//! determines where a rule can fire, not how strongly.
 
 use alloc::{boxed::Box, collections::BTreeMap, vec, vec::Vec};
 
@@ -16,7 +16,7 @@ use crate::{
     rule::{Condition, Hedge, Proposition},
 };
 
-/// A degree to reach: `degree > value` if strict, else `degree >= value`.
+/// A level that a degree must reach: `degree > value` if strict, else `degree >= value`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Level {
     pub(super) value: f64,
@@ -24,10 +24,10 @@ pub(super) struct Level {
 }
 
 impl Level {
-    /// The degree with which a rule fires.
+    /// Returns the level at which a rule fires.
     pub(super) fn fires(model: &Model) -> Self {
         let least = model.least_strength;
-        // The default is rounding.
+        // The default value only absorbs rounding errors.
         let strict = least <= LEAST_STRENGTH;
         Level {
             value: if strict { 0.0 } else { least },
@@ -48,28 +48,28 @@ impl Level {
     }
 }
 
-/// Which values an analysis looks at.
+/// The sets of values that an analysis considers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Extent {
-    /// Intervals alone: single values have no share of a range.
+    /// Intervals only: single values have no share of a range.
     Intervals,
-    /// Single values, too.
+    /// Intervals and single values.
     Points,
 }
 
-/// The formulas of some conditions, and the cells they are evaluated on.
+/// The formulas of a list of conditions, and the cells on which they are evaluated.
 pub(super) struct Logic {
-    /// The cuts of each input, rising, both ends of the range included.
+    /// The cuts of each input, in ascending order, including both ends of the range.
     pub(super) cuts: Vec<Vec<f64>>,
     literals: Vec<Literal>,
-    /// A formula for each condition.
+    /// One formula per condition.
     pub(super) formulas: Vec<Formula>,
 }
 
-/// "The degree of this term, with its hedges, reaches the level."
+/// The statement that the degree of a term, with its hedges, reaches the level.
 struct Literal {
     input: usize,
-    /// For each cell, in how many of the cells before it the literal is true.
+    /// For each cell, the number of preceding cells in which the literal is true.
     holds_before: Vec<usize>,
 }
 
@@ -81,13 +81,13 @@ pub(super) enum Formula {
     Or(Vec<Formula>),
 }
 
-/// Where literals change, of those that were looked at: outputs share most of them.
+/// The values at which literals change. They are cached because outputs share most literals.
 pub(super) type Changes = BTreeMap<Key, Vec<f64>>;
 
-/// Cells `from..to` of each input.
+/// A box: a range `from..to` of cells of each input.
 pub(super) type Cells = Vec<(usize, usize)>;
 
-/// What a literal says. Equal literals are stored once.
+/// The content of a literal. Equal literals are stored once.
 #[derive(PartialEq, Eq, PartialOrd, Ord, Clone)]
 pub(super) struct Key {
     input: usize,
@@ -98,7 +98,7 @@ pub(super) struct Key {
 }
 
 impl Logic {
-    /// A formula for each condition: that its degree reaches the level.
+    /// Builds a formula for each condition, which is true where the degree of the condition reaches the level.
     pub(super) fn new<'m>(
         model: &'m Model,
         conditions: impl Iterator<Item = &'m Condition>,
@@ -115,7 +115,7 @@ impl Logic {
         let formulas = conditions.map(|c| reader.formula(c, level)).collect();
         let found = reader.found;
         let mut cuts: Vec<Vec<f64>> = Vec::with_capacity(model.inputs.len());
-        // Where a literal is true at a single value, such as that of a singleton, this value is a cell of its own.
+        // If a literal is true at a single value, such as that of a singleton, this value gets its own cell.
         let mut points: Vec<Vec<f64>> = vec![Vec::new(); model.inputs.len()];
         let values: Vec<Vec<f64>> = model.inputs.iter().map(axis::values).collect();
         for variable in &model.inputs {
@@ -170,7 +170,7 @@ impl Logic {
         }
     }
 
-    /// All cells of all inputs.
+    /// Returns the box of all cells of all inputs.
     pub(super) fn everywhere(&self) -> Cells {
         let cells = self
             .cuts
@@ -179,7 +179,7 @@ impl Logic {
         cells.collect()
     }
 
-    /// Whether a formula is true or false in all cells of a box; `None` if neither is known.
+    /// Returns whether a formula is true or false in all cells of a box; `None` if neither can be derived.
     pub(super) fn holds(&self, formula: &Formula, cells: &Cells) -> Option<bool> {
         match formula {
             Formula::Always => Some(true),
@@ -199,7 +199,8 @@ impl Logic {
         }
     }
 
-    /// The value of a conjunction (`decisive` is false) or disjunction (true): one part that is `decisive` decides.
+    /// Returns the value of a conjunction (`decisive` is false) or a disjunction (`decisive` is true). A single part
+    /// with the value `decisive` determines the result.
     fn joined(&self, parts: &[Formula], cells: &Cells, decisive: bool) -> Option<bool> {
         let mut all = Some(!decisive);
         for part in parts {
@@ -212,7 +213,7 @@ impl Logic {
         all
     }
 
-    /// Whether a formula is true in some cell; also true if the search takes too long.
+    /// Returns whether a formula is true in some cell; also true if the search takes too long.
     pub(super) fn holds_somewhere(&self, formula: &Formula) -> bool {
         const MOST_LOOKS: usize = 2_000;
         let mut left = vec![self.everywhere()];
@@ -233,7 +234,7 @@ impl Logic {
         true
     }
 
-    /// An input and a cell at which to cut a box in two: there a literal of the formula changes.
+    /// Returns an input and a cell at which to split a box, chosen so that a literal of the formula changes there.
     pub(super) fn split(&self, formula: &Formula, cells: &Cells) -> Option<(usize, usize)> {
         match formula {
             Formula::Always => None,
@@ -261,7 +262,7 @@ impl Logic {
     }
 }
 
-/// The two halves of a box, cut at a cell of an input.
+/// Splits a box at a cell of an input.
 pub(super) fn halves(cells: Cells, input: usize, cut: usize) -> [Cells; 2] {
     let (mut below, mut above) = (cells.clone(), cells);
     if let (Some(below), Some(above)) = (below.get_mut(input), above.get_mut(input)) {
@@ -291,7 +292,7 @@ impl Reader<'_> {
             Condition::Is(proposition) => self.literal(proposition, level),
             Condition::And(all) => Formula::And(parts(all)),
             Condition::Or(any) => Formula::Or(parts(any)),
-            // `1 - d >= v` is `not d > 1 - v`.
+            // `1 - d >= v` is equivalent to `not d > 1 - v`.
             Condition::Not(inner) => {
                 let level = Level {
                     value: 1.0 - level.value,

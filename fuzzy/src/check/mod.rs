@@ -1,8 +1,9 @@
 //! Static analysis of rule sets.
 //!
-//! [`validate`](crate::validate()) finds what keeps a model from being used: unknown names, wrong parameters. [`check`] analyses a model that
-//! can be used: inputs that no rule covers, rules that contradict each other or add nothing, terms that are never used or
-//! never reached, the values an output takes, its jumps, and where it contradicts a claim of the author.
+//! [`validate`](crate::validate()) finds errors that make a model unusable: unknown names and wrong parameters.
+//! [`check`] analyses a usable model. It finds inputs that no rule covers, rules that contradict each other or have no
+//! effect, terms that are unused or unreachable, the values that outputs take, their jumps, and violations of the
+//! author's claims.
 
 use alloc::{string::String, vec::Vec};
 
@@ -46,9 +47,9 @@ pub use rules::{Contradiction, Subsumed};
 pub use terms::{EqualTerms, Hole, TermOf};
 pub use trend::AgainstTrend;
 
-/// How to analyse a rule set.
+/// The options of the analysis.
 ///
-/// # Example: what an author says of an output
+/// # Example: a claim about an output
 /// ```
 /// use fuzzy::check::{Direction, Monotone, Options};
 ///
@@ -62,10 +63,10 @@ pub use trend::AgainstTrend;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// The firing strength that some rule should reach everywhere. With terms that sum to 1 and the minimum as AND, one
-    /// half means that the dominant combination of terms has a rule.
+    /// The firing strength that some rule should reach for all inputs. If terms sum to 1 and AND is the minimum, 0.5
+    /// means that the dominant combination of terms has a rule.
     pub coverage: f64,
-    /// Claims of the author about the outputs.
+    /// The author's claims about the outputs.
     pub monotone: Vec<Monotone>,
 }
 
@@ -78,7 +79,7 @@ impl Default for Options {
     }
 }
 
-/// All that was found. Fields hold indices of rules in the model; serialised, rules count from 1.
+/// The results of the analysis. Rules are indices in the model; serialised, rules are numbered from 1.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -86,13 +87,13 @@ impl Default for Options {
 pub struct Report {
     /// Boxes of the input space without a rule.
     pub uncovered: Vec<Uncovered>,
-    /// Whether the list is complete; in a large rule set the search stops early.
+    /// Whether the list is complete. In large rule sets the search stops early.
     pub uncovered_complete: bool,
-    /// Rules with equal conditions and different conclusions, and rules with two terms of one output as conclusions.
+    /// Rules with equal conditions and different conclusions, and rules that conclude two terms of the same output.
     pub contradictions: Vec<Contradiction>,
-    /// Rules that add nothing to a wider one.
+    /// Rules that have no effect because a more general rule fires at least as strongly.
     pub subsumed: Vec<Subsumed>,
-    /// Rules that fire nowhere.
+    /// Rules that cannot fire for any input.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_numbers")
@@ -101,37 +102,38 @@ pub struct Report {
     pub never_firing: Vec<usize>,
     /// Variables and terms that no rule uses.
     pub unused: Vec<TermOf>,
-    /// Terms that no value reaches.
+    /// Terms whose degree is 0 for all values of the range.
     pub unreachable: Vec<TermOf>,
     /// Terms of a variable with the same membership function.
     pub equal_terms: Vec<EqualTerms>,
-    /// Parts of an input's range in which every term is 0.
+    /// Intervals of an input's range in which the degree of every term is 0.
     pub holes: Vec<Hole>,
-    /// The values each output takes.
+    /// The values that each output takes.
     pub reach: Vec<Reach>,
-    /// Whether they are from all points that were chosen; where evaluation is slow, the search stops early.
+    /// Whether all selected points were evaluated. If evaluation is slow, the search stops early.
     pub reach_complete: bool,
-    /// Rules against the trend of their neighbours.
+    /// Rules that contradict the trend of their neighbours.
     pub against_trend: Vec<AgainstTrend>,
-    /// Points at which an output contradicts a claim.
+    /// Points at which an output violates a claim.
     pub counterexamples: Vec<Counterexample>,
-    /// Whether the claims were examined at all points that were chosen; where evaluation is slow, the search stops early.
+    /// Whether all selected points were evaluated for the claims. If evaluation is slow, the search stops early.
     pub counterexamples_complete: bool,
     /// Points at which an output jumps.
     pub jumps: Vec<Jump>,
-    /// Whether they are from all points that were chosen; where evaluation is slow, the search stops early.
+    /// Whether all selected points were evaluated for jumps. If evaluation is slow, the search stops early.
     pub jumps_complete: bool,
 }
 
 /// Analyses the model of an engine.
 ///
-/// Where rules read an output, it counts as an input with all values of its range in what looks at conditions and terms:
-/// uncovered boxes, rules that never fire, holes, trends. Reach, claims and jumps are those of the whole model over its inputs.
+/// In the analyses of conditions and terms (uncovered boxes, rules that never fire, holes, trends), an output that
+/// rules read counts as an input that can take any value of its range. Reach, claims and jumps are computed for the
+/// whole model over its inputs.
 ///
 /// # Errors
-/// A claim of `options` about an input or output that the model does not have.
+/// A claim of `options` names an input or output that the model does not have.
 ///
-/// # Example: a rule is missing
+/// # Example: a rule set in which a rule is missing
 /// ```
 /// use fuzzy::{Engine, check};
 ///
@@ -189,12 +191,13 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
     })
 }
 
-/// The worst counterexample to each claim about an output, from evaluations at many points; none where the claims hold there.
+/// Evaluates the outputs at many points, and returns the worst counterexample to each claim about each output. The
+/// result is empty if the claims are true at these points.
 ///
 /// # Errors
-/// A claim about an input or output that the model does not have.
+/// A claim names an input or output that the model does not have.
 ///
-/// # Example: a slower fan in the greatest heat
+/// # Example: a fan that slows down at the highest temperatures
 /// ```
 /// use fuzzy::{Engine, Model, check};
 ///
@@ -216,7 +219,7 @@ pub fn counterexamples(
     self::claims(engine, claims).map(|(found, _)| found)
 }
 
-/// [`counterexamples`], and whether all chosen points were evaluated.
+/// Works like [`counterexamples`], and also returns whether all selected points were evaluated.
 fn claims(
     engine: &Engine,
     claims: &[Monotone],
@@ -229,11 +232,11 @@ fn claims(
     Ok((found.collect(), probe.is_complete))
 }
 
-/// Checks a rule set that was read from a text: the warnings of reading and the analysis, as located findings. `engine` is
-/// what it compiles to.
+/// Checks a rule set that was parsed from a text. Returns the warnings of the parser and the results of the analysis as
+/// findings with positions. `engine` must be compiled from the document.
 ///
 /// # Errors
-/// As [`check`].
+/// Fails like [`check`].
 pub fn document(
     document: &Document,
     engine: &Engine,
@@ -246,7 +249,7 @@ pub fn document(
     Ok((Findings::locate(findings, text), report))
 }
 
-/// The rules that fire nowhere, ascending.
+/// Returns the rules that cannot fire, in ascending order.
 fn never_firing(stages: &[Stage<'_>]) -> Vec<usize> {
     let of_stage = |stage: &Stage<'_>| {
         let rules = rules::never_firing(&stage.model).into_iter();
@@ -260,7 +263,7 @@ fn never_firing(stages: &[Stage<'_>]) -> Vec<usize> {
     found
 }
 
-/// The rules of a stage against the trend, with the numbers of the whole model.
+/// Returns the rules of a stage that contradict the trend, with their indices in the whole model.
 fn against_trend(stage: &Stage<'_>) -> Vec<AgainstTrend> {
     let mut found = trend::against(&stage.model);
     for one in &mut found {
@@ -276,8 +279,8 @@ fn all_variables(model: &Model) -> impl Iterator<Item = &Variable> {
     model.inputs.iter().chain(outputs)
 }
 
-/// The uncovered boxes of all outputs: those where no rule fires at all, then those where none reaches the coverage.
-/// Outputs with the same boxes are listed once.
+/// Returns the uncovered boxes of all outputs: first those in which no rule fires at all, then those in which no rule
+/// reaches the coverage. Outputs with the same boxes are listed once.
 fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<Uncovered>, bool) {
     let mut found: Vec<Uncovered> = Vec::new();
     let mut complete = true;
@@ -296,7 +299,7 @@ fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<Uncovered>, bool) 
             let boxes = coverage::uncovered(model, name, level, &mut shared, known);
             complete &= boxes.complete;
             let new = boxes.found.into_iter().filter(|one| {
-                // A box in which no rule fires is uncovered too.
+                // A box in which no rule fires is also uncovered, and not listed twice.
                 one.silent
                     || !found
                         .iter()
@@ -328,8 +331,8 @@ fn known(model: &Model, claim: &Monotone) -> Result<(), alloc::boxed::Box<Diagno
 }
 
 impl Report {
-    /// Converts the report to located diagnostics. Those that the author accepts are left out; an accepted finding that does not
-    /// occur is a finding itself.
+    /// Converts the report to diagnostics with positions. Findings that the author accepts are omitted; an accepted
+    /// finding that does not occur is reported itself.
     #[must_use]
     pub fn findings(&self, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         let mut found = findings::of(self, model, spans);
@@ -338,14 +341,14 @@ impl Report {
         found
     }
 
-    /// The entries of [`Model::allow`], each with the number of findings that it accepts.
+    /// Returns the entries of [`Model::allow`], each with the number of findings that it accepts.
     #[must_use]
     pub fn accepted(&self, model: &Model) -> Vec<Accepted> {
         accepted::counted(self, model)
     }
 }
 
-/// A number for a message: at most six digits, very small and very large ones as `1e-9`.
+/// Formats a number for a message: at most six digits, with very small and very large numbers as `1e-9`.
 fn shown(x: f64) -> String {
     if x == 0.0 {
         return "0".into();

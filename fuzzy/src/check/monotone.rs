@@ -1,4 +1,4 @@
-//! Whether outputs are monotone as claimed.
+//! Verification of claims that outputs are monotone.
 
 use alloc::{string::String, vec::Vec};
 use core::fmt;
@@ -9,33 +9,33 @@ use super::{
     shown,
 };
 
-/// A claim about an output: it never falls, or never rises, when an input rises.
+/// A claim that an output never decreases, or never increases, as an input increases.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Monotone {
-    /// The input.
+    /// The name of the input.
     pub input: String,
-    /// What the output does when the input rises.
+    /// The claimed direction of the output as the input increases.
     pub direction: Direction,
-    /// The output; every output where none is named.
+    /// The output; `None` for every output.
     pub output: Option<String>,
 }
 
-/// What an output does when an input rises.
+/// The direction of an output as an input increases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Direction {
-    /// It never falls.
+    /// The output never decreases.
     Increasing,
-    /// It never rises.
+    /// The output never increases.
     Decreasing,
 }
 
 impl Direction {
-    /// What an output does that contradicts it.
+    /// Returns the verb for an output that violates the claim.
     pub(super) fn contradicted(self) -> &'static str {
         match self {
             Direction::Increasing => "falls",
@@ -66,19 +66,19 @@ impl Monotone {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Counterexample {
-    /// The claim, with the output that contradicts it.
+    /// The claim, with the output that violates it.
     pub claim: Monotone,
-    /// All inputs by name, at the smaller value.
+    /// The value of each input; that of the claim's input is the smaller of the two values.
     pub at: Vec<Coordinate>,
-    /// The larger value of the input.
+    /// The larger value of the claim's input.
     pub to: f64,
-    /// The output at the smaller value.
+    /// The value of the output at the smaller input.
     pub from_value: f64,
-    /// The output at the larger value.
+    /// The value of the output at the larger input.
     pub to_value: f64,
 }
 
-/// `` `speed` falls from 6 to 3 as `heat` rises from 20 to 40 at humidity = 50 ``
+/// Formats a counterexample as `` `speed` falls from 6 to 3 as `heat` rises from 20 to 40 at humidity = 50 ``
 impl fmt::Display for Counterexample {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let claim = &self.claim;
@@ -106,7 +106,7 @@ impl fmt::Display for Counterexample {
 }
 
 impl Probe<'_> {
-    /// The worst counterexample to each claim, for each output.
+    /// Returns the worst counterexample to a claim, for each output.
     pub(super) fn counterexamples(&mut self, claim: &Monotone) -> Vec<Counterexample> {
         let Some(input) = self.model.inputs.iter().position(|v| v.name == claim.input) else {
             return Vec::new();
@@ -118,7 +118,7 @@ impl Probe<'_> {
         let outputs = self.model.outputs.len();
         let mut worst: Vec<Option<(f64, Counterexample)>> = alloc::vec![None; outputs];
         for line in self.lines(input) {
-            // The best value so far on the line, by output, and where it is.
+            // For each output, the best value so far on the line and the input at which it occurs.
             let mut best: Vec<Option<(f64, f64)>> = alloc::vec![None; outputs];
             for (x, values) in &line.values {
                 for (output, value) in values.iter().enumerate() {

@@ -1,7 +1,7 @@
-//! Outer terms of an output whose peak it never takes, and how it would.
+//! Outer terms of an output whose peak the output never reaches, with suggested changes to the rule set.
 //!
-//! The centroid of a term lies inside the term. A term that ends with the range is then never reached: the `off` of a valve
-//! whose range begins at 0 leaves it open.
+//! The centroid of a term lies inside the term, so the output never reaches the peak of a term at the end of the range.
+//! For example, a valve with a range from 0 and a term `off` at 0 never closes completely.
 
 use alloc::{
     format,
@@ -16,25 +16,26 @@ use crate::{
     rule::{Condition, Rule, is_plain_name},
 };
 
-/// The least distance from a peak, as a share of the range, that counts.
+/// The minimum distance from a peak that is reported, as a fraction of the range.
 pub(super) const NEAR: f64 = 0.01;
 
-/// An outer term of an output whose peak the output never takes.
+/// An outer term of an output whose peak the output never reaches.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Unreached {
-    /// The term.
+    /// The name of the term.
     pub term: String,
-    /// Its peak; of a plateau the end that is nearer to the values of the output.
+    /// The peak of the term; for a plateau, the end that is nearer to the values of the output.
     pub peak: f64,
-    /// The value of the output where only rules for this term fire.
+    /// The value of the output if only rules for this term fire.
     pub alone: f64,
 }
 
-/// The outer terms that end with the range, that some rule concludes and that not even this rule alone reaches, in the order of
-/// their peaks. A term that falls to 0 within the range is only as lopsided as its author made it.
+/// Returns the outer terms that extend to the end of the range, are concluded by a rule, and whose peak is not reached
+/// even if only that rule fires; in the order of their peaks. A term that falls to 0 within the range is not reported,
+/// because its author chose its shape.
 pub(super) fn unreached(model: &Model, output: &Output, (low, high): (f64, f64)) -> Vec<Unreached> {
     let variable = &output.variable;
     if output.defuzzifier.is_weighted() {
@@ -66,7 +67,7 @@ pub(super) fn unreached(model: &Model, output: &Output, (low, high): (f64, f64))
     found.collect()
 }
 
-/// Whether the values beyond `[low, high]` all belong to the outer terms as much as these ends do.
+/// Returns whether all values outside `[low, high]` have the same degree in the outer terms as these ends.
 pub(super) fn is_all(output: &Output, (low, high): (f64, f64)) -> bool {
     let variable = &output.variable;
     let near = NEAR * (variable.high - variable.low);
@@ -80,7 +81,7 @@ pub(super) fn is_all(output: &Output, (low, high): (f64, f64)) -> bool {
     holds(first, variable.low, low) && holds(last, high, variable.high)
 }
 
-/// The first and the last term by their peaks, with their plateaus.
+/// Returns the first and the last term in the order of their peaks, with their plateaus.
 fn outer(variable: &Variable) -> [Option<(&Term, (f64, f64))>; 2] {
     let terms = || {
         let terms = variable.terms.iter();
@@ -93,7 +94,7 @@ fn outer(variable: &Variable) -> [Option<(&Term, (f64, f64))>; 2] {
     ]
 }
 
-/// The value of an output where only rules for one of its terms fire.
+/// Returns the value of an output if only rules for one of its terms fire.
 fn alone(model: &Model, output: &Output, term: &Term) -> Option<f64> {
     let always = MembershipFunction::Constant { value: 1.0 };
     let mut only = output.clone();
@@ -113,7 +114,7 @@ fn alone(model: &Model, output: &Output, term: &Term) -> Option<f64> {
     outcomes.first()?.value()
 }
 
-/// What to write so that an output reaches these terms.
+/// Returns a suggestion for changes after which the output reaches these terms.
 pub(super) fn remedies(model: &Model, output: &Output, unreached: &[Unreached]) -> String {
     let Output {
         variable,
@@ -133,7 +134,7 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[Unreached]) 
     let wider = widened(model, output, unreached).map(|[low, high]| {
         let range = format!("range: [{}, {}]", shown(low), shown(high));
         match variable.partition_peaks() {
-            // As a list, the terms would move with the range.
+            // With a list of names, the terms would move with the range.
             Some(peaks) => {
                 let peaks = listed(variable, &peaks, shown);
                 format!("`{range}` with `partition: {peaks}`")
@@ -147,7 +148,7 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[Unreached]) 
         condition.visit(&mut |proposition| is_read |= proposition.variable.text == variable.name);
     }
     if is_read {
-        // Conditions read fuzzy sets alone.
+        // Conditions can only read fuzzy sets.
         let wider = wider.as_deref().unwrap_or("a wider `range`");
         return format!("the {method} of a term lies inside the term: write {wider}");
     }
@@ -170,9 +171,9 @@ pub(super) fn remedies(model: &Model, output: &Output, unreached: &[Unreached]) 
     )
 }
 
-/// The terms of a variable with something written for each.
+/// Formats the terms of a variable with a number for each.
 fn listed(variable: &Variable, numbers: &[f64], write: impl Fn(f64) -> String) -> String {
-    /// More than this is not read in a message.
+    /// The maximum number of terms in a message.
     const MOST: usize = 10;
     let terms = variable.terms.iter().zip(numbers).take(MOST);
     let terms = terms.map(|(term, number)| {
@@ -189,7 +190,8 @@ fn listed(variable: &Variable, numbers: &[f64], write: impl Fn(f64) -> String) -
     format!("{{{}}}", terms.join(", "))
 }
 
-/// A range in which each of the terms alone gives its peak; `None` where no range up to three times as wide does.
+/// Returns a range in which each of the terms on its own yields its peak; `None` if no range up to three times as wide
+/// does.
 fn widened(model: &Model, output: &Output, unreached: &[Unreached]) -> Option<[f64; 2]> {
     let [low, high] = [output.variable.low, output.variable.high];
     let mut range = [low, high];
@@ -200,7 +202,7 @@ fn widened(model: &Model, output: &Output, unreached: &[Unreached]) -> Option<[f
             true => [low - more, high],
             false => [low, high + more],
         };
-        // How far the value is still inside of the peak.
+        // The distance by which the value misses the peak.
         let short = |more: f64| {
             let mut wider = output.clone();
             [wider.variable.low, wider.variable.high] = by(more);
@@ -222,7 +224,7 @@ fn widened(model: &Model, output: &Output, unreached: &[Unreached]) -> Option<[f
                 false => more = middle,
             }
         }
-        // Rounded down: a value beyond the peak is beyond what the author wanted.
+        // Rounded down, so that the value does not exceed the peak.
         let digits = libm::pow(10.0, libm::floor(libm::log10(less)) - 2.0);
         let [left, right] = by(libm::floor(less / digits) * digits);
         range = [range[0].min(left), range[1].max(right)];

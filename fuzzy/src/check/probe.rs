@@ -1,7 +1,7 @@
 //! Evaluations of the engine at many points, for the analyses of reach, monotonicity and jumps.
 //!
-//! The points include the parameters of the terms. A reported case is real: it occurs at the inputs given with it. A case
-//! between the points can be missed.
+//! The points include the parameters of the terms. Every reported case is real: it occurs at the reported inputs. A
+//! case between the points can be missed.
 
 use alloc::{string::String, vec::Vec};
 
@@ -12,28 +12,28 @@ use crate::{
     model::{Model, Variable},
 };
 
-/// The value of an input.
+/// An input with its value.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Coordinate {
-    /// The input.
+    /// The name of the input.
     pub input: String,
     /// Its value.
     pub value: f64,
 }
 
-/// The work that an analysis may take, in rules and terms evaluated at a point: some tens of milliseconds.
+/// The maximum work of one analysis, in rules and terms evaluated at points: some tens of milliseconds.
 const MOST_STEPS: usize = 3_000_000;
-/// The work that all analyses may take together, in rules, terms and memberships evaluated: about a second. A single evaluation of
-/// an output with many curved terms takes millions.
+/// The maximum work of all analyses together, in rules, terms and memberships evaluated: about one second. A single
+/// evaluation of an output with many curved terms takes millions.
 const MOST_STEPS_IN_ALL: u64 = 200_000_000;
-/// The most points of a line along one input.
+/// The maximum number of points on a line along one input.
 pub(super) const MOST_ON_A_LINE: usize = 200;
-/// The least change, as a fraction of the output's range, that counts as a jump or a counterexample.
+/// The minimum change, as a fraction of the output's range, that counts as a jump or a counterexample.
 pub(super) const NOTABLE: f64 = 0.005;
 
-/// The engine, and the points to evaluate it at.
+/// The engine, with the points at which it is evaluated.
 pub(super) struct Probe<'m> {
     pub(super) model: &'m Model,
     engine: &'m Engine,
@@ -41,13 +41,13 @@ pub(super) struct Probe<'m> {
     outcomes: Vec<Outcome>,
     /// The values of each input.
     pub(super) values: Vec<Vec<f64>>,
-    /// The most evaluations of an analysis.
+    /// The maximum number of evaluations per analysis.
     pub(super) evaluations: usize,
-    /// The rules and terms that each evaluation looks at.
+    /// The number of rules and terms that each evaluation processes.
     work: u64,
-    /// The work that is left.
+    /// The remaining work.
     steps_left: u64,
-    /// Whether every point that an analysis wanted was evaluated.
+    /// Whether all points that an analysis requested were evaluated.
     pub(super) is_complete: bool,
 }
 
@@ -72,7 +72,7 @@ impl<'m> Probe<'m> {
         }
     }
 
-    /// Runs an analysis with at most this part of the work that is left.
+    /// Runs an analysis that may use at most this fraction of the remaining work.
     pub(super) fn with_part<T>(&mut self, part: f64, run: impl FnOnce(&mut Self) -> T) -> T {
         let all = self.steps_left;
         let own = (all as f64 * part) as u64;
@@ -82,19 +82,19 @@ impl<'m> Probe<'m> {
         done
     }
 
-    /// The values of the outputs at a point; `None` where no rule fires, and where no work is left to evaluate it.
+    /// Returns the values of the outputs at a point; `None` if no rule fires, or if no work remains to evaluate it.
     pub(super) fn outputs(&mut self, point: &[f64]) -> impl Iterator<Item = Option<f64>> {
         let failed = !self.is_evaluated(point);
         self.outcomes
             .iter()
             .map(move |outcome| match outcome.state {
-                // After an error the outcomes are those of an earlier point.
+                // After an error, the outcomes belong to an earlier point.
                 State::Defined(value) if !failed => Some(value),
                 _ => None,
             })
     }
 
-    /// Evaluates a point; whether the outcomes are its own.
+    /// Evaluates a point, and returns whether this succeeded.
     fn is_evaluated(&mut self, point: &[f64]) -> bool {
         let left = self.steps_left.checked_sub(self.work);
         let Some(left) = left.filter(|left| *left > 0) else {
@@ -116,8 +116,8 @@ impl<'m> Probe<'m> {
         self.outputs(point).nth(output).flatten()
     }
 
-    /// At most `most` points of the input space: all combinations of a few values of each input, or, with too many inputs for
-    /// that, pseudo-random ones that are the same every time.
+    /// Returns at most `most` points of the input space: all combinations of a few values of each input or, if there
+    /// are too many inputs for that, pseudo-random points, which are the same in every run.
     pub(super) fn points(&self, most: usize) -> Vec<Vec<f64>> {
         let count = self.values.len();
         let side = libm::pow(most as f64, 1.0 / count.max(1) as f64) as usize;
@@ -151,7 +151,7 @@ impl<'m> Probe<'m> {
         (0..most).map(|_| point()).collect()
     }
 
-    /// Lines along an input through points of the other inputs, with the values of the outputs along them.
+    /// Returns lines along an input through points of the other inputs, with the values of the outputs along them.
     pub(super) fn lines(&mut self, input: usize) -> Vec<Line> {
         let along = self.values.get(input).cloned().unwrap_or_default();
         let count = (self.evaluations / (2 * along.len().max(1))).clamp(2, 400);
@@ -191,16 +191,17 @@ impl<'m> Probe<'m> {
     }
 }
 
-/// The outputs along one input, with the other inputs held.
+/// The outputs along one input, with the other inputs fixed.
 pub(super) struct Line {
-    /// The values of the other inputs; 0 at `input`.
+    /// The values of all inputs; the value of `input` is 0.
     pub(super) base: Vec<f64>,
     pub(super) input: usize,
-    /// Values of the input, rising, and of all outputs there.
+    /// The values of the input, in ascending order, with the values of all outputs.
     pub(super) values: Vec<(f64, Vec<Option<f64>>)>,
 }
 
-/// At most `most` values of an input: the parameters of its terms and the ends of its range, filled up with even steps.
+/// Returns at most `most` values of an input: the parameters of its terms and the ends of its range, supplemented by
+/// evenly spaced values.
 fn chosen(input: &Variable, most: usize) -> Vec<f64> {
     let range = input.low..=input.high;
     let mut named: Vec<f64> = input
@@ -223,7 +224,7 @@ fn chosen(input: &Variable, most: usize) -> Vec<f64> {
     values
 }
 
-/// `most` of the values, taken at even steps.
+/// Selects `most` of the values at equal distances of their indices.
 fn thin(values: &[f64], most: usize) -> Vec<f64> {
     let count = values.len();
     if count <= most {

@@ -7,30 +7,31 @@ use super::{
     probe::{Coordinate, Probe},
 };
 
-/// The values an output takes.
+/// The smallest and the largest value of an output.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Reach {
-    /// The output.
+    /// The name of the output.
     pub output: String,
     /// The smallest value found.
     pub low: f64,
-    /// Where it is found.
+    /// The inputs at which it was found.
     pub low_at: Vec<Coordinate>,
     /// The largest value found.
     pub high: f64,
-    /// Where it is found.
+    /// The inputs at which it was found.
     pub high_at: Vec<Coordinate>,
-    /// The range that the author gave it.
+    /// The range of the output.
     pub range: [f64; 2],
-    /// Its outer terms whose peak it never takes.
+    /// The outer terms whose peak the output never reaches.
     pub unreached: Vec<Unreached>,
 }
 
 impl Probe<'_> {
-    /// The smallest and the largest value found of each output. Outputs without a value at any point are left out.
+    /// Returns the smallest and the largest value found for each output. Outputs that have no value at any point are
+    /// omitted.
     pub(super) fn reach(&mut self) -> Vec<Reach> {
         let points = self.points(self.evaluations / 2);
         let none: Option<(f64, Vec<f64>)> = None;
@@ -73,7 +74,7 @@ impl Probe<'_> {
         found
     }
 
-    /// Coordinate search from the best point: improves one input at a time.
+    /// Improves the best point by coordinate search, one input at a time.
     fn climb(
         &mut self,
         (mut best, mut point): (f64, Vec<f64>),

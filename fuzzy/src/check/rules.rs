@@ -1,4 +1,4 @@
-//! Rules compared with each other: contradictory and subsumed ones; and rules that can never fire.
+//! Comparison of rules: contradictory and subsumed rules, and rules that cannot fire.
 
 use alloc::{
     collections::{BTreeMap, BTreeSet},
@@ -12,7 +12,7 @@ use crate::{
     rule::{Condition, Consequent, Rule},
 };
 
-/// Two rules with the same condition that conclude different terms of one output, or one rule that does.
+/// Two rules with the same condition that conclude different terms of one output, or one rule that concludes both.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -25,34 +25,34 @@ pub struct Contradiction {
     )]
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub first: usize,
-    /// The later rule; the same where one rule contradicts itself.
+    /// The later rule; equal to `first` if a rule contradicts itself.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub second: usize,
-    /// The output they disagree about.
+    /// The output for which the conclusions differ.
     pub output: String,
-    /// What the earlier rule concludes.
+    /// The term that the earlier rule concludes.
     pub first_term: String,
-    /// What the later rule concludes.
+    /// The term that the later rule concludes.
     pub second_term: String,
 }
 
-/// A rule that adds nothing: wherever it fires, another rule with the same conclusion fires at least as strongly.
+/// A rule without effect: whenever it fires, another rule with the same conclusion fires at least as strongly.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Subsumed {
-    /// The rule that adds nothing.
+    /// The rule without effect.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub rule: usize,
-    /// The wider rule.
+    /// The more general rule.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
@@ -61,14 +61,14 @@ pub struct Subsumed {
     pub by: usize,
 }
 
-/// A condition as the sorted set of its parts, so that the order of the parts does not matter.
+/// A condition as the sorted set of its parts, so that their order does not matter.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 enum Parts {
     All(Vec<usize>),
     Any(Vec<usize>),
 }
 
-/// Numbers for the parts of conditions, so that they compare fast.
+/// Numbers for the parts of conditions, for fast comparison.
 #[derive(Default)]
 struct Numbers(BTreeMap<String, usize>);
 
@@ -89,13 +89,13 @@ impl Numbers {
         match condition {
             Condition::And(parts) => Parts::All(sorted(parts)),
             Condition::Or(parts) => Parts::Any(sorted(parts)),
-            // One part alone could be either; most conditions are conjunctions.
+            // A single part could be either variant; most conditions are conjunctions.
             one => Parts::All(sorted(core::slice::from_ref(one))),
         }
     }
 }
 
-/// The condition as text that does not depend on the order of what AND and OR join.
+/// Returns the text of the condition in a form that does not depend on the order of the operands of AND and OR.
 fn canonical(condition: &Condition) -> String {
     let joined = |parts: &[Condition], word: &str| {
         let mut texts: Vec<String> = parts.iter().map(canonical).collect();
@@ -111,14 +111,14 @@ fn canonical(condition: &Condition) -> String {
     }
 }
 
-/// Whether rules of a block are compared with each other: they fire, and each as strongly as it holds. In a block with another
-/// activation method, such as the first rule that fires, one rule is meant to stand against another.
+/// Returns whether a rule is compared with the other rules of its block. It must be enabled, and the block must not
+/// have an activation method: with a method such as `first`, rules are meant to override one another.
 fn is_compared(model: &Model, rule: &model::Rule) -> bool {
     model.is_enabled(rule) && model.activation_of(rule) == Activation::General
 }
 
-/// Rules that conclude two terms of one output, and rules of the same block with the condition of an earlier one and another conclusion, each
-/// with the first that it contradicts.
+/// Returns the rules that conclude two terms of one output, and the rules with the same block and condition as an
+/// earlier rule but a different conclusion. Each is listed with the first rule that it contradicts.
 pub(super) fn contradictions(model: &Model) -> Vec<Contradiction> {
     let mut found = Vec::new();
     for (i, rule) in model.rules.iter().enumerate() {
@@ -146,7 +146,7 @@ pub(super) fn contradictions(model: &Model) -> Vec<Contradiction> {
         }
     }
     for rules in by_parts.values() {
-        // Of rules with one conclusion the first stands for all.
+        // The first of the rules with equal conclusions represents all of them.
         let mut firsts: Vec<usize> = Vec::new();
         let mut seen: BTreeSet<String> = BTreeSet::new();
         for &second in rules {
@@ -171,7 +171,7 @@ fn disagreement(model: &Model, first: usize, second: usize) -> Option<Contradict
         &model.rules.get(first)?.rule,
         &model.rules.get(second)?.rule,
     );
-    // Of several conclusions about one output the first counts.
+    // If a rule has several conclusions about one output, the first one counts.
     let others = b.consequents.iter().rev();
     let others: BTreeMap<&str, &Consequent> = others.map(|c| (&*c.output.text, c)).collect();
     a.consequents.iter().find_map(|one| {
@@ -186,14 +186,16 @@ fn disagreement(model: &Model, first: usize, second: usize) -> Option<Contradict
     })
 }
 
-/// Pairs of rules that are compared: all of 10,000 rules with one conclusion. Of more the first are.
+/// The maximum number of pairs of rules that are compared, which suffices for 10,000 rules with the same conclusion.
+/// Beyond that, only the first pairs are compared.
 const MOST_COMPARISONS: usize = 100_000_000;
 
-/// Rules that add nothing to a wider one of the same block and conclusion. Equal rules are told elsewhere.
+/// Returns the rules that have no effect because a more general rule has the same block and conclusion. Equal rules are
+/// reported elsewhere.
 pub(super) fn subsumed(model: &Model) -> Vec<Subsumed> {
     let mut numbers = Numbers::default();
     let mut groups: BTreeMap<(usize, String), Vec<Member>> = BTreeMap::new();
-    // With another aggregation a rule adds to the result even where a wider one fires.
+    // With any other aggregation, a rule adds to the result even if a more general rule fires.
     let aggregation = |output: &Output| model.operators_of_output(output).aggregation;
     let outputs = model.outputs.iter();
     let adding = outputs.filter(|output| aggregation(output) != Aggregation::Maximum);
@@ -244,23 +246,23 @@ pub(super) fn subsumed(model: &Model) -> Vec<Subsumed> {
 struct Member {
     index: usize,
     parts: Parts,
-    /// A bit for each part, so that most sets are told apart at once.
+    /// A bit per part, which rules out most pairs of sets in one comparison.
     signature: u64,
     weight: f64,
 }
 
 impl Member {
-    /// Whether this condition holds wherever the narrower one does, and the two are not equal.
+    /// Returns whether this condition is true whenever the narrower one is, and the two are not equal.
     fn includes(&self, narrow: &Member) -> bool {
         let subset = |a: &[usize], b: &[usize]| {
             a.len() < b.len() && a.iter().all(|part| b.binary_search(part).is_ok())
         };
         match (&self.parts, &narrow.parts) {
-            // Fewer conditions to meet.
+            // A conjunction of fewer parts is more general.
             (Parts::All(wide), Parts::All(all)) => {
                 self.signature & !narrow.signature == 0 && subset(wide, all)
             }
-            // More ways to hold.
+            // A disjunction of more parts is more general.
             (Parts::Any(wide), Parts::Any(any)) => {
                 narrow.signature & !self.signature == 0 && subset(any, wide)
             }
@@ -278,7 +280,7 @@ fn conclusion(rule: &Rule) -> String {
     texts.join(" AND ")
 }
 
-/// The rules that fire nowhere: what they ask for excludes itself, or their weight is 0.
+/// Returns the rules that cannot fire because their condition is contradictory or their weight is 0.
 pub(super) fn never_firing(model: &Model) -> Vec<usize> {
     let level = Level::fires(model);
     let conditions = model.rules.iter().map(|rule| &rule.rule.condition);

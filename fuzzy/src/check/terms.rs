@@ -1,32 +1,32 @@
-//! Terms that no rule uses or no value reaches, and ranges that the terms leave open.
+//! Terms that no rule uses or no value reaches, and gaps between the terms of an input.
 
 use alloc::{collections::BTreeSet, string::String, vec::Vec};
 
 use super::axis;
 use crate::model::{MembershipFunction, Model, Term, Variable};
 
-/// A term of a variable.
+/// A term of a variable, or all of its terms.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TermOf {
-    /// The input or output.
+    /// The name of the input or output.
     pub variable: String,
-    /// The term; none where no term of the variable is used.
+    /// The term; `None` if no term of the variable is used.
     pub term: Option<String>,
 }
 
-/// A part of a variable's range in which every term is 0.
+/// An interval of a variable's range in which the degree of every term is 0.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Hole {
-    /// The input.
+    /// The name of the input.
     pub input: String,
-    /// From this value.
+    /// The lower end.
     pub low: f64,
-    /// Up to this value; the same where it is a single one.
+    /// The upper end; equal to `low` if the hole is a single value.
     pub high: f64,
 }
 
@@ -36,19 +36,19 @@ pub struct Hole {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct EqualTerms {
-    /// The input or output.
+    /// The name of the input or output.
     pub variable: String,
-    /// The earlier term.
+    /// The name of the earlier term.
     pub first: String,
-    /// The later term.
+    /// The name of the later term.
     pub second: String,
 }
 
-/// Terms with the same membership function as an earlier term of the variable.
+/// Returns the terms whose membership function equals that of an earlier term of the variable.
 pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
     let values = axis::values(variable);
     let outside = outside(variable);
-    // Of each fuzzy set, so that most pairs need no comparison of degrees.
+    // A hash per fuzzy set, so that most pairs need no comparison of degrees.
     let hashes = variable.terms.iter().map(|term| {
         is_set(&term.membership_function, variable).then(|| hash_of_degrees(term, &values))
     });
@@ -61,7 +61,7 @@ pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
     let mut found = Vec::new();
     let terms = || variable.terms.iter().zip(&hashes);
     for (i, second) in terms().enumerate() {
-        // That a term is 0 everywhere is a finding of its own.
+        // A term that is 0 everywhere is reported on its own.
         if !outside.contains(&i)
             && let Some((first, _)) = terms().take(i).find(|first| same(*first, second))
         {
@@ -75,7 +75,7 @@ pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
     found
 }
 
-/// A number that is the same for terms with the same degrees at the values, and rarely for others (FxHash).
+/// Returns a hash that is equal for terms with equal degrees at the values (FxHash).
 fn hash_of_degrees(term: &Term, values: &[f64]) -> u64 {
     values.iter().fold(0, |hash: u64, &x| {
         // 0 and -0 are the same degree.
@@ -84,7 +84,7 @@ fn hash_of_degrees(term: &Term, values: &[f64]) -> u64 {
     })
 }
 
-/// Terms that stand in no rule, and variables none of whose terms does.
+/// Returns the terms that no rule uses, and the variables of which no rule uses a term.
 pub(super) fn unused(model: &Model) -> Vec<TermOf> {
     let mut used: BTreeSet<(&str, &str)> = BTreeSet::new();
     let mut named: BTreeSet<&str> = BTreeSet::new();
@@ -126,7 +126,7 @@ fn term_of(variable: &Variable, term: &Term) -> TermOf {
     }
 }
 
-/// Terms that are 0 on the whole range of their variable, and output terms whose every rule never fires.
+/// Returns the terms that are 0 on the whole range of their variable, and the output terms for which no rule can fire.
 pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> {
     let outputs = model.outputs.iter().map(|output| &output.variable);
     let mut found = Vec::new();
@@ -158,7 +158,7 @@ pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> 
     found
 }
 
-/// Whether the term of that name is 0 on the whole range of its variable.
+/// Returns whether the term of a name is 0 on the whole range of its variable.
 pub(super) fn is_outside(variable: &Variable, term: &str) -> bool {
     let values = axis::values(variable);
     let mut terms = variable.terms.iter().filter(|one| one.name == term);
@@ -169,16 +169,17 @@ fn is_zero(term: &Term, values: &[f64]) -> bool {
     values.iter().all(|&x| term.membership(x) == 0.0)
 }
 
-/// The terms that are 0 on the whole range of a variable.
+/// Returns the indices of the terms that are 0 on the whole range of a variable.
 fn outside(variable: &Variable) -> Vec<usize> {
     let range = variable.high - variable.low;
     if range.is_nan() || range <= 0.0 {
-        // Where the range could not be read, that is the finding.
+        // An invalid range is reported elsewhere.
         return Vec::new();
     }
     let values = axis::values(variable);
     let terms = variable.terms.iter().enumerate();
-    // A linear or constant function of a weighted output is no fuzzy set, and a shape that could not be read is none yet.
+    // Linear and constant functions of a weighted output are not fuzzy sets; neither is a shape that could not be
+    // parsed.
     terms
         .filter(|(_, term)| is_set(&term.membership_function, variable) && is_zero(term, &values))
         .map(|(i, _)| i)
@@ -194,10 +195,10 @@ fn is_set(shape: &MembershipFunction, variable: &Variable) -> bool {
     }
 }
 
-/// Where every term of an input is 0: no rule without NOT speaks of those values.
+/// Returns the intervals in which every term of an input is 0. Only rules with NOT can cover such values.
 pub(super) fn holes(input: &Variable) -> Vec<Hole> {
     if input.terms.is_empty() {
-        // Only linear consequents read it.
+        // Only linear consequents read this input.
         return Vec::new();
     }
     let covered = |x: f64| input.terms.iter().any(|term| term.membership(x) > 0.0);
@@ -228,7 +229,7 @@ pub(super) fn holes(input: &Variable) -> Vec<Hole> {
     found
 }
 
-/// A narrower hole is a single value and a rounding error.
+/// The relative width below which a hole is a single value with a rounding error.
 const THIN: f64 = 1e-9;
 
 fn hole(input: &Variable, low: f64, high: f64) -> Hole {

@@ -28,7 +28,8 @@ fn paper() -> &'static str {
     include_str!("../../../rules/flagred-paper.yaml")
 }
 
-/// Several of the hottest loops: equal terms of long lists, trends for many outputs, and evaluations with curved terms.
+/// Exercises several of the hottest loops: equal terms in long lists, trends of many outputs, and evaluations with
+/// curved terms.
 #[test]
 fn large_rule_sets_are_examined_in_bounded_time() {
     let terms = |count: usize, shape: &dyn Fn(usize) -> String| {
@@ -44,7 +45,7 @@ fn large_rule_sets_are_examined_in_bounded_time() {
             .map(|i| format!("  - IF x IS a{i} THEN y IS a{i}\n"))
             .collect::<String>()
     );
-    // Many output terms are concluded at once.
+    // Many output terms are active at the same time.
     let pairs = (0..100).flat_map(|i| (0..100).map(move |j| (i, j)));
     let rules = pairs.map(|(i, j)| {
         let term = (7 * i + 3 * j) % 100;
@@ -60,7 +61,8 @@ fn large_rule_sets_are_examined_in_bounded_time() {
         let engine = Engine::new(&document.model).unwrap();
         let started = std::time::Instant::now();
         let report = check(&engine, &Options::default()).unwrap();
-        // Without optimisation and on a busy machine; unbounded, the second takes minutes.
+        // The limit allows for unoptimised builds and a busy machine. Without a bound on the work, the second takes
+        // minutes.
         assert!(started.elapsed().as_secs() < 120, "{:?}", started.elapsed());
         assert_eq!(report.reach_complete, is_complete);
         let findings = report.findings(&document.model, &document.spans);
@@ -89,7 +91,7 @@ fn terms_at_a_single_value_fire_there() {
     assert!(report.unreachable.is_empty());
     assert_eq!(report.holes[0].low, 0.0);
     assert!(findings.iter().all(|f| f.code != "never-fires"));
-    // Two single values exclude each other.
+    // Two different single values are mutually exclusive.
     let both = format!(
         "{all}  - IF mode IS on AND mode IS far THEN z IS high\n  - IF mode IS on AND mode IS wide THEN z IS low\n"
     );
@@ -143,7 +145,7 @@ fn the_papers_rules_are_seen_through() {
     );
 
     let reach = &report.reach[0];
-    // The centroid of a shoulder of width 25 lies at a third of it.
+    // The centroid of a shoulder of width 25 is at a third of its width.
     assert!((reach.low - 25.0 / 3.0).abs() < 1e-9, "{reach:?}");
     assert!(
         (reach.high - (100.0 - 25.0 / 3.0)).abs() < 1e-9,
@@ -181,7 +183,7 @@ fn what_the_author_says_is_held_against_the_engine() {
     let risk = |margin: f64, spread: f64| engine.evaluate(&[margin, spread]).unwrap()[0].value();
     let worst = &report.counterexamples[0];
     assert_eq!(worst.claim.output.as_deref(), Some("risk"));
-    // It is what the engine does, and at least as bad as what the paper's table shows at medium margin.
+    // The engine confirms the values, and the violation is at least as large as in the paper's table at medium margin.
     let at = |name: &str| worst.at.iter().find(|c| c.input == name).unwrap().value;
     assert_eq!(risk(at("margin"), at("spread")), Some(worst.from_value));
     assert_eq!(risk(at("margin"), worst.to), Some(worst.to_value));
@@ -211,7 +213,7 @@ fn claims_about_unknown_variables_are_refused() {
 
 #[test]
 fn uncovered_boxes_agree_with_the_engine() {
-    // With the minimum, the maximum and no weights, covered is what the engine says it is.
+    // With minimum, maximum and no weights, the coverage must match that of the engine.
     for rules in [
         &["IF x IS low AND y IS high THEN z IS low"][..],
         &[
@@ -283,7 +285,7 @@ fn rules_are_held_against_each_other() {
         .collect();
     assert_eq!(pairs, [(0, 1)]);
     let pairs: Vec<_> = report.subsumed.iter().map(|s| (s.rule, s.by)).collect();
-    // The last rule is wider than the one before it, but weaker.
+    // The last rule is more general than the one before it, but weaker.
     assert_eq!(pairs, [(0, 2), (4, 3)]);
 }
 
@@ -353,7 +355,7 @@ fn jumps_are_found_where_they_are() {
     );
 }
 
-/// `mid` is read by the rules of `z`; it stays inside its range.
+/// `mid` is an output that the rules of `z` read; its values stay inside its range.
 #[test]
 fn an_output_that_is_read_counts_as_an_input_over_its_range() {
     let outputs = "outputs: {z: {range: [0, 1], partition: [low, medium, high]}, \
@@ -387,7 +389,7 @@ fn an_output_that_is_read_counts_as_an_input_over_its_range() {
     let side = &one.sides[0];
     assert_eq!((one.output.as_str(), side.input.as_str()), ("z", "mid"));
     assert_eq!((side.low, side.high, one.sides.len()), (0.4, 0.6, 1));
-    // A claim is about an input of the whole, through the chain.
+    // A claim refers to an input of the whole model, across the chain.
     let wrong: Vec<_> = report
         .counterexamples
         .iter()
@@ -411,7 +413,7 @@ fn an_output_that_is_read_counts_as_an_input_over_its_range() {
     assert!(check(&engine, &options).is_err());
 }
 
-/// The rules of a chain keep their numbers.
+/// Rules of a chain keep their numbers.
 #[test]
 fn rules_of_a_later_stage_are_told_by_their_numbers() {
     let text = format!(
@@ -477,7 +479,7 @@ fn a_sugeno_output_beyond_its_range_is_found() {
 
 #[test]
 fn a_gap_is_told_once() {
-    // Between 3 and 5 lies no term: neither what fires nor what is covered there is told again.
+    // No term covers 3 to 5. The rules and the coverage there are not reported again.
     let said = findings_of(
         "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 8], terms: {low: {left_shoulder: [1, 3]}, \
          high: {right_shoulder: [5, 7]}}}}\n\
@@ -486,7 +488,7 @@ fn a_gap_is_told_once() {
     );
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(said[0].contains("`x` has no term from 3 to 5"), "{said:?}");
-    // A missing rule is one finding, not also an unused term and a region where none fires.
+    // A missing rule is one finding; the unused term and the region in which no rule fires are not reported again.
     let said = findings_of(
         "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 1], partition: [low, medium, high]}}\n\
          outputs: {z: {range: [0, 1], defuzzifier: weighted_average, terms: {a: {constant: 0}, b: {constant: 1}}}}\n\
@@ -515,7 +517,7 @@ fn a_single_value_without_a_term_is_told_in_few_digits() {
     );
 }
 
-/// The findings about the reach of an output, with its help, and its severity.
+/// Returns the findings about the reach of an output, each with its help and severity.
 fn reach_of(output: &str) -> Vec<String> {
     let text = format!(
         "fuzzy: 1\nname: valve\ninputs: {{soil: {{range: [0, 100], partition: [dry, moist, damp, soaked]}}}}\n\
@@ -535,7 +537,7 @@ fn reach_of(output: &str) -> Vec<String> {
 fn an_outer_term_that_is_never_reached_is_a_warning_with_both_remedies() {
     let told = reach_of("{range: [0, 40], partition: [off, short, medium, long]}");
     insta::assert_snapshot!(told.join("\n"));
-    // What the help says is what helps.
+    // Applying the suggestion removes the finding.
     for remedy in [
         "{range: [-7.69, 47.69], partition: {off: 0, short: 13.3333, medium: 26.6667, long: 40}}",
         "{range: [0, 40], terms: {off: {constant: 0}, short: {constant: 13.3333}, medium: {constant: 26.6667}, long: {constant: 40}}, \
@@ -548,16 +550,16 @@ fn an_outer_term_that_is_never_reached_is_a_warning_with_both_remedies() {
 #[test]
 fn an_outer_term_is_never_reached_for_what_it_is() {
     let outputs = [
-        // One end alone.
+        // Only one end.
         "{range: [0, 40], partition: {off: 0, short: 10, medium: 20, long: 24}}",
-        // A wider range does not help a set that ends at the old one.
+        // A wider range has no effect on a set that ends at the old range.
         "{range: [0, 40], terms: {off: {triangle: [0, 0, 10]}, short: {triangle: [5, 10, 15]}, medium: {triangle: [15, 20, 25]}, long: {triangle: [25, 30, 35]}}}",
         "{range: [0, 40], terms: {off: {gaussian: {mean: 0, sd: 4}}, short: {gaussian: {mean: 10, sd: 4}}, medium: {gaussian: {mean: 25, sd: 4}}, long: {gaussian: {mean: 40, sd: 4}}}, defuzzifier: bisector}",
-        // Inside the range, whose ends are never reached: a note.
+        // The terms are inside the range, and its ends are never reached: only a note.
         "{range: [0, 40], terms: {off: {triangle: [0, 5, 10]}, short: {triangle: [10, 15, 20]}, medium: {triangle: [20, 25, 30]}, long: {triangle: [30, 35, 40]}}}",
-        // Numbers have a text of their own.
+        // Constants have their own message.
         "{range: [0, 40], terms: {off: {constant: 0}, short: {constant: 10}, medium: {constant: 20}, long: {constant: 30}}, defuzzifier: weighted_average}",
-        // Nothing to tell: a plateau, the maxima, singletons.
+        // No finding: a plateau, the maxima, singletons.
         "{range: [0, 40], partition: {off: 6, short: 12, medium: 24, long: 34}}",
         "{range: [0, 40], partition: [off, short, medium, long], defuzzifier: mean_of_maxima}",
         "{range: [0, 40], terms: {off: {singleton: 0}, short: {singleton: 10}, medium: {singleton: 20}, long: {singleton: 40}}}",

@@ -1,7 +1,7 @@
-//! Rules against the trend: along an input most rules raise an output, and a few lower it, or the reverse.
+//! Rules against the trend: along an input most rules raise an output but a few lower it, or the reverse.
 //!
-//! Two rules are neighbours if their antecedents differ in one input only, by one step in the order of its terms. Each step
-//! between neighbours raises or lowers the output. The direction of most steps along an input is the trend.
+//! Two rules are neighbours if their antecedents differ in only one input, by one step in the order of its terms. Each
+//! step between neighbours raises or lowers the output. The direction of most steps along an input is the trend.
 
 use alloc::{collections::BTreeMap, string::String, vec::Vec};
 
@@ -11,15 +11,15 @@ use crate::{
     rule::{Condition, Proposition},
 };
 
-/// A step between two neighbouring rules that goes against the trend.
+/// A step between two neighbouring rules that contradicts the trend.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct AgainstTrend {
-    /// The input.
+    /// The name of the input.
     pub input: String,
-    /// The output.
+    /// The name of the output.
     pub output: String,
     /// The direction of most steps along the input.
     pub trend: Direction,
@@ -32,7 +32,7 @@ pub struct AgainstTrend {
     )]
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub from_rule: usize,
-    /// The term it concludes.
+    /// The term that `from_rule` concludes.
     pub from_term: String,
     /// The rule at the next higher term.
     #[cfg_attr(
@@ -41,14 +41,15 @@ pub struct AgainstTrend {
     )]
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub to_rule: usize,
-    /// The term it concludes, which is against the trend.
+    /// The term that `to_rule` concludes, which contradicts the trend.
     pub to_term: String,
 }
 
-/// The steps against the trend. There is a trend where at least twice as many steps go one way as the other.
+/// Returns the steps that contradict the trend. There is a trend if at least twice as many steps go in one direction as
+/// in the other.
 pub(super) fn against(model: &Model) -> Vec<AgainstTrend> {
     let mut found = Vec::new();
-    // Terms are ordered by their middles, not as they are written.
+    // Terms are ordered by their middles, not by their order in the file.
     let order: Vec<Vec<usize>> = model.inputs.iter().map(ranks).collect();
     for output in &model.outputs {
         let Some(table) = Table::new(model, &output.variable, &order) else {
@@ -61,7 +62,7 @@ pub(super) fn against(model: &Model) -> Vec<AgainstTrend> {
 
 /// The rules of an output whose antecedents are plain conjunctions.
 struct Table {
-    /// The key is a list of (input, rank of its term), in the order of the inputs.
+    /// The rules by their antecedents. The key is a list of (input, rank of its term), in the order of the inputs.
     rows: BTreeMap<Vec<(usize, usize)>, Row>,
 }
 
@@ -150,14 +151,16 @@ impl Table {
     }
 }
 
-/// Neighbouring rules along an input, the lower term first: those that raise the output and those that lower it.
+/// Pairs of neighbouring rules along an input, each with the lower term first: those that raise the output and those
+/// that lower it.
 #[derive(Default)]
 struct Steps<'t> {
     rising: Vec<(&'t Row, &'t Row)>,
     falling: Vec<(&'t Row, &'t Row)>,
 }
 
-/// The inputs of a condition and the ranks of their terms; `None` unless it is a conjunction of propositions without hedges.
+/// Returns the inputs of a condition and the ranks of their terms; `None` unless it is a conjunction of propositions
+/// without hedges.
 fn key(
     model: &Model,
     names: &BTreeMap<&str, usize>,
@@ -189,7 +192,7 @@ fn key(
     Some(key.into_iter().collect())
 }
 
-/// The rank of each term in the order of the middles.
+/// Returns the rank of each term in the order of the middles.
 fn ranks(variable: &Variable) -> Vec<usize> {
     let middles: Vec<f64> = variable
         .terms
@@ -202,8 +205,8 @@ fn ranks(variable: &Variable) -> Vec<usize> {
         .collect()
 }
 
-/// The middle of the values at which the degree of a term is highest; the value of a constant; `None` for a linear function
-/// or a formula over inputs.
+/// Returns the middle of the values at which the degree of a term is highest, or the value of a constant. `None` for a
+/// linear function or a formula over inputs.
 fn middle(term: &Term, variable: &Variable) -> Option<f64> {
     match &term.membership_function {
         MembershipFunction::Constant { value } => return Some(*value),

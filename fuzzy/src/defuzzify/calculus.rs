@@ -1,33 +1,33 @@
-//! Properties of the operators that the integrator needs: their derivatives, where they have kinks and steps, and whether
-//! straight lines stay straight between these.
+//! Properties of the operators that the integrator needs: their derivatives, the positions of kinks and steps, and
+//! whether straight lines stay straight between these.
 
 use crate::model::{Aggregation, Implication};
 use crate::table::LEAST_STRENGTH;
 
-/// A degree and its slope along the output's range.
+/// A degree, with its slope along the output's range.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Sloped {
     pub(super) degree: f64,
     pub(super) slope: f64,
 }
 
-/// A membership under a firing strength.
+/// Returns the activated degree of a membership at a firing strength.
 pub(super) fn activate(implication: Implication, strength: f64, membership: Sloped) -> Sloped {
     let (h, m) = (strength, membership.degree);
     if implication == Implication::Drastic && 1.0 - h > LEAST_STRENGTH && membership.slope != 0.0 {
-        // Of a peak, a single point is left.
+        // Only a single point of a peak remains.
         return Sloped::default();
     }
     let degree = implication.of(h, m);
     let by_membership = match implication {
         Implication::Product => h,
         Implication::Einstein => {
-            // Of h m / (1 + (1 - h) (1 - m)).
+            // The derivative of h m / (1 + (1 - h) (1 - m)).
             let below = 1.0 + (1.0 - h) * (1.0 - m);
             h * (2.0 - h) / (below * below)
         }
         Implication::Hamacher => {
-            // Of h m / (h + m - h m).
+            // The derivative of h m / (h + m - h m).
             let share = h / (h + m * (1.0 - h));
             share * share
         }
@@ -48,15 +48,15 @@ pub(super) fn activate(implication: Implication, strength: f64, membership: Slop
     }
 }
 
-/// Two activated degrees aggregated.
+/// Returns the aggregation of two activated degrees.
 pub(super) fn aggregate(aggregation: Aggregation, a: Sloped, b: Sloped) -> Sloped {
     let (x, y) = (a.degree, b.degree);
     let degree = aggregation.of(x, y);
-    // The derivatives by x and by y.
+    // The partial derivatives with respect to x and y.
     let (by_x, by_y) = match aggregation {
         Aggregation::Sum => (1.0, 1.0),
         Aggregation::ProbabilisticSum => (1.0 - y, 1.0 - x),
-        // Where the sum is 1 but for rounding, it is not cut off.
+        // A sum that is 1 up to rounding is not cut off.
         Aggregation::BoundedSum if x + y <= 1.0 => (1.0, 1.0),
         Aggregation::Einstein => {
             let below = (1.0 + x * y) * (1.0 + x * y);
@@ -88,7 +88,7 @@ pub(super) fn aggregate(aggregation: Aggregation, a: Sloped, b: Sloped) -> Slope
     }
 }
 
-/// The degrees of membership at which a term activated at this strength has a kink or a step.
+/// Returns the degrees of membership at which a term activated at a strength has a kink or a step.
 pub(super) fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2] {
     match implication {
         Implication::Minimum => [Some(strength), None],
@@ -101,7 +101,7 @@ pub(super) fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2
     }
 }
 
-/// The implication between two levels, where the activated term is not level.
+/// Returns the equivalent implication between two levels, where the activated term is not constant.
 pub(super) fn between_levels(implication: Implication) -> Implication {
     match implication {
         Implication::Drastic | Implication::NilpotentMinimum => Implication::Minimum,
@@ -113,7 +113,7 @@ pub(super) fn between_levels(implication: Implication) -> Implication {
     }
 }
 
-/// Whether a straight term is straight between two levels.
+/// Returns whether a straight term stays straight between two levels.
 pub(super) fn keeps_lines(implication: Implication) -> bool {
     match implication {
         Implication::Minimum
@@ -125,14 +125,14 @@ pub(super) fn keeps_lines(implication: Implication) -> bool {
     }
 }
 
-/// Where an aggregated set has kinks and steps between the levels of its activated terms.
+/// The kinks and steps of an aggregated set between the levels of its activated terms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kinks {
-    /// Nowhere.
+    /// There are none.
     None,
-    /// Where two terms cross.
+    /// At the crossings of two terms.
     Crossings,
-    /// Where two terms cross or their sum reaches 1.
+    /// At the crossings of two terms, and where their sum reaches 1.
     CrossingsAndSteps,
     /// Where a term reaches the least strength.
     Steps,
@@ -158,9 +158,9 @@ impl Kinks {
 /// An aggregation between its kinks and steps.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Smooth {
-    /// The same degrees, except where they are 1 past a step.
+    /// An aggregation with the same degrees, except where they are 1 beyond a step.
     pub(super) aggregation: Aggregation,
-    /// Whether it has steps to 1.
+    /// Whether there are steps to 1.
     pub(super) has_steps: bool,
     /// Whether the aggregated set of straight terms is straight.
     pub(super) keeps_lines: bool,

@@ -1,6 +1,6 @@
-//! The integrator: any terms under any operators. The aggregated set is cut where membership functions are not smooth or turn,
-//! where they meet plateaus and where they cross. Between the cuts a straight piece has a formula, and a curved one is
-//! integrated by Gauss-Legendre.
+//! The integrator, which supports any terms and operators. The aggregated set is split where membership functions are
+//! not smooth or have an extremum, where they meet plateaus, and where they cross. Between these cuts, straight pieces
+//! are integrated by a formula and curved pieces by Gauss-Legendre quadrature.
 
 use alloc::vec::Vec;
 
@@ -14,45 +14,45 @@ use crate::model::{Aggregation, Implication, MembershipFunction, Term};
 
 mod kinks;
 
-/// A formula may have a kink anywhere: it is integrated between so many even cuts. What is narrower may be missed.
+/// The number of evenly spaced cuts for a formula, which may have a kink anywhere. Narrower details may be missed.
 const EVENLY: u32 = 256;
 
-/// There is memory for the crossings of so many terms that all cross each other.
+/// The maximum number of mutually crossing terms for which memory is reserved.
 const MOST_CROSSING: usize = 64;
 
-/// The terms of one output and the cuts of its range.
+/// The terms of one output, with the cuts of its range.
 #[derive(Debug, Clone)]
 pub(crate) struct Curves {
     terms: Vec<Term>,
-    /// Cuts and the terms they belong to, in ascending order; the ends of the range belong to no term.
+    /// The cuts in ascending order, each with the term it belongs to; the ends of the range belong to no term.
     cuts: Vec<(f64, Option<usize>)>,
-    /// The highest degree of each term within the range.
+    /// The maximum degree of each term within the range.
     highest: Vec<f64>,
     /// The corners of each straight term.
     corners: Vec<Option<Vec<(f64, f64)>>>,
-    /// Whether a term is a formula, whose kinks are not known.
+    /// Whether a term is a formula, whose kinks are unknown.
     has_formula: bool,
 }
 
-/// A term on a stretch between two cuts.
+/// A term on an interval between two cuts.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Run {
     term: usize,
-    /// `None` if it is curved.
+    /// The line; `None` if the term is curved.
     line: Option<Line>,
 }
 
-/// A term under a firing strength, on a stretch.
+/// A term activated at a firing strength, on an interval.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
     term: usize,
     strength: f64,
     implication: Implication,
-    /// Its degrees, if it is known to be straight all over the stretch.
+    /// The line, if the activated term is known to be straight on the whole interval.
     line: Option<Line>,
 }
 
-/// A straight line over a stretch, by its degrees just inside the ends.
+/// A straight line over an interval, defined by its degrees just inside the ends.
 #[derive(Debug, Clone, Copy)]
 struct Line {
     from: f64,
@@ -105,20 +105,21 @@ impl Curves {
         }
     }
 
-    /// The most cuts between two cuts of an evaluation, besides those of its activations.
+    /// Returns the maximum number of cuts that an evaluation adds between two cuts, not counting those of its
+    /// activations.
     pub(crate) fn workspace(&self) -> usize {
         let crossing = self.terms.len().min(MOST_CROSSING);
         4 * crossing * crossing
     }
 
-    /// Whether all terms are 0 all over the range.
+    /// Returns whether all terms are 0 on the whole range.
     pub(crate) fn is_empty(&self) -> bool {
         let inside = |x: f64| self.terms.iter().any(|term| term.membership(x) > 0.0);
         let mut intervals = self.cuts.iter().zip(self.cuts.iter().skip(1));
         intervals.all(|((a, _), (b, _))| !inside(*a) && !inside(0.5 * (a + b)) && !inside(*b))
     }
 
-    /// The degree of the aggregated set at `x`.
+    /// Returns the degree of the aggregated set at `x`.
     pub(crate) fn degree(&self, strengths: Strengths<'_>, joint: Joint, x: f64) -> f64 {
         let mut degree = 0.0;
         for (index, term) in self.terms.iter().enumerate() {
@@ -153,7 +154,7 @@ impl Curves {
         }
     }
 
-    /// The same on a stretch that holds no cut of an active term.
+    /// Visits the pieces on an interval that contains no cut of an active term.
     fn stretch(
         &self,
         strengths: Strengths<'_>,
@@ -173,7 +174,7 @@ impl Curves {
         } = workspace;
         let smooth = Smooth::of(joint.aggregation);
         let has_steps = all_known && smooth.has_steps;
-        // The branch of an operator with a step is the same all over a piece.
+        // The branch of an operator with a step is the same on the whole piece.
         let aggregation = match has_steps {
             true => smooth.aggregation,
             false => joint.aggregation,
@@ -211,7 +212,7 @@ impl Curves {
             let is_straight = parts.iter().all(|part| part.line.is_some())
                 && (smooth.keeps_lines || parts.len() == 1);
             let at = |part: f64| from + width * part;
-            // Just inside, past a step at the cut.
+            // Just inside the piece, beyond a step at the cut.
             let inside = |x: f64| x.max(from.next_up()).min(to.next_down());
             let curve = Curve {
                 degree: &|part| self.joined(parts, aggregation, at(part)),
@@ -227,7 +228,7 @@ impl Curves {
         }
     }
 
-    /// Fills `runs` with the active terms on a stretch between two cuts, without straight ones that are 0 there.
+    /// Fills `runs` with the active terms on an interval between two cuts, except straight terms that are 0 there.
     fn runs(&self, strengths: Strengths<'_>, (from, to): (f64, f64), runs: &mut Vec<Run>) {
         runs.clear();
         for (term, corners) in self.corners.iter().enumerate() {
@@ -249,8 +250,9 @@ impl Curves {
         }
     }
 
-    /// Fills `parts` with the activated terms on a part of the stretch of `runs`, without those that are 0 there. Where the
-    /// kinks of all terms are known, each has one form all over it.
+    /// Fills `parts` with the activated terms between `from` and `to`, an interval inside that of `runs`, except those
+    /// that are 0 there. If the kinks of all terms are known, each activated term has the same form on the whole
+    /// interval.
     fn parts(
         &self,
         strengths: Strengths<'_>,
@@ -277,7 +279,7 @@ impl Curves {
         }
     }
 
-    /// An activated term on a piece where its implication has neither a kink nor a step; `None` where it is 0.
+    /// Returns an activated term on a piece where its implication has neither a kink nor a step; `None` where it is 0.
     fn on_piece(&self, part: Part, run: &Run, (from, to): (f64, f64)) -> Option<Part> {
         let ends = run.line.map(|line| (line.at(from), line.at(to)));
         let membership = match ends {
@@ -316,12 +318,13 @@ impl Curves {
         Some(part)
     }
 
-    /// The degree of the aggregated set of parts.
+    /// Returns the degree of the aggregated set of parts.
     fn joined(&self, parts: &[Part], aggregation: Aggregation, x: f64) -> f64 {
         self.joined_at(parts, aggregation, x, x)
     }
 
-    /// The same at the end `x` of a piece. Lines have their degrees there, curves are evaluated just `inside`.
+    /// Returns the degree at the end `x` of a piece. Lines use their degree at the end; curves are evaluated just
+    /// `inside`.
     fn joined_at(&self, parts: &[Part], aggregation: Aggregation, x: f64, inside: f64) -> f64 {
         let (mut degree, mut known) = (0.0, None);
         for part in parts {
@@ -341,7 +344,7 @@ impl Curves {
         degree
     }
 
-    /// The slope of the aggregated set of parts on a piece of this width.
+    /// Returns the slope of the aggregated set of parts; `width` is the width of the piece.
     fn slope(&self, parts: &[Part], aggregation: Aggregation, x: f64, width: f64) -> f64 {
         let mut set = Sloped::default();
         for part in parts {
@@ -364,7 +367,7 @@ impl Curves {
         self.terms.get(term).map_or(0.0, |term| term.membership(x))
     }
 
-    /// Whether a minimum cuts a term off: not where it is its highest degree but for rounding.
+    /// Returns whether a minimum cuts a term off. A strength that equals its maximum degree up to rounding does not.
     fn cuts_off(&self, term: usize, strength: f64) -> bool {
         let highest = self.highest.get(term);
         self.has_formula || highest.is_none_or(|highest| strength < highest * (1.0 - EQUAL))
@@ -378,7 +381,7 @@ pub(super) fn is_formula(term: &Term) -> bool {
     )
 }
 
-/// The membership of a term at `x`, on a piece of this width.
+/// Returns the membership of a term at `x` with its slope; `width` is the width of the piece.
 fn sloped(term: &Term, x: f64, width: f64) -> Sloped {
     Sloped {
         degree: term.membership(x),

@@ -1,4 +1,4 @@
-//! Outputs without a closed form, whose aggregated set is integrated, sampled or summed at each evaluation.
+//! Outputs without a closed form, whose aggregated set is integrated, sampled or summed in each evaluation.
 
 use super::curves::Curves;
 use super::maxima::{Highest, Maxima};
@@ -24,7 +24,7 @@ pub(crate) struct Integrated {
 enum Set {
     /// Integrated piece by piece.
     Pieces(Curves),
-    /// Sampled, to reproduce other programs.
+    /// Sampled, to reproduce the results of other programs.
     Samples(Sampling, Curves),
     /// All terms are singletons.
     Singletons(Singletons),
@@ -48,7 +48,7 @@ impl Integrated {
         }
     }
 
-    /// The most cuts of an evaluation, besides those of its activations.
+    /// Returns the maximum number of cuts of an evaluation, not counting those of its activations.
     pub(crate) fn cuts(&self) -> usize {
         match &self.set {
             Set::Pieces(curves) => curves.workspace(),
@@ -56,7 +56,7 @@ impl Integrated {
         }
     }
 
-    /// The value; `None` where no rule fired. Not inlined, which keeps the code of closed forms small.
+    /// Returns the value; `None` if no rule fired. It is not inlined, to keep the code of closed forms small.
     #[inline(never)]
     pub(crate) fn value(&self, strengths: Strengths<'_>, workspace: &mut Workspace) -> Option<f64> {
         let value = match &self.set {
@@ -82,7 +82,7 @@ impl Integrated {
         Some(larger(self.low, smaller(self.high, value)))
     }
 
-    /// The value of a set given by its pieces, which `pieces` visits from left to right.
+    /// Returns the value of a set, whose pieces `pieces` visits from left to right.
     fn exact(
         &self,
         pieces: impl Fn(&mut Workspace, &mut dyn FnMut(&Piece<'_>)),

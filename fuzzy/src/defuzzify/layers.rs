@@ -1,4 +1,4 @@
-//! From a prepared set of straight terms to its layers.
+//! Conversion of a prepared set of straight terms to layers.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 
@@ -12,25 +12,26 @@ pub(crate) struct Layered {
     pub(crate) layers: Vec<Layers>,
 }
 
-/// The most parts of an output, and the most bases. A base takes a number for each row, so more would take much memory.
+/// The maximum number of parts of an output, and of bases. A base takes a number per row, so more would use much
+/// memory.
 const MOST_PARTS: usize = 1024;
-/// Between smaller differences of degrees, the coefficients are too large for numbers.
+/// The minimum difference of degrees; for smaller ones the coefficients would overflow.
 const LEAST_DIFFERENCE: f64 = 1e-100;
 
 /// A part of the range on which a term is straight and the same terms are above it.
 struct Part {
     flank: u32,
     strength: u32,
-    /// The firing strengths of the terms above it, ascending.
+    /// The firing strengths of the terms above it, in ascending order.
     above: Vec<u32>,
-    /// Its ends, with the degrees just inside.
+    /// The ends of the part, with the degrees just inside.
     from: (f64, f64),
     to: (f64, f64),
 }
 
 impl Layered {
-    /// The layers of a set whose sections are those of the minimum, with moments `about` this origin in this unit of length;
-    /// `None` where a term is curved, or there would be too many.
+    /// Converts a set whose sections are those of the minimum; `about` is the origin of moments and the unit of length.
+    /// `None` if a term is curved or there would be too many layers.
     pub(crate) fn new(prepared: &Prepared, about: (f64, f64)) -> Option<Self> {
         let is_straight = prepared.flanks.iter().all(|f| f.kind == Kind::PIECEWISE);
         if !is_straight {
@@ -61,7 +62,8 @@ impl Layered {
     }
 }
 
-/// The parts of all terms: those of the sections, joined where nothing changes; `None` where there are too many.
+/// Returns the parts of all terms: those of the sections, merged if nothing changes between them. `None` if there are
+/// too many.
 fn parts(prepared: &Prepared) -> Option<Vec<Part>> {
     let mut parts: Vec<Part> = Vec::new();
     for section in &prepared.sections {
@@ -96,7 +98,7 @@ fn parts(prepared: &Prepared) -> Option<Vec<Part>> {
 }
 
 impl Part {
-    /// Writes the numbers of a layer, which has this index among its four; `None` where there are none.
+    /// Writes the numbers of a layer, which has an index among the four; `None` if they would overflow.
     fn write(&self, (origin, unit): (f64, f64), index: usize, four: &mut Layers) -> Option<()> {
         let ((from, left), (to, right)) = (self.from, self.to);
         let length = to - from;
@@ -127,7 +129,7 @@ impl Part {
 /// The bases of sets of firing strengths.
 #[derive(Default)]
 struct Bases {
-    /// One more than the index of the base of each set, which is ascending.
+    /// The index of the base of each set, plus one; the sets are in ascending order.
     known: BTreeMap<Vec<u32>, u32>,
     bases: Vec<Base>,
 }
@@ -140,7 +142,7 @@ impl Bases {
         self.known.get(set).copied()
     }
 
-    /// The base of a set, added where it is not there.
+    /// Returns the base of a set, adding it if necessary.
     fn of(&mut self, set: &[u32]) -> u32 {
         if let Some(base) = self.known(set) {
             return base;
@@ -150,7 +152,7 @@ impl Bases {
             let strength = others.remove(index);
             (others, strength)
         };
-        // From a known one, if there is any.
+        // Derived from an existing base, if possible.
         let near = (0..set.len()).find(|index| self.known(&without(*index).0).is_some());
         let (others, strength) = without(near.unwrap_or(0));
         let others = self.of(&others);

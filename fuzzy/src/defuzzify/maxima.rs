@@ -1,4 +1,4 @@
-//! The maxima of an aggregated set, from its pieces.
+//! The maxima of an aggregated set, computed from its pieces.
 
 use alloc::vec::Vec;
 
@@ -6,10 +6,10 @@ use super::piece::Piece;
 use crate::model::MembershipFunction;
 use crate::table::{Kind, OfMaxima, numeric::root, set::Maxima as Values};
 
-/// Degrees as close to each other as this, relative to the higher one, are equal: rounding changes them by less.
+/// The relative difference up to which degrees count as equal; rounding errors are smaller.
 pub(super) const EQUAL: f64 = 1e-12;
 
-/// The highest degree seen.
+/// The highest degree so far.
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Highest(pub(crate) f64);
 
@@ -22,12 +22,12 @@ impl Highest {
     }
 }
 
-/// The values where the set is highest.
+/// The values at which the set is highest.
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Maxima {
     least_degree: f64,
     values: Values,
-    /// The end of the piece before.
+    /// The end of the previous piece.
     before: End,
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct Maxima {
 struct End {
     x: f64,
     degree: f64,
-    /// Whether the piece rises towards it.
+    /// Whether the piece rises towards its end.
     rises: bool,
 }
 
@@ -70,7 +70,8 @@ impl Maxima {
             });
             (rises_first, rises_last) = ends.unwrap_or((rises_first, rises_last));
         }
-        // Between two pieces that meet is a maximum where the set rises to it and falls from it; at a step, on the higher side.
+        // The boundary of two adjacent pieces is a maximum if the set rises to it and falls from it; at a step, only
+        // the higher side counts.
         let before = self.before;
         let meet = before.x == piece.from;
         let falls = !is_plateau && !rises_first;
@@ -101,7 +102,7 @@ impl Maxima {
         };
     }
 
-    /// Counts the end of the piece before, unless the set goes on higher there.
+    /// Counts the end of the previous piece as a maximum, unless the set is higher beyond it.
     fn close(&mut self, goes_on_higher: bool) {
         if self.before.rises && !goes_on_higher {
             self.point(self.before.x);
@@ -113,15 +114,15 @@ impl Maxima {
         self.values.point(x);
     }
 
-    /// The value; `None` of a set that is 0 everywhere.
+    /// Returns the selected value; `None` for a set that is 0 everywhere.
     pub(crate) fn value(mut self, which: OfMaxima) -> Option<f64> {
         self.close(false);
         self.values.value(which)
     }
 }
 
-/// Calls `visit` with each maximum inside a curve, and its degree. Returns whether the curve rises at its beginning and towards
-/// its end; `None` of a straight piece.
+/// Calls `visit` for each maximum inside a curve, with its degree. Returns whether the curve rises at its start and
+/// towards its end; `None` for a straight piece.
 fn peaks(piece: &Piece<'_>, visit: &mut dyn FnMut(f64, f64)) -> Option<(bool, bool)> {
     let curve = piece.curve?;
     Some(turns(curve.slope, &mut |part| {
@@ -132,14 +133,14 @@ fn peaks(piece: &Piece<'_>, visit: &mut dyn FnMut(f64, f64)) -> Option<(bool, bo
     }))
 }
 
-/// The stretches of a piece at whose ends its slope is looked at.
+/// The number of intervals of a piece at whose ends the slope is evaluated.
 const STRETCHES: u32 = 32;
 
-/// The slope at an end is that so far inside, past a kink at the end itself.
+/// The distance from an end at which the slope is evaluated, to be beyond a kink at the end itself.
 pub(super) const INSIDE: f64 = 1e-12;
 
-/// Calls `visit` with each place inside [0, 1] at which a function has a maximum: where its slope falls through 0. Returns whether
-/// it rises at 0 and towards 1.
+/// Calls `visit` for each position in [0, 1] at which a function has a maximum, that is, its slope falls through 0.
+/// Returns whether it rises at 0 and towards 1.
 pub(super) fn turns(slope: &dyn Fn(f64) -> f64, visit: &mut dyn FnMut(f64)) -> (bool, bool) {
     let mut from = INSIDE;
     let first = slope(from);
@@ -155,8 +156,8 @@ pub(super) fn turns(slope: &dyn Fn(f64) -> f64, visit: &mut dyn FnMut(f64)) -> (
     (first > 0.0, before > 0.0)
 }
 
-/// The places at which a shape is not smooth or turns, and the ends of the range: between these it only rises, only falls or is
-/// level. Those of a formula are not known.
+/// Returns the positions at which a shape is not smooth or has an extremum, and the ends of the range. Between these
+/// positions it only rises, only falls or is level. The positions of a formula are unknown.
 pub(super) fn monotone(shape: &MembershipFunction, low: f64, high: f64) -> Vec<f64> {
     let mut cuts = shape.cuts();
     let sort = |cuts: &mut Vec<f64>| {
@@ -166,7 +167,7 @@ pub(super) fn monotone(shape: &MembershipFunction, low: f64, high: f64) -> Vec<f
     cuts.retain(|x| low < *x && *x < high);
     cuts.extend([low, high]);
     sort(&mut cuts);
-    // The others turn at their cuts alone.
+    // All other shapes have extrema only at their cuts.
     if let Kind::SIGMOID_DIFFERENCE | Kind::SIGMOID_PRODUCT | Kind::GAUSSIAN2 = shape.kind().0 {
         let mut turning = Vec::new();
         for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {

@@ -1,16 +1,19 @@
-//! From firing strengths to a number: the coefficients of the closed forms, and the integrator for sets without one.
+//! Computing a number from firing strengths: the coefficients of the closed forms, and the integrator for sets without
+//! a closed form.
 //!
-//! [`engine::strategy`](crate::engine) chooses between them. An output of three triangles, `low` (0, 0, 5), `medium` (0, 5, 10)
-//! and `high` (5, 10, 10) over 0 to 10, shows what each stores:
+//! [`engine::strategy`](crate::engine) chooses between them. The data that each of them stores is shown here for an
+//! output with three triangles, `low` (0, 0, 5), `medium` (0, 5, 10) and `high` (5, 10, 10), over 0 to 10:
 //!
-//! - [`Partition`]: the terms sum to 1, so each is one [`Pair`](crate::table::Pair) entry. `low` cut at `h` has the area
-//!   `5 h - 2.5 h^2`; its overlap with `medium` is 5 wide around 2.5.
-//! - [`Moments`](Method::Moments): area and moment of each term about the middle, 5. `low` has the area 2.5 and, with its
-//!   centroid at 5/3, the moment `2.5 (5/3 - 5) = -8.33`.
-//! - [`Prepared`]: each term is cut into flanks, which only rise or only fall: one for `low`, two for `medium`, one for `high`.
-//!   Where two flanks cross, at 2.5 and 7.5, the range is cut into four sections, on each of which one of the two is the higher.
-//! - [`Layered`]: on each section, the area between the strengths of the terms that are higher there and a term's own strength.
-//! - [`Integrated`]: nothing but the terms and their corners, 0, 5 and 10. The aggregated set is cut into pieces at each
+//! - [`Partition`]: the terms sum to 1, so each is one [`Pair`](crate::table::Pair) entry. `low` cut at `h` has the
+//!   area `5 h - 2.5 h^2`; its overlap with `medium` is 5 wide around 2.5.
+//! - [`Moments`](Method::Moments): the area and moment of each term about the middle, 5. `low` has the area 2.5 and,
+//!   with its centroid at 5/3, the moment `2.5 (5/3 - 5) = -8.33`.
+//! - [`Prepared`]: each term is split into flanks, which only rise or only fall: one for `low`, two for `medium`, one
+//!   for `high`. The range is split where two flanks cross, at 2.5 and 7.5, and where they end, at 5. On each of the
+//!   four sections, one of the two flanks is always the higher one.
+//! - [`Layered`]: on each section, the area between the strengths of the terms that are higher there and a term's own
+//!   strength.
+//! - [`Integrated`]: only the terms and their corners, 0, 5 and 10. The aggregated set is split into pieces in each
 //!   evaluation.
 
 use alloc::vec::Vec;
@@ -49,7 +52,7 @@ pub(crate) struct Joint {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strengths<'a> {
     pub(crate) strengths: &'a [f64],
-    /// Term k has the firing strengths `offsets[k]..offsets[k + 1]`.
+    /// The offsets of the terms: term k has the firing strengths `offsets[k]..offsets[k + 1]`.
     pub(crate) offsets: &'a [usize],
 }
 
@@ -62,7 +65,7 @@ impl<'a> Strengths<'a> {
     }
 }
 
-/// How the value of an output is computed, with all that does not depend on the inputs.
+/// The method that computes the value of an output, with all data that does not depend on the inputs.
 #[derive(Debug, Clone)]
 pub(crate) enum Method {
     /// The centroid of the maximum over a partition.
@@ -71,7 +74,7 @@ pub(crate) enum Method {
     Layered(Layered),
     /// The centroid of a sum of products: the area and moment of each term at a firing strength of 1.
     Moments(Vec<Moment>),
-    /// A set whose flanks and sections are known.
+    /// A set with known flanks and sections.
     Prepared(Prepared),
     /// A set without a closed form.
     Integrated(Integrated),
@@ -84,7 +87,7 @@ pub(crate) enum Method {
     Tsukamoto(Vec<Term>),
 }
 
-/// Whether a term of a fuzzy output is 0 all over the range.
+/// Returns whether a term of a fuzzy output is 0 on the whole range.
 pub(crate) fn is_empty(output: &Output, term: &Term) -> bool {
     let (low, high) = (output.variable.low, output.variable.high);
     match (term.membership_function.at(), corners(term)) {

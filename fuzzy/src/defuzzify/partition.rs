@@ -1,6 +1,7 @@
-//! The centroid of the maximum over a partition, as a formula of the firing strengths. The terms of a partition
-//! have height 1, rise straight from 0 to 1, stay there and fall straight to 0. Two overlap only where one falls from 1 to 0
-//! while the other rises from 0 to 1. [`Pair`] has the formulas.
+//! The centroid of the maximum over a partition, as a formula of the firing strengths. The terms of a partition have
+//! height 1; each rises in a straight line from 0 to 1, may have a plateau, and falls in a straight line to 0. Two
+//! terms overlap only where one falls from 1 to 0 while the other rises from 0 to 1. The formulas are documented at
+//! [`Pair`].
 
 use alloc::{vec, vec::Vec};
 
@@ -10,17 +11,17 @@ use crate::table::Pair;
 
 #[derive(Debug, Clone)]
 pub(crate) struct Partition {
-    /// Terms from left to right, padded to an even number.
+    /// The terms from left to right, padded to an even number.
     pairs: Vec<Pair>,
     /// The index of each term from left to right.
     ranks: Vec<usize>,
-    /// Whether terms are scaled by their firing strengths, else cut.
+    /// Whether terms are scaled by their firing strengths; otherwise they are cut.
     pub(crate) scales: bool,
 }
 
 impl Partition {
-    /// Terms that are scaled by their firing strengths, or cut at them; `None` if they are not a partition. Moments are measured
-    /// from `origin`, areas in lengths of `unit`.
+    /// Creates the closed form of terms that are scaled by their firing strengths or cut at them; `None` if they are
+    /// not a partition. Moments are relative to `origin`; areas use the unit of length `unit`.
     pub(crate) fn new(
         terms: &[Term],
         (low, high): (f64, f64),
@@ -29,7 +30,7 @@ impl Partition {
     ) -> Option<Self> {
         let intervals = intervals(terms, low, high)?;
         let terms = terms.len();
-        // A term that is 0 all over the range comes last.
+        // A term that is 0 on the whole range comes last.
         let mut middles = vec![f64::INFINITY; terms];
         for Interval { from, to, alive } in &intervals {
             for line in alive {
@@ -106,37 +107,37 @@ impl Partition {
         Some(partition)
     }
 
-    /// The index of each term's firing strength; they are ordered from left to right.
+    /// Returns the index of each term's firing strength; the strengths are ordered from left to right.
     pub(crate) fn ranks(&self) -> &[usize] {
         &self.ranks
     }
 
-    /// The number of firing strengths that are read. The last ones are always 0.
+    /// Returns the number of firing strengths that are read. The last ones are always 0.
     pub(crate) fn strengths(&self) -> usize {
         2 * self.pairs.len() + 1
     }
 
-    /// The coefficients of the polynomials.
+    /// Returns the coefficients of the polynomials.
     pub(crate) fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
 }
 
-/// A part of the range on which every term is straight, with the terms over 0 on it.
+/// A part of the range on which every term is straight, with the terms that are above 0 on it.
 struct Interval {
     from: f64,
     to: f64,
     alive: Vec<Line>,
 }
 
-/// A term on an interval: its degrees just inside the interval's ends.
+/// A term on an interval, with its degrees just inside the ends of the interval.
 struct Line {
     term: usize,
     left: f64,
     right: f64,
 }
 
-/// Cuts the range at every corner of every term; `None` if a term is curved.
+/// Splits the range at every corner of every term; `None` if a term is curved.
 fn intervals(terms: &[Term], low: f64, high: f64) -> Option<Vec<Interval>> {
     let corners: Vec<_> = terms.iter().map(corners).collect::<Option<_>>()?;
     let mut cuts: Vec<f64> = corners.iter().flatten().map(|corner| corner.0).collect();
@@ -170,7 +171,7 @@ mod tests {
     use crate::table::centroid;
     use proptest::prelude::*;
 
-    /// The partition of the example risks, an unsymmetric one, and one with plateaus and gaps.
+    /// Returns the partition of the example risks, an asymmetric one, and one with plateaus and gaps.
     fn partitions() -> Vec<Variable> {
         let triangle = |left, peak, right| MembershipFunction::Triangle { left, peak, right };
         vec![
@@ -218,7 +219,7 @@ mod tests {
     }
 
     proptest! {
-        /// The formulas and the walk over pieces are two ways to one number.
+        /// The formulas and the integration of pieces give the same number.
         #[test]
         fn formulas_equal_pieces(
             which in 0..3usize,

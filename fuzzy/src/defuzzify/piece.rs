@@ -1,4 +1,4 @@
-//! Stretches of an aggregated set, and integrals over them.
+//! Pieces of an aggregated set, and integrals over them.
 
 use crate::table::{
     centroid,
@@ -6,42 +6,44 @@ use crate::table::{
     operators::larger,
 };
 
-/// A stretch on which the aggregated set is a straight line or a smooth curve.
+/// An interval on which the aggregated set is a straight line or a smooth curve.
 pub(crate) struct Piece<'a> {
-    /// Where it begins.
+    /// The lower end.
     pub(crate) from: f64,
-    /// Where it ends.
+    /// The upper end.
     pub(crate) to: f64,
     /// The degree just inside `from`.
     pub(crate) left: f64,
     /// The degree just inside `to`.
     pub(crate) right: f64,
-    /// `None` where the piece is straight.
+    /// The curve; `None` if the piece is straight.
     pub(crate) curve: Option<Curve<'a>>,
 }
 
-/// A smooth curve over a piece, at a share in [0, 1] of the way from `from` to `to`, which is finer than `x` in a narrow piece.
+/// A smooth curve over a piece. Its argument is the fraction in [0, 1] of the distance from `from` to `to`, which has a
+/// finer resolution than `x` in a narrow piece.
 #[derive(Clone, Copy)]
 pub(crate) struct Curve<'a> {
     /// The degree.
     pub(crate) degree: &'a dyn Fn(f64) -> f64,
-    /// A number with the sign of the slope, and proportional to it.
+    /// A number that is proportional to the slope and has the same sign.
     pub(crate) slope: &'a dyn Fn(f64) -> f64,
 }
 
-/// The area of a set and its first moment about `origin`.
+/// The area of a set, and its first moment about `origin`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Integrals {
     pub(crate) area: f64,
     pub(crate) moment: f64,
-    /// The origin of the moment: the middle of the range, against cancellation.
+    /// The origin of the moment: the middle of the range, to avoid cancellation.
     pub(crate) origin: f64,
-    /// Area and moment are in this unit of length, see [`unit`].
+    /// The unit of length of the area and the moment, see [`unit`].
     unit: f64,
 }
 
-/// The unit of length of areas over a range of this width. The area times a moment's arm is a width squared, which is no
-/// number where a range is very wide or narrow. The unit is a power of two, so that it changes no digit, and 1 elsewhere.
+/// Returns the unit of length of areas over a range of a width. The area times the arm of a moment is proportional to
+/// the square of the width, which overflows or underflows for extreme ranges. The unit is a power of two, so that it
+/// does not change digits; for all other ranges it is 1.
 pub(crate) fn unit(width: f64) -> f64 {
     if (1e-100..1e100).contains(&width) {
         return 1.0;
@@ -49,7 +51,7 @@ pub(crate) fn unit(width: f64) -> f64 {
     power_of_two(width)
 }
 
-/// The largest power of two up to a width.
+/// Returns the largest power of two up to a width.
 pub(super) fn power_of_two(width: f64) -> f64 {
     f64::from_bits(width.to_bits() & f64::INFINITY.to_bits())
 }
@@ -65,7 +67,8 @@ impl Integrals {
     }
 
     /// Adds a piece. A straight one has `area = d (ya + yb) / 2` and
-    /// `moment = d (x0 (ya + yb) / 2 + d (ya + 2 yb) / 6)`; a curve is integrated to the last digits.
+    /// `moment = d (x0 (ya + yb) / 2 + d (ya + 2 yb) / 6)`; a curve is integrated numerically, accurate to the last
+    /// digits.
     pub(crate) fn add(&mut self, piece: &Piece<'_>) {
         let width = piece.to - piece.from;
         let units = width / self.unit;
@@ -83,14 +86,14 @@ impl Integrals {
             units * ((piece.from - self.origin) * mean + width * (left + 2.0 * right) / 6.0);
     }
 
-    /// The centroid; `None` where there is no area.
+    /// Returns the centroid; `None` if the area is 0.
     pub(crate) fn centroid(&self) -> Option<f64> {
         centroid(self.area, self.moment, self.origin)
     }
 }
 
 impl Piece<'_> {
-    /// The whole area.
+    /// Returns the whole area.
     pub(crate) fn area(&self) -> f64 {
         let mean = match self.curve {
             Some(curve) => integrate(curve.degree, 1.0, 0.0).0,
@@ -99,7 +102,7 @@ impl Piece<'_> {
         (self.to - self.from) * mean
     }
 
-    /// The value up to which the piece has this area, which is at most the piece's.
+    /// Returns the value up to which the piece has an area, which must not exceed that of the whole piece.
     pub(crate) fn where_area_is(&self, area: f64) -> f64 {
         let width = self.to - self.from;
         if let Some(curve) = self.curve {
@@ -108,7 +111,7 @@ impl Piece<'_> {
             let part = root(0.0, 1.0, |part| area(part) - mean);
             return self.from + width * part;
         }
-        // area = left d + slope d^2 / 2, solved for d without cancellation.
+        // Solve area = left d + slope d^2 / 2 for d without cancellation.
         let slope = (self.right - self.left) / width;
         let root = libm::sqrt(libm::fmax(0.0, self.left * self.left + 2.0 * slope * area));
         let length = if area > 0.0 {
@@ -120,17 +123,18 @@ impl Piece<'_> {
     }
 }
 
-/// The most halvings of a stretch, and of all stretches of a piece. They suffice to close in on several missed kinks, and
-/// end the search where rounding keeps halves from agreeing.
+/// The maximum number of successive halvings of an interval, and of all halvings of a piece. They suffice to locate
+/// several missed kinks, and end the search if rounding prevents agreement of the halves.
 const DEEPEST: usize = 48;
 const MOST_HALVINGS: usize = 400;
 
-/// The relative difference up to which a stretch and its halves agree. The halves are then exact to rounding where the curve
-/// is smooth, and to this where it has a missed kink.
+/// The relative difference up to which an interval and its halves agree. The result is then accurate to rounding where
+/// the curve is smooth, and to this difference at a missed kink.
 const AGREEMENT: f64 = 1e-13;
 
-/// `(integral of f(t) dt, integral of t f(t) dt)` from 0 to `end`, by Gauss-Legendre on stretches that are halved until
-/// they agree. `known` is the area of the rest of the set: the error need not be far below it.
+/// Returns `(integral of f(t) dt, integral of t f(t) dt)` from 0 to `end`, by Gauss-Legendre quadrature on intervals
+/// that are halved until they agree. `known` is the area of the rest of the set, relative to which the error is
+/// measured.
 fn integrate(curve: &dyn Fn(f64) -> f64, end: f64, known: f64) -> (f64, f64) {
     let mut stack = [(0.0, 0.0, 0.0, 0.0); DEEPEST + 1];
     let (whole, moment) = gauss(curve, 0.0, end, 0.0);
@@ -140,7 +144,7 @@ fn integrate(curve: &dyn Fn(f64) -> f64, end: f64, known: f64) -> (f64, f64) {
     while open > 0 {
         open -= 1;
         let (a, b, area, moment) = stack[open];
-        // Not in the middle: a symmetric kink there would go unseen.
+        // Not at the middle, where a symmetric kink would not be detected.
         let middle = a + 0.43 * (b - a);
         let left = gauss(curve, a, middle, 0.0);
         let right = gauss(curve, middle, b, 0.0);
@@ -217,7 +221,7 @@ mod tests {
 
     #[test]
     fn noise_comes_to_an_end() {
-        // Never agrees with its halves, however often it is halved.
+        // A function that never agrees with its halves, however often it is halved.
         let noise = |t: f64| ((t * 1e15) as u64 % 1000) as f64 / 1000.0;
         let counter = core::cell::Cell::new(0usize);
         let counted = |t: f64| {

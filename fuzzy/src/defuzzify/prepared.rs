@@ -1,4 +1,4 @@
-//! Preparing the fuzzy set of an output: flanks, their knots, and the sections on which terms do not cross.
+//! Preparation of the fuzzy set of an output: flanks, their knots, and the sections on which terms do not cross.
 
 use alloc::vec::Vec;
 
@@ -14,13 +14,13 @@ pub(crate) use stretches::{corners, straight};
 mod crossings;
 mod stretches;
 
-/// A prepared set. Indices are into its own arrays.
+/// A prepared set. All indices refer to its own arrays.
 #[derive(Debug, Clone)]
 pub(crate) struct Prepared {
     pub(crate) set: FuzzySet,
-    /// Whether terms are scaled by their firing strengths, else cut.
+    /// Whether terms are scaled by their firing strengths; otherwise they are cut.
     pub(crate) scales: bool,
-    /// One for each term of the output.
+    /// One element per term of the output.
     pub(crate) terms: Vec<SetTerm>,
     pub(crate) sections: Vec<Section>,
     pub(crate) strands: Vec<Strand>,
@@ -28,15 +28,16 @@ pub(crate) struct Prepared {
     pub(crate) knots: Vec<Knot>,
 }
 
-/// More make a set too large for a processor's cache; it is then integrated for each evaluation.
+/// The maximum sizes. A larger set would not fit the cache of the processor; it is integrated in each evaluation
+/// instead.
 const MOST_STRANDS: usize = 16_384;
 const MOST_TERMS: usize = 64;
 const MOST_FLANKS: usize = 512;
 const MOST_KNOTS: usize = 1024;
 
 impl Prepared {
-    /// The set of terms that are scaled by their firing strengths or cut at them, and whose sum or maximum is taken; `None` if a
-    /// term is a formula, or the set would be too large.
+    /// Prepares a set of terms that are scaled by their firing strengths or cut at them, and aggregated by sum or
+    /// maximum. `None` if a term is a formula, or the set would be too large.
     pub(crate) fn new(
         terms: &[Term],
         (low, high): (f64, f64),
@@ -77,7 +78,7 @@ impl Prepared {
         Some(prepared)
     }
 
-    /// The area and moment of each term, in this unit of length.
+    /// Returns the area and moment of each term; `unit` is the unit of length.
     pub(crate) fn moments(&self, unit: f64) -> Vec<Moment> {
         let units = self.set.unit / unit;
         let of = |term: &SetTerm| {
@@ -141,7 +142,7 @@ impl Prepared {
         };
         if stretch.is_curved {
             (flank.kind, flank.parameters) = kind(&term.membership_function, flank.rises());
-            // The tail of a wider gaussian lies mostly outside the range, where its digits would be lost.
+            // The tail of a wider Gaussian is mostly outside the range, which would lose digits.
             if flank.kind == Kind::GAUSSIAN && flank.parameters[1] <= measure.unit {
                 let foot = if flank.rises() { from } else { to };
                 flank.beyond = flank.beyond_of(foot, measure);
@@ -155,7 +156,8 @@ impl Prepared {
         Some(flank)
     }
 
-    /// Where sections end: at the ends of flanks, where two terms cross (minimum), and where the ratio of two turns (product).
+    /// Returns the limits of sections: the ends of flanks, the crossings of two terms (minimum), and the extrema of the
+    /// ratio of two terms (product).
     fn cuts(&self, terms: &[Term], low: f64, high: f64) -> Vec<f64> {
         let mut cuts: Vec<f64> = self.flanks.iter().flat_map(|f| [f.from, f.to]).collect();
         cuts.extend([low, high]);
@@ -231,7 +233,7 @@ impl Prepared {
     }
 }
 
-/// The degree of a flank, at its ends just inside it.
+/// Returns the degree of a flank; at its ends, the degree just inside it.
 fn degree(flank: &Flank, x: f64) -> f64 {
     if x == flank.from {
         flank.left
@@ -242,7 +244,7 @@ fn degree(flank: &Flank, x: f64) -> f64 {
     }
 }
 
-/// The formula of a flank; two-sided shapes are those of one side.
+/// Returns the formula of a flank. For two-sided shapes it is that of one side.
 fn kind(shape: &MembershipFunction, rises: bool) -> (Kind, [f64; 4]) {
     match (shape.kind(), rises) {
         ((Kind::GAUSSIAN2, [mean, sd, right, _]), true) if mean <= right => {

@@ -1,10 +1,10 @@
-//! Sampled defuzzification, which reproduces other programs with their error.
+//! Sampled defuzzification, which reproduces other programs including their errors.
 
 use crate::model::{Sampling, SamplingRule};
 use crate::table::{OfMaxima, SetDefuzzifier};
 
 impl Sampling {
-    /// The value of a set given by its degree at `x`; `None` where every sample is 0.
+    /// Returns the value of a set that is given by its degree at `x`; `None` if every sample is 0.
     pub(crate) fn value(
         self,
         defuzzifier: SetDefuzzifier,
@@ -27,7 +27,7 @@ impl Sampling {
         }
     }
 
-    /// The value and weight of a sample.
+    /// Returns the value and weight of a sample.
     fn sample(self, i: usize, low: f64, high: f64) -> (f64, f64) {
         match self.rule {
             SamplingRule::Midpoint => {
@@ -42,7 +42,7 @@ impl Sampling {
         }
     }
 
-    /// The first sample at which the sum reaches its half.
+    /// Returns the first sample at which the cumulative sum reaches half of the total.
     fn bisector(self, low: f64, high: f64, degree: impl Fn(f64) -> f64) -> Option<f64> {
         let terms = || {
             (0..self.samples).map(|i| {

@@ -1,4 +1,4 @@
-//! Outputs whose terms are all singletons: the aggregated set is a few places with a degree each.
+//! Outputs whose terms are all singletons: the aggregated set consists of single points with a degree each.
 
 use alloc::vec::Vec;
 
@@ -6,15 +6,15 @@ use super::{Joint, Strengths};
 use crate::model::Output;
 use crate::table::{OfMaxima, SetDefuzzifier};
 
-/// The terms of one output as places, from left to right.
+/// The terms of one output as points, from left to right.
 #[derive(Debug, Clone)]
 pub(crate) struct Singletons {
-    /// The place, the index of the term and its height.
+    /// For each term, its value, its index and its height.
     terms: Vec<(f64, usize, f64)>,
 }
 
 impl Singletons {
-    /// `None` if a term is not a singleton.
+    /// Returns `None` if a term is not a singleton.
     pub(super) fn new(output: &Output) -> Option<Self> {
         if !output.is_discrete() {
             return None;
@@ -28,8 +28,8 @@ impl Singletons {
         Some(Singletons { terms })
     }
 
-    /// The centroid `sum(x y) / sum(y)` over the places x with their aggregated degrees y, or the smallest, mean or largest of
-    /// the places with the highest degree; `None` where all degrees are 0.
+    /// Returns the centroid `sum(x y) / sum(y)` over the points x with their aggregated degrees y, or the smallest,
+    /// mean or largest of the points with the highest degree; `None` if all degrees are 0.
     pub(super) fn value(
         &self,
         strengths: Strengths<'_>,
@@ -61,7 +61,7 @@ impl Singletons {
                 let count = top.clone().count() as f64;
                 top.map(|(x, _)| x / count).sum()
             }
-            // Singletons have no area to halve; a model that asks for that is refused.
+            // Singletons have no area to halve; validation rejects a bisector.
             SetDefuzzifier::Centroid | SetDefuzzifier::Bisector => {
                 places().map(|(x, degree)| x * (degree / total)).sum()
             }

@@ -5,7 +5,7 @@ use crate::model::{
     Aggregation, Defuzzifier, Implication, MembershipFunction, Model, Operators, Output, Variable,
 };
 
-/// An output of these terms, with a rule for each that fires with its weight.
+/// Returns a model of an output with these terms, and a rule per term whose firing strength is its weight.
 pub(super) fn model(
     (low, high): (f64, f64),
     terms: &[(MembershipFunction, f64)],
@@ -62,7 +62,7 @@ pub(super) const MINIMUM_MAXIMUM: (Implication, Aggregation) =
 fn a_maximum_close_to_the_end_of_a_piece_is_found() {
     let terms = [(gaussian(52.2, 16.0), 1.0), (gaussian(67.9, 21.1), 0.74)];
     let mean = value((0.0, 100.0), &terms, PRODUCT_SUM, Defuzzifier::MeanOfMaxima);
-    // Where the derivative of the sum is 0.
+    // At the maximum, the derivative of the sum is 0.
     let slope = |x: f64| {
         let one = |m: f64, s: f64| (x - m) / (s * s) * (-0.5 * ((x - m) / s).powi(2)).exp();
         one(52.2, 16.0) + 0.74 * one(67.9, 21.1)
@@ -76,7 +76,7 @@ fn a_maximum_close_to_the_end_of_a_piece_is_found() {
 
 #[test]
 fn two_maxima_of_one_height_and_one_between_two_cuts() {
-    // Apart, a sum has two maxima; close to each other, one in the middle.
+    // Far apart, two terms give a sum with two maxima; close together, one maximum in the middle.
     for (distance, expected) in [(20.0, None), (8.0, Some(50.0))] {
         let terms = [
             (gaussian(50.0 - distance, 10.0), 1.0),
@@ -129,7 +129,7 @@ const MAXIMA: [Defuzzifier; 3] = [
 
 #[test]
 fn a_bell_has_its_maximum_in_the_middle_under_every_implication() {
-    // Its flanks are no polynomials.
+    // The flanks are not polynomials.
     let bell = |slope: f64| MembershipFunction::Bell {
         center: 30.1,
         width: 19.3,
@@ -173,7 +173,7 @@ fn a_maximum_beside_the_middle_of_a_bell() {
     };
     let terms = [(bell, 1.0), (ramp, 0.02)];
     let x = value((0.0, 100.0), &terms, PRODUCT_SUM, Defuzzifier::MeanOfMaxima);
-    // Where the slope of the bell is that of the ramp.
+    // The value at which the slope of the bell equals that of the ramp.
     let bell = |t: f64| 1.64 * t.powf(0.64) / 12.0 / (1.0 + t.powf(1.64)).powi(2);
     let (mut low, mut high): (f64, f64) = (0.0, 1.0);
     while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
@@ -189,12 +189,12 @@ fn a_maximum_beside_the_middle_of_a_bell() {
 
 #[test]
 fn a_nilpotent_minimum_cuts_out_a_plateau() {
-    // Of a gaussian at a strength of 0.3 the part above 0.7 is left, 0.3 high.
+    // Of a Gaussian at a strength of 0.3, only the part above 0.7 remains, with the height 0.3.
     let half = 10.0 * (-2.0 * 0.7_f64.ln()).sqrt();
     for (aggregation, terms) in [
         (Aggregation::Maximum, vec![(gaussian(40.0, 10.0), 0.3)]),
         (Aggregation::Sum, vec![(gaussian(40.0, 10.0), 0.3)]),
-        // Beside one that is lower.
+        // In combination with a lower term.
         (
             Aggregation::NilpotentMaximum,
             vec![(gaussian(40.0, 10.0), 0.3), (gaussian(80.0, 5.0), 0.2)],
@@ -236,7 +236,7 @@ fn a_strength_of_the_highest_degree_but_for_rounding_cuts_nothing_off() {
                 (x - 50.0).abs() < 1e-9,
                 "{operators:?} {defuzzifier:?}: {x}"
             );
-            // A strength that is lower by more cuts it off where its degree is the strength.
+            // A strength that is lower by more than rounding cuts the term off where its degree equals the strength.
             let cut = 20.0 * 1e-9_f64.powf(1.0 / 6.0);
             let expected = match defuzzifier {
                 Defuzzifier::SmallestOfMaxima => 50.0 - cut,
@@ -272,7 +272,7 @@ fn a_drastic_aggregation_is_1_where_two_terms_are_over_the_least_strength() {
     }
 }
 
-/// The same set, in any unit of length.
+/// The same set in different units of length.
 #[test]
 fn wide_and_narrow_ranges() {
     let triangle = |unit: f64| MembershipFunction::Triangle {

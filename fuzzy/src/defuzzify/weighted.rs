@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use crate::model::{MembershipFunction, Term};
 use crate::table::{Coefficient, Consequent, Point};
 
-/// The consequents of the terms of an output, with spans in their own coefficients and code.
+/// The consequents of the terms of an output. Their ranges refer to the coefficients and the code stored here.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Consequents {
     pub(crate) consequents: Vec<Consequent>,
@@ -14,7 +14,7 @@ pub(crate) struct Consequents {
 }
 
 impl Consequents {
-    /// The consequents of the terms of a valid model, in which `input` finds every name.
+    /// Creates the consequents of the terms of a valid model; `input` returns the index of an input by its name.
     pub(crate) fn new(terms: &[Term], input: impl Fn(&str) -> Option<usize>) -> Self {
         let mut consequents = Consequents::default();
         for term in terms {
@@ -23,7 +23,7 @@ impl Consequents {
         consequents
     }
 
-    /// Adds the consequent of a term. A singleton is a constant.
+    /// Adds the consequent of a term. A singleton is treated as a constant.
     fn push(&mut self, shape: &MembershipFunction, input: impl Fn(&str) -> Option<usize>) {
         let (first, first_code) = (self.coefficients.len(), self.code.len());
         let constant = match shape {
@@ -40,7 +40,7 @@ impl Consequents {
                             input: index as u32,
                         }));
                 }
-                // By input, so that the order in the text does not change a bit of the sum.
+                // Sorted by input, so that the order in the text does not affect the bits of the sum.
                 self.coefficients[first..].sort_by_key(|coefficient| coefficient.input);
                 *constant
             }

@@ -1,26 +1,26 @@
-//! Scratch memory of the integrator, and a bound on its work.
+//! Scratch memory of the integrator, and a limit on its work.
 
 use alloc::vec::Vec;
 
 use super::curves::{Part, Run};
 
-/// Scratch memory of the caller. An evaluation never grows it.
+/// Scratch memory that the caller provides. Evaluations never reallocate it.
 #[derive(Debug)]
 pub(crate) struct Workspace {
-    /// The cuts of a stretch.
+    /// The cuts of an interval.
     pub(super) cuts: Vec<f64>,
-    /// The most cuts of a stretch. The vector's capacity depends on the allocator.
+    /// The maximum number of cuts of an interval, because the capacity of the vector depends on the allocator.
     pub(super) most_cuts: usize,
     pub(super) runs: Vec<Run>,
     pub(super) parts: Vec<Part>,
     pub(crate) steps: Steps,
 }
 
-/// The work of integrations, about one membership a step.
+/// The work of integrations; a step is about one evaluation of a membership function.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Steps {
     pub(crate) taken: u64,
-    /// An integration that would take more ends early, and its value means nothing.
+    /// The maximum number of steps. An integration that would exceed it ends early, and its value is invalid.
     pub(crate) most: u64,
 }
 
@@ -30,7 +30,7 @@ impl Steps {
         most: u64::MAX,
     };
 
-    /// Takes steps, and returns whether there were enough left.
+    /// Adds steps, and returns whether the limit has not been exceeded.
     pub(super) fn take(&mut self, steps: usize) -> bool {
         self.taken = self.taken.saturating_add(steps as u64);
         !self.are_spent()
@@ -41,11 +41,11 @@ impl Steps {
     }
 }
 
-/// About so many memberships of each term are evaluated to integrate a piece with a curve.
+/// The approximate number of evaluations of each term that the integration of a curved piece takes.
 pub(super) const STEPS_OF_A_CURVE: usize = 16;
 
 impl Workspace {
-    /// Workspace for `activations` and `cuts` at once.
+    /// Allocates memory for `activations` and `cuts`.
     pub(crate) fn new(activations: usize, cuts: usize) -> Self {
         let most_cuts = cuts.max(activations + 2);
         Workspace {
@@ -58,7 +58,7 @@ impl Workspace {
     }
 }
 
-/// Has the same capacities, and is empty. A derived clone would have no spare capacity.
+/// Creates an empty workspace with the same capacities. A derived clone would have no spare capacity.
 impl Clone for Workspace {
     fn clone(&self) -> Self {
         Workspace::new(self.parts.capacity(), self.most_cuts)

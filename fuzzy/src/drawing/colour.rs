@@ -1,7 +1,7 @@
-//! Colours: two scales whose lightness changes one way, so that they stay ordered in grey and for the colour-blind, and
-//! a set of colours without order.
+//! Colours: two scales with monotone lightness, so that they stay ordered in grey and for colour-blind readers, and a
+//! set of unordered colours.
 
-/// A colour: red, green, blue. It prints as CSS: `#fde725`.
+/// A colour: red, green, blue. Its `Display` format is that of CSS: `#fde725`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Colour(pub u8, pub u8, pub u8);
 
@@ -11,7 +11,7 @@ impl std::fmt::Display for Colour {
     }
 }
 
-/// Eleven even steps of viridis (Smith and van der Walt 2015, CC0).
+/// Eleven evenly spaced colours of viridis (Smith and van der Walt 2015, CC0).
 const VIRIDIS: [Colour; 11] = [
     Colour(0x44, 0x01, 0x54),
     Colour(0x48, 0x25, 0x76),
@@ -26,7 +26,7 @@ const VIRIDIS: [Colour; 11] = [
     Colour(0xfd, 0xe7, 0x25),
 ];
 
-/// From pale yellow to dark red: the upper end stands out, on paper too.
+/// A scale from pale yellow to dark red, whose upper end stands out, also in print.
 const REDS: [Colour; 5] = [
     Colour(0xff, 0xfa, 0xd6),
     Colour(0xfe, 0xd9, 0x76),
@@ -35,12 +35,12 @@ const REDS: [Colour; 5] = [
     Colour(0x6e, 0x08, 0x26),
 ];
 
-/// The colour of a share from 0 to 1 of a range whose ends are neither good nor bad.
+/// Returns the colour for a fraction from 0 to 1 of a range whose ends are neither good nor bad.
 pub fn viridis(share: f64) -> Colour {
     between(&VIRIDIS, share)
 }
 
-/// The colour of a share from 0 to 1 of a range whose upper end is bad.
+/// Returns the colour for a fraction from 0 to 1 of a range whose upper end is bad.
 pub fn reds(share: f64) -> Colour {
     between(&REDS, share)
 }
@@ -51,14 +51,14 @@ impl Colour {
     /// White.
     pub const WHITE: Colour = Colour(255, 255, 255);
 
-    /// The colour at a share from 0 to 1 of the way to another.
+    /// Blends with another colour; `share`, from 0 to 1, is the weight of the other one.
     pub fn mix(self, to: Colour, share: f64) -> Colour {
         let part =
             |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * share).round() as u8;
         Colour(part(self.0, to.0), part(self.1, to.1), part(self.2, to.2))
     }
 
-    /// Black or white, whichever is easier to read on this colour (relative luminance of WCAG 2).
+    /// Returns black or white, whichever is easier to read on this colour (by the relative luminance of WCAG 2).
     pub fn ink(self) -> Colour {
         let linear = |c: u8| {
             let c = f64::from(c) / 255.0;
@@ -94,13 +94,14 @@ const OKABE_ITO: [Colour; 7] = [
     Colour(0xcc, 0x79, 0xa7),
 ];
 
-/// The colour of the i-th of many things that have no order; after seven, lighter ones.
+/// Returns a colour for the i-th of several unordered items; after seven, lighter colours follow.
 pub fn distinct(i: usize) -> Colour {
     let lighter = (i / OKABE_ITO.len() % 4) as f64 * 0.22;
     OKABE_ITO[i % OKABE_ITO.len()].mix(Colour::WHITE, lighter)
 }
 
-/// As [`distinct`], dark enough for a thin line on white: without yellow, and darker after seven.
+/// Works like [`distinct`], but the colours are dark enough for a thin line on white: there is no yellow, and darker
+/// colours follow.
 pub fn distinct_line(i: usize) -> Colour {
     const ORDER: [usize; 6] = [5, 4, 2, 6, 1, 0];
     let darker = (i / ORDER.len() % 3) as f64 * 0.35;

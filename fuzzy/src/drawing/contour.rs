@@ -1,9 +1,10 @@
 //! Contour lines by marching squares.
 
-/// A piece of a contour line between two points, each in cells from the first one.
+/// A segment of a contour line. Coordinates are in cells from the first cell.
 pub(super) type Piece = [(f64, f64); 2];
 
-/// The pieces of the line at `level` through values at the corners of a grid; cells with an unknown corner have none.
+/// Returns the segments of the line at `level` through values at the corners of a grid; cells with an unknown corner
+/// have none.
 pub(super) fn pieces(
     columns: usize,
     rows: usize,
@@ -13,7 +14,7 @@ pub(super) fn pieces(
     let mut pieces = Vec::new();
     for i in 0..columns.saturating_sub(1) {
         for j in 0..rows.saturating_sub(1) {
-            // Around the cell: lower left, lower right, upper right, upper left.
+            // The corners of the cell: lower left, lower right, upper right, upper left.
             let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
             let values = corners.map(|(i, j)| value(i, j));
             let [Some(a), Some(b), Some(c), Some(d)] = values else {
@@ -33,7 +34,7 @@ pub(super) fn pieces(
             }
             match crossings[..] {
                 [p, q] => pieces.push([p, q]),
-                // A saddle: the mean of the corners decides which of them are joined.
+                // A saddle: the mean of the corners determines which points are connected.
                 [p, q, r, s] => {
                     let middle = values.iter().sum::<f64>() / 4.0;
                     if (middle >= level) == (a >= level) {
@@ -49,10 +50,10 @@ pub(super) fn pieces(
     pieces
 }
 
-/// Joins pieces that meet into lines.
+/// Joins adjacent segments to lines.
 pub(super) fn lines(mut pieces: Vec<Piece>) -> Vec<Vec<(f64, f64)>> {
     let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).abs() + (a.1 - b.1).abs() < 1e-9;
-    // A line through a node of the grid leaves pieces of length 0 in the cells around it.
+    // A line through a node of the grid has segments of length 0 in the surrounding cells.
     pieces.retain(|[first, second]| !near(*first, *second));
     let mut lines = Vec::new();
     while let Some([first, second]) = pieces.pop() {

@@ -1,4 +1,4 @@
-//! The terms of a variable, and an evaluation with its reasons, as SVG.
+//! Drawings of the terms of a variable, and of explanations, as SVG.
 
 use super::{
     colour::{Colour, distinct, distinct_line},
@@ -13,15 +13,15 @@ use crate::{
 };
 
 const WIDTH: f64 = 640.0;
-/// The height of the frame of a variable in an explanation, and of all that belongs to it.
+/// The height of the frame of a variable in an explanation, and the height including its labels.
 const FRAME: f64 = 96.0;
 const BLOCK: f64 = 166.0;
-/// The length of the bar of a rule of strength 1.
+/// The length of the bar of a rule with strength 1.
 const RULE_BAR: f64 = 60.0;
-/// The even steps at which a membership function is drawn.
+/// The number of steps at which a membership function is drawn.
 const STEPS: usize = 200;
 
-/// The SVG of the terms of a variable: their membership functions and, where a value is given, the degree of each there.
+/// Returns an SVG of the terms of a variable: their membership functions and, if a value is given, their degrees at it.
 pub fn terms_svg(variable: &Variable, at: Option<f64>) -> String {
     let mut sheet = Sheet::new(WIDTH, 330.0);
     let title = titled(&variable.name, variable.unit.as_deref());
@@ -37,7 +37,8 @@ pub fn terms_svg(variable: &Variable, at: Option<f64>) -> String {
     sheet.finish(&format!("the terms of {title}"))
 }
 
-/// The SVG of an explanation: the degrees of the inputs' terms, the aggregated set of each output, the rules that fired.
+/// Returns an SVG of an explanation: the degrees of the inputs' terms, the aggregated set of each output, and the rules
+/// that fired.
 ///
 /// `model` is the rule set that was explained.
 pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
@@ -147,7 +148,7 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
     sheet.finish(&format!("{}: an evaluation with its reasons", model.name))
 }
 
-/// The value of an output, and the values of outputs that it reads.
+/// Returns the value of an output, with the values of the outputs that it reads.
 fn titles(output: &ExplainedOutput, variable: &Variable, all: &Explanation) -> String {
     let answer = answer(output, variable, all);
     match read_values(output, all) {
@@ -156,7 +157,7 @@ fn titles(output: &ExplainedOutput, variable: &Variable, all: &Explanation) -> S
     }
 }
 
-/// The outputs that an output reads, each with its value.
+/// Returns the outputs that an output reads, each with its value.
 pub(super) fn read_values(output: &ExplainedOutput, all: &Explanation) -> Vec<String> {
     let reads = all
         .outputs
@@ -169,7 +170,7 @@ pub(super) fn read_values(output: &ExplainedOutput, all: &Explanation) -> Vec<St
     reads.collect()
 }
 
-/// The value of an output in words.
+/// Returns a description of the value of an output.
 pub(super) fn answer(output: &ExplainedOutput, variable: &Variable, all: &Explanation) -> String {
     let unit = variable.unit.iter().map(|unit| format!(" {unit}"));
     let unit: String = unit.collect();
@@ -200,22 +201,22 @@ pub(super) fn answer(output: &ExplainedOutput, variable: &Variable, all: &Explan
     }
 }
 
-/// Eight significant digits, without trailing zeros.
+/// Formats a number with eight significant digits, without trailing zeros.
 pub(super) fn digits(x: f64) -> String {
     let rounded: f64 = format!("{x:.7e}").parse().unwrap_or(x);
     rounded.to_string()
 }
 
-/// The implied set of a rule, and its shade.
+/// The implied set of a rule, with its colour.
 type Area<'a> = (&'a [(f64, f64)], Colour);
 
-/// A number of a Takagi-Sugeno output, its weight, its colour and what is said of it.
+/// A number of a Takagi-Sugeno output: value, weight, colour and label.
 pub(super) type Number = (f64, f64, Colour, String);
 
-/// The numbers of a Takagi-Sugeno output in a frame, each as a stick as high as its weight.
+/// Draws the numbers of a Takagi-Sugeno output, each as a stick whose height is its weight.
 pub(super) fn sticks(sheet: &mut Sheet, frame: &Frame, variable: &Variable, numbers: &[Number]) {
     let ends = numbers.iter().map(|(value, ..)| *value);
-    // A number may lie outside the range.
+    // A number may be outside the range.
     let x = Scale::new(
         ends.clone().fold(variable.low, f64::min),
         ends.fold(variable.high, f64::max),
@@ -234,8 +235,8 @@ pub(super) fn sticks(sheet: &mut Sheet, frame: &Frame, variable: &Variable, numb
     sheet.keys(frame.right() + 14.0, frame.top, &keys);
 }
 
-/// The terms of a variable in a frame: their membership functions, the implied sets of rules, a value and the degrees there.
-/// Terms that were others `before` stand there dashed.
+/// Draws the terms of a variable: membership functions, implied sets of rules, a value, and the degrees at it. The
+/// previous shapes of terms that differ in `before` are dashed.
 pub(super) fn terms(
     sheet: &mut Sheet,
     frame: &Frame,
@@ -288,7 +289,7 @@ pub(super) fn terms(
     sheet.keys(frame.right() + 14.0, frame.top, &keys);
 }
 
-/// A value, marked over the height of a frame.
+/// Marks a value over the height of a frame.
 fn marker(sheet: &mut Sheet, frame: &Frame, x: Scale, value: Option<f64>) {
     if let Some(value) = value {
         let share = x.share(value).clamp(0.0, 1.0);
@@ -296,7 +297,8 @@ fn marker(sheet: &mut Sheet, frame: &Frame, x: Scale, value: Option<f64>) {
     }
 }
 
-/// The membership function of a term over the range: even steps, and both sides of each corner.
+/// Returns points of the membership function of a term over the range: evenly spaced ones, and both sides of each
+/// corner.
 fn membership(variable: &Variable, term: usize) -> Vec<(f64, f64)> {
     let Some(term) = variable.terms.get(term) else {
         return Vec::new();

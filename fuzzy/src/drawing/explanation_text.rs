@@ -1,4 +1,4 @@
-//! An evaluation with its reasons, as text.
+//! Explanations as text.
 
 use std::fmt::Write as _;
 
@@ -12,13 +12,14 @@ use crate::{
     model::{Model, Variable},
 };
 
-/// The length of a bar of degree 1.
+/// The length of a bar for degree 1.
 const BAR: usize = 20;
-/// Columns and rows of the picture of an aggregated set.
+/// The number of columns and rows of the drawing of an aggregated set.
 const COLUMNS: usize = 60;
 const ROWS: usize = 6;
 
-/// An explanation as text: the degrees of the inputs' terms, the rules that fired, the aggregated set of each output.
+/// Formats an explanation as text: the degrees of the inputs' terms, the rules that fired, and the aggregated set of
+/// each output.
 ///
 /// `model` is the rule set that was explained.
 pub fn explanation_text(model: &Model, explanation: &Explanation) -> String {
@@ -52,7 +53,7 @@ fn add_input(text: &mut String, variable: &Variable, input: &ExplainedInput) {
     add_degrees(text, &input.terms, input.value);
 }
 
-/// A line for each term: the degree of a value in it, as a number and as a bar.
+/// Adds a line per term: the degree of a value in it, as a number and as a bar.
 fn add_degrees(text: &mut String, terms: &[Degree], value: f64) {
     let terms = terms.iter().map(|term| (visible(&term.term), term.degree));
     let terms: Vec<_> = terms.collect();
@@ -117,7 +118,7 @@ fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, 
     }
 }
 
-/// The aggregated set, its degrees from 0 to 1 upwards, the value marked below.
+/// Adds the aggregated set, with degrees from 0 at the bottom to 1 at the top, and the value marked below.
 fn add_set(text: &mut String, output: &ExplainedOutput, range: Scale) {
     let last = output.set.len() - 1;
     let eighths = |column: usize| {

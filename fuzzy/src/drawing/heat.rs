@@ -1,4 +1,4 @@
-//! A slice as a heat map with contour lines, or as a curve where it has one axis.
+//! A slice as a heat map with contour lines, or as a curve if it has only one axis.
 
 use std::fmt::Write as _;
 
@@ -14,12 +14,12 @@ use super::{
 /// The colour of cells without a value.
 const UNKNOWN: Colour = Colour(0xd9, 0xd9, 0xd9);
 
-/// Colours differ in steps of this share of the range; finer steps only make the file larger.
+/// The number of steps in which colours change over the range; more steps only increase the file size.
 const COLOURS: f64 = 100.0;
 
-/// The SVG of a slice: a heat map with contour lines, or a curve where there is one axis.
+/// Returns an SVG of a slice: a heat map with contour lines, or a curve if there is only one axis.
 ///
-/// Hatched cells (dashed parts of a curve) were filled in, grey cells have no value.
+/// Hatched cells (dashed sections of a curve) were filled by interpolation; grey cells have no value.
 pub fn map_svg(slice: &Slice) -> String {
     let mut sheet = Sheet::map();
     sheet.heading(Frame::MAP.left, &slice.title(), &slice.held_text());
@@ -47,12 +47,12 @@ pub fn map_svg(slice: &Slice) -> String {
     sheet.finish(&whole_title(slice))
 }
 
-/// The colour of a share of the range, in steps.
+/// Returns the colour for a fraction of the range, in steps.
 pub(super) fn step_colour(share: f64) -> Colour {
     viridis((share * COLOURS).round() / COLOURS)
 }
 
-/// What is drawn and where the other inputs are held.
+/// Returns the title of the slice with the values of the fixed inputs.
 pub(super) fn whole_title(slice: &Slice) -> String {
     [slice.title(), slice.held_text()]
         .join(" ")
@@ -68,13 +68,13 @@ pub(super) fn axes(sheet: &mut Sheet, slice: &Slice, y: Scale, y_title: &str) {
     );
 }
 
-/// Fills the frame cell by cell, and hatches the cells that were filled in.
+/// Fills the frame cell by cell, and hatches the cells that were filled.
 pub(super) fn cells(
     sheet: &mut Sheet,
     slice: &Slice,
     colour: impl Fn(usize, usize) -> Option<Colour>,
 ) {
-    // A cell reaches half way to its neighbours; those at the ends are cut by the frame.
+    // A cell extends half way to its neighbours; cells at the ends are cut off by the frame.
     let edge = |i: usize, count: usize| {
         if i == count {
             return 1.0;
@@ -94,7 +94,7 @@ pub(super) fn cells(
     };
     runs(columns, rows, colour, |column, row, length, colour| {
         let area = area(column, row, length);
-        // A little larger, so that no seam shows between neighbours.
+        // Slightly larger, so that no gap is visible between neighbours.
         let area = Frame {
             width: area.width + 0.3,
             height: area.height + 0.3,
@@ -127,7 +127,7 @@ pub(super) fn cells(
     }
 }
 
-/// Calls `draw` with column, row, length and look of each run of cells in a row that look the same.
+/// Calls `draw` with the column, row, length and look of each run of equal cells in a row.
 pub fn runs<L: PartialEq + Copy>(
     columns: usize,
     rows: usize,
@@ -160,7 +160,7 @@ fn contours(sheet: &mut Sheet, slice: &Slice) {
             sheet.through("polyline", &points, format_args!(r#"class="halo""#));
             sheet.through("polyline", &points, format_args!(r#"class="contour""#));
         }
-        // The longest line of a level carries its number.
+        // The longest line of a level is labelled.
         if let Some(line) = lines.first().filter(|line| line.len() > 4)
             && let Some(middle) = line.get(line.len() / 2)
         {
@@ -170,7 +170,7 @@ fn contours(sheet: &mut Sheet, slice: &Slice) {
     }
 }
 
-/// The output over one input; filled parts are dashed.
+/// Draws the output over one input; filled sections are dashed.
 pub(super) fn curve(sheet: &mut Sheet, frame: &Frame, slice: &Slice) {
     const DRAWN: &str = r##"fill="none" stroke="#2a788e" stroke-width="2.5""##;
     const DASHED: &str =
@@ -188,7 +188,7 @@ pub(super) fn curve(sheet: &mut Sheet, frame: &Frame, slice: &Slice) {
         let at = |value| frame.at(slice.x.scale().share(*x), slice.share(value));
         let point = cell.value.map(at);
         if this != style {
-            // The parts meet.
+            // Adjacent sections share their point.
             piece.extend(point);
         }
         if this != style || point.is_none() {

@@ -1,4 +1,4 @@
-//! A map as text: one character a cell.
+//! Maps as text, with one character per cell.
 
 use std::fmt::Write as _;
 
@@ -10,19 +10,20 @@ use super::{
 };
 use crate::model::Model;
 
-/// Columns and rows of a table of values.
+/// The number of columns and rows of a table of values.
 const TABLE: usize = 6;
 
-/// A cell is covered where its coverage is at least this.
+/// The coverage from which a cell counts as covered.
 const COVERED: f64 = 0.5;
 
-/// The most columns and rows of a picture.
+/// The maximum number of columns and rows of a drawing.
 const MOST_COLUMNS: usize = 61;
 const MOST_ROWS: usize = 26;
 
-/// A slice as text: a digit for the tenth of the range in which a value lies, a letter where it was filled in.
+/// Formats a slice as text: a digit for the tenth of the range that contains the value, or a letter if the value was
+/// filled by interpolation.
 ///
-/// `paint` gives each cell its character and its colour on a terminal, or the character alone:
+/// `paint` formats each cell, given its character and its colour on a terminal. Without colours:
 /// `|cell, _| cell.to_string()`.
 pub fn map_text(slice: &Slice, paint: impl Fn(char, Option<Colour>) -> String) -> String {
     let mut text = heading(slice, "");
@@ -59,7 +60,7 @@ pub fn map_text(slice: &Slice, paint: impl Fn(char, Option<Colour>) -> String) -
     text
 }
 
-/// A slice as text: a character for the rule that dominates each cell, and the list of the rules.
+/// Formats a slice as text: a character for the dominant rule of each cell, and a list of these rules.
 pub fn rules_text(
     slice: &Slice,
     model: &Model,
@@ -101,9 +102,10 @@ pub fn rules_text(
     text
 }
 
-/// The values of a slice at a few points of its axes, with the decimals of about a ten-thousandth of the output's range, and how many cells have a coverage below 0.5.
+/// Formats the values of a slice at a few points of its axes, with a precision of about a ten-thousandth of the
+/// output's range, and the number of cells with a coverage below 0.5.
 ///
-/// Below [`map_text`] it makes a snapshot in which a small change shows too.
+/// Appended to [`map_text`], it gives a snapshot in which small changes are visible too.
 ///
 /// # Example: a snapshot of a rule set
 /// ```
@@ -167,9 +169,9 @@ pub fn values_text(slice: &Slice) -> String {
     text
 }
 
-/// 2 decimals for a range from 0 to 100, 4 for one from 0 to 1.
+/// Returns the number of decimals: 2 for a range from 0 to 100, 4 for a range from 0 to 1.
 fn decimals(width: f64) -> usize {
-    /// More do not fit the columns.
+    /// The maximum number of decimals that fit the columns.
     const MOST: f64 = 5.0;
     (4.0 - libm::floor(libm::log10(width))).clamp(0.0, MOST) as usize
 }
@@ -181,13 +183,13 @@ fn heading(slice: &Slice, more: &str) -> String {
     visible(&heading).into_owned() + "\n"
 }
 
-/// A line that may hold names. Writing to a String cannot fail.
+/// Writes a line that may contain names. Writing to a String cannot fail.
 fn line(text: &mut String, arguments: std::fmt::Arguments<'_>) {
     let line = arguments.to_string();
     let _ = writeln!(text, "{}", visible(&line));
 }
 
-/// A character for the i-th rule; after 36 all the same.
+/// Returns the character for the i-th rule; the same one for all rules after 36.
 fn mark(i: usize) -> char {
     let digit = u32::try_from(i).ok().and_then(|i| char::from_digit(i, 36));
     digit.map_or('+', |c| c.to_ascii_uppercase())

@@ -1,21 +1,22 @@
-//! Pictures of rule sets, as SVG and as text.
+//! Drawings of rule sets, as SVG and as text.
 //!
-//! The drawing kit takes plain data and gives text: it opens no file, knows no terminal, and has no dependencies.
+//! All functions take plain data and return text. They open no files, do not depend on a terminal, and need no other
+//! crate.
 //!
-//! | picture | as SVG | as text |
+//! | drawing | as SVG | as text |
 //! |---|---|---|
 //! | the terms of a variable | [`terms_svg`] | |
 //! | the terms of all variables | [`variables_svg`] | [`variables_text`] |
-//! | terms that moved, as they were and as they are | [`moved_svg`] | |
-//! | an evaluation with its reasons | [`explanation_svg`] | [`explanation_text`] |
-//! | rules that do not fire, and what changes next | | [`silent_text`], [`what_if_text`] |
+//! | the differences between the terms of two models | [`moved_svg`] | |
+//! | an explanation of an evaluation | [`explanation_svg`] | [`explanation_text`] |
+//! | rules that do not fire, and the nearest changes | | [`silent_text`], [`what_if_text`] |
 //! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`], [`values_text`] |
-//! | the rule that dominates each part of a map | [`rules_svg`] | [`rules_text`] |
-//! | lines over a number ([`Plot`]) | [`plots_svg`] | |
+//! | the dominant rule in each part of a map | [`rules_svg`] | [`rules_text`] |
+//! | line plots ([`Plot`]) | [`plots_svg`] | |
 //!
-//! Names and texts in a picture are escaped: no name can add markup, or act on a terminal ([`visible`]).
+//! Names and texts in a drawing are escaped: they can neither add markup nor control a terminal ([`visible`]).
 //!
-//! # Example: the terms of a variable, with the degree of each at 8
+//! # Example: the terms of a variable, with their degrees at 8
 //! ```
 //! use fuzzy::model::{MembershipFunction, Variable};
 //!

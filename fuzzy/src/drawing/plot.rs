@@ -1,4 +1,4 @@
-//! Lines over a number, in a frame with two scales.
+//! Line plots with two axes.
 
 use super::{
     colour::{Colour, distinct_line},
@@ -7,36 +7,36 @@ use super::{
     text::cut,
 };
 
-/// Lines over a number, in a frame with two scales.
+/// A line plot with two axes.
 #[derive(Debug, Clone)]
 pub struct Plot {
-    /// What it shows.
+    /// The title of the plot.
     pub title: String,
     /// The scale and the title of the horizontal axis.
     pub x: (Scale, String),
     /// The scale and the title of the vertical axis.
     pub y: (Scale, String),
-    /// The lines; the last is on top.
+    /// The lines; the last one is on top.
     pub series: Vec<Series>,
 }
 
 /// One line of a plot.
 #[derive(Debug, Clone)]
 pub struct Series {
-    /// Its name in the legend; a line without a name is not in it.
+    /// The name in the legend; a line without a name is not listed.
     pub name: String,
-    /// Its colour.
+    /// The colour.
     pub colour: Colour,
-    /// Its dashes as SVG writes them: `7 3`; `none` for a solid line.
+    /// The dashes in the format of SVG: `7 3`; `none` for a solid line.
     pub dash: &'static str,
     /// Whether each point is marked by a dot.
     pub dots: bool,
-    /// Its points, in the units of the axes.
+    /// The points, in the units of the axes.
     pub points: Vec<(f64, f64)>,
 }
 
 impl Series {
-    /// The i-th line of a plot: lines differ in colour and in dashes.
+    /// Creates the i-th line of a plot; lines differ in colour and in dashes.
     pub fn new(i: usize, name: impl Into<String>, points: Vec<(f64, f64)>) -> Series {
         const DASHES: [&str; 4] = ["none", "7 3", "2 3", "9 3 2 3"];
         Series {
@@ -54,13 +54,13 @@ impl Series {
     }
 }
 
-/// The side of a plot, the room around it, and the width of the legend.
+/// The side of a plot, the margins, and the width of the legend.
 const SIDE: f64 = 360.0;
 const LEFT: f64 = 70.0;
 const TOP: f64 = 44.0;
 const LEGEND: f64 = 260.0;
 
-/// The SVG of plots side by side, with one legend: the lines of the first plot.
+/// Returns an SVG of plots side by side, with a common legend that lists the lines of the first plot.
 pub fn plots_svg(title: &str, plots: &[Plot]) -> String {
     let keys = plots.first().map_or(&[][..], |plot| &plot.series);
     let keys: Vec<&Series> = keys
@@ -91,7 +91,7 @@ pub fn plots_svg(title: &str, plots: &[Plot]) -> String {
     sheet.finish(title)
 }
 
-/// Draws one plot into a frame of a sheet.
+/// Draws a plot into a frame of a sheet.
 pub(super) fn draw(sheet: &mut Sheet, frame: &Frame, plot: &Plot) {
     let ((x, x_title), (y, y_title)) = (&plot.x, &plot.y);
     sheet.grid(frame, *y);

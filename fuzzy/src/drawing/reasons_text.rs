@@ -1,4 +1,4 @@
-//! Rules that do not fire, and what changes next, as text.
+//! Rules that do not fire, and the nearest changes, as text.
 
 use std::fmt::Write as _;
 
@@ -11,13 +11,14 @@ use crate::{
     model::Model,
 };
 
-/// A change that is nearer, as a share of the range, is as near as the search finds one.
+/// The distance, as a fraction of the range, below which a change counts as adjacent; this is the resolution of the
+/// search.
 const NEXT: f64 = 1e-9;
 
-/// The most rules that are listed.
+/// The maximum number of rules that are listed.
 const MOST_RULES: usize = 20;
 
-/// The rules that do not fire as text, each with the reason in a line below it; empty where all fire.
+/// Formats the rules that do not fire, each with the reason on the next line; empty if all rules fire.
 pub fn silent_text(silent: &[SilentRule]) -> String {
     let mut text = String::new();
     if silent.is_empty() {
@@ -36,7 +37,7 @@ pub fn silent_text(silent: &[SilentRule]) -> String {
     text
 }
 
-/// The nearest changes as text, a line for each; empty where nothing changes over the ranges of the inputs.
+/// Formats the nearest changes, one per line; empty if nothing changes over the ranges of the inputs.
 pub fn what_if_text(model: &Model, changes: &[Change]) -> String {
     let mut text = String::new();
     let rows: Vec<[String; 3]> = changes.iter().map(|change| row(model, change)).collect();
@@ -57,7 +58,7 @@ pub fn what_if_text(model: &Model, changes: &[Change]) -> String {
     text
 }
 
-/// `temperature`, `from 25 up (+1)`, `` rule 3 dominates `fan`: 62.5 ``.
+/// Returns the columns of a change: `temperature`, `from 25 up (+1)`, `` rule 3 dominates `fan`: 62.5 ``.
 fn row(model: &Model, change: &Change) -> [String; 3] {
     let mut inputs = model.inputs.iter();
     let input = inputs.find(|input| input.name == change.input);
@@ -98,7 +99,7 @@ fn row(model: &Model, change: &Change) -> [String; 3] {
     ]
 }
 
-/// Six significant digits: further ones are of the search.
+/// Formats a number with six significant digits; further digits are artefacts of the search.
 fn shown(x: f64) -> String {
     let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
     number(rounded, 12)

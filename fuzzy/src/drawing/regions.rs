@@ -1,4 +1,4 @@
-//! Which rule dominates where: areas with the numbers of their rules.
+//! A map of the dominant rules: areas labelled with rule numbers.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use super::{
 };
 use crate::model::Model;
 
-/// Rules in the legend; the others are known by their numbers in the picture.
+/// The maximum number of rules in the legend; further rules appear only as numbers in the drawing.
 const NAMED: usize = 20;
 
-/// The SVG of a slice in which each area shows the number of the rule that dominates it, counted from 1.
+/// Returns an SVG of a slice in which each area is labelled with the number of its dominant rule, counted from 1.
 pub fn rules_svg(slice: &Slice, model: &Model) -> String {
     // The cells that each rule dominates.
     let mut areas: BTreeMap<usize, Vec<(usize, usize)>> = BTreeMap::new();

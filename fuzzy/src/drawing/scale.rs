@@ -1,6 +1,6 @@
 //! A range of values along an axis.
 
-/// A range of values along an axis, `low` below `high`.
+/// A range of values along an axis; `low` is below `high`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     /// The lower end.
@@ -10,22 +10,22 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// A scale from one value to another.
+    /// Creates a scale from one value to another.
     pub const fn new(low: f64, high: f64) -> Scale {
         Scale { low, high }
     }
 
-    /// The position of a value: 0 at the lower end, 1 at the upper one.
+    /// Returns the position of a value: 0 at the lower end, 1 at the upper end.
     pub fn share(self, value: f64) -> f64 {
         (value - self.low) / (self.high - self.low)
     }
 
-    /// The value at a position: the inverse of [`Scale::share`].
+    /// Returns the value at a position: the inverse of [`Scale::share`].
     pub fn value(self, share: f64) -> f64 {
         self.low + share * (self.high - self.low)
     }
 
-    /// Round numbers within the range, ends included, that divide it into about so many pieces.
+    /// Returns round numbers within the range, including its ends, that divide it into about `pieces` parts.
     pub fn ticks(self, pieces: f64) -> Vec<f64> {
         let rough = (self.high - self.low) / pieces;
         if rough <= 0.0 || !rough.is_finite() {
@@ -43,7 +43,7 @@ impl Scale {
     }
 }
 
-/// At most `most` of so many points, the first and the last among them.
+/// Returns the indices of at most `most` of `points` points, including the first and the last one.
 pub(super) fn thinned(points: usize, most: usize) -> Vec<usize> {
     let shown = points.min(most).max(2);
     (0..shown)

@@ -1,4 +1,4 @@
-//! An SVG document under construction: shapes, texts, a frame with axes.
+//! An SVG document under construction: shapes, texts, and frames with axes.
 
 use std::fmt::{self, Write as _};
 
@@ -9,37 +9,37 @@ use super::{
     text::{Escaped, cut, number, short, wrapped},
 };
 
-/// An SVG document under construction. Lengths are in pixels, from the upper left corner.
+/// An SVG document under construction. Lengths are in pixels, relative to the upper left corner.
 pub struct Sheet {
     width: f64,
     height: f64,
-    /// Room above the upper edge, for headings of more than one line.
+    /// Additional room above the upper edge, for headings with more than one line.
     above: f64,
     style: String,
     body: String,
 }
 
-/// The area of a picture that holds the data, in pixels.
+/// The area of a drawing that contains the data, in pixels.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {
-    /// Its left edge.
+    /// The left edge.
     pub left: f64,
-    /// Its upper edge.
+    /// The upper edge.
     pub top: f64,
-    /// Its width.
+    /// The width.
     pub width: f64,
-    /// Its height.
+    /// The height.
     pub height: f64,
 }
 
-/// Which part of a text stands at its position.
+/// The part of a text that is aligned with its position.
 #[derive(Debug, Clone, Copy)]
 pub enum Anchor {
-    /// Its beginning.
+    /// The start of the text.
     Start,
-    /// Its middle.
+    /// The middle of the text.
     Middle,
-    /// Its end.
+    /// The end of the text.
     End,
 }
 
@@ -53,11 +53,11 @@ impl fmt::Display for Anchor {
     }
 }
 
-/// The size of the pictures of a map.
+/// The size of the drawing of a map.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 500.0;
 
-/// About the width of a character of a label and of a heading.
+/// The approximate width of a character in a label and in a heading.
 pub(super) const LABEL_WIDTH: f64 = 6.6;
 const HEADING_WIDTH: f64 = 9.0;
 
@@ -70,7 +70,7 @@ const STYLE: &str = "rect{shape-rendering:crispEdges}text{font-family:system-ui,
 .series{fill:none;stroke-width:2}.marker{stroke:#1a1a1a;stroke-width:1.5;stroke-dasharray:4 3}";
 
 impl Frame {
-    /// The frame of a map, with room for a legend on the right.
+    /// The frame of a map, which leaves room for a legend on the right.
     pub(super) const MAP: Frame = Frame {
         left: 70.0,
         top: 44.0,
@@ -78,7 +78,7 @@ impl Frame {
         height: 380.0,
     };
 
-    /// The point at shares from 0 to 1 of the width and, counted upwards, of the height.
+    /// Returns the point at fractions from 0 to 1 of the width and of the height, which counts upwards.
     pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.left + x * self.width,
@@ -86,22 +86,22 @@ impl Frame {
         )
     }
 
-    /// The right edge.
+    /// Returns the right edge.
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    /// The lower edge.
+    /// Returns the lower edge.
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
-    /// The ticks of the vertical axis: about one for 45 pixels, and at most 5.
+    /// Returns the ticks of the vertical axis: about one per 45 pixels, and at most 5.
     fn ticks(&self, y: Scale) -> Vec<f64> {
         y.ticks((self.height / 45.0).clamp(2.0, 5.0))
     }
 
-    /// The position of a text that names a point, moved inside the frame.
+    /// Returns the position of a label for a point, moved inside the frame.
     pub(super) fn label_at(&self, x: f64, y: f64) -> (f64, f64) {
         let (x, y) = self.at(x, y);
         (
@@ -112,12 +112,12 @@ impl Frame {
 }
 
 impl Sheet {
-    /// An empty white sheet with the styles of the kit.
+    /// Creates an empty white sheet with the default styles.
     pub fn new(width: f64, height: f64) -> Sheet {
         Sheet::styled(width, height, STYLE)
     }
 
-    /// An empty sheet with styles of your own. `rect.paper` is its ground.
+    /// Creates an empty sheet with custom styles. `rect.paper` is its background.
     pub fn styled(width: f64, height: f64, style: impl Into<String>) -> Sheet {
         Sheet {
             width,
@@ -132,14 +132,14 @@ impl Sheet {
         Sheet::new(WIDTH, HEIGHT)
     }
 
-    /// Adds markup as it is: escape what comes from outside by [`Escaped`].
+    /// Adds markup verbatim. Text from the input must be escaped with [`Escaped`].
     pub fn push(&mut self, markup: fmt::Arguments<'_>) {
         // Writing to a String cannot fail.
         let _ = self.body.write_fmt(markup);
         self.body.push('\n');
     }
 
-    /// A text of a class; nothing where it is empty.
+    /// Adds a text with a class; an empty text is ignored.
     pub fn text(&mut self, (x, y): (f64, f64), anchor: Anchor, class: &str, text: &str) {
         if text.is_empty() {
             return;
@@ -150,7 +150,7 @@ impl Sheet {
         ));
     }
 
-    /// A title along an axis, turned clockwise about its middle.
+    /// Adds a title along an axis, rotated clockwise about its middle.
     pub fn turned(&mut self, (x, y): (f64, f64), degrees: f64, text: &str) {
         if text.is_empty() {
             return;
@@ -161,13 +161,14 @@ impl Sheet {
         ));
     }
 
-    /// A number over the data. Its white edge is a text of its own: not every viewer knows `paint-order`.
+    /// Adds a number on top of the data. Its white outline is a separate text, because not all viewers support
+    /// `paint-order`.
     pub(super) fn text_on(&mut self, at: (f64, f64), text: &str) {
         self.text(at, Anchor::Middle, "under", text);
         self.text(at, Anchor::Middle, "on", text);
     }
 
-    /// A rectangle; `paint` is the rest of its attributes.
+    /// Adds a rectangle; `paint` contains its remaining attributes.
     pub fn rect(&mut self, frame: Frame, paint: fmt::Arguments<'_>) {
         let (x, y) = (px(frame.left), px(frame.top));
         let (width, height) = (px(frame.width), px(frame.height));
@@ -176,7 +177,7 @@ impl Sheet {
         ));
     }
 
-    /// A straight line of a class.
+    /// Adds a straight line with a class.
     pub fn line(&mut self, from: (f64, f64), to: (f64, f64), class: &str) {
         let [x1, y1, x2, y2] = [from.0, from.1, to.0, to.1].map(px);
         self.push(format_args!(
@@ -184,7 +185,7 @@ impl Sheet {
         ));
     }
 
-    /// A line or, as `polygon`, an area through points; `paint` is the rest of its attributes.
+    /// Adds a line through points or, if `shape` is `polygon`, an area; `paint` contains its remaining attributes.
     pub fn through(&mut self, shape: &str, points: &[(f64, f64)], paint: fmt::Arguments<'_>) {
         if points.len() < 2 {
             return;
@@ -194,7 +195,7 @@ impl Sheet {
         self.push(format_args!(r#"<{shape} points="{points}" {paint}/>"#));
     }
 
-    /// A heading above `left`, and the lines below it, which may be long: the sheet grows upwards to hold them.
+    /// Adds a heading at `left`, and further lines below it. If they are long, the sheet grows upwards.
     pub fn heading(&mut self, left: f64, text: &str, more: &str) {
         let room = self.width - left - 8.0;
         let mut lines = vec![("heading", cut(text, (room / HEADING_WIDTH) as usize))];
@@ -210,12 +211,13 @@ impl Sheet {
         self.above = 24.0 - y;
     }
 
-    /// A frame with ticks and titles: the scale and the title of the horizontal axis, then of the vertical one.
+    /// Adds a frame with ticks and titles. `x` and `y` are the scales and titles of the horizontal and the vertical
+    /// axis.
     pub fn axes(&mut self, frame: &Frame, x: (Scale, &str), y: (Scale, &str)) {
         self.rect(*frame, format_args!(r#"class="frame""#));
         let (middle, bottom) = frame.at(0.5, 0.0);
         let (left, centre) = frame.at(0.0, 0.5);
-        // About one tick for 70 pixels, and at most 5.
+        // About one tick per 70 pixels, and at most 5.
         for tick in x.0.ticks((frame.width / 70.0).clamp(2.0, 5.0)) {
             let (x, _) = frame.at(x.0.share(tick), 0.0);
             self.line((x, bottom), (x, bottom + 5.0), "tick");
@@ -230,7 +232,7 @@ impl Sheet {
         self.turned((left - 52.0, centre), -90.0, y.1);
     }
 
-    /// Grid lines at the ticks of the vertical axis.
+    /// Adds grid lines at the ticks of the vertical axis.
     pub(super) fn grid(&mut self, frame: &Frame, y: Scale) {
         for tick in frame.ticks(y) {
             let share = y.share(tick);
@@ -238,7 +240,7 @@ impl Sheet {
         }
     }
 
-    /// Coloured squares with a text each, one below the other.
+    /// Adds coloured squares, each with a text, one below the other.
     pub(super) fn keys(&mut self, left: f64, top: f64, keys: &[(Colour, String)]) {
         let most = ((self.width - left - 20.0) / LABEL_WIDTH) as usize;
         for (i, (colour, text)) in keys.iter().enumerate() {
@@ -262,7 +264,7 @@ impl Sheet {
         }
     }
 
-    /// The colours of a map and what they stand for, right of its frame.
+    /// Adds the legend to the right of a map's frame: the colours and their values.
     pub(super) fn legend(&mut self, slice: &Slice) {
         const STEPS: u32 = 50;
         let bar = Frame {
@@ -290,7 +292,7 @@ impl Sheet {
             self.text((right + 7.0, y + 4.0), Anchor::Start, "label", &short(tick));
         }
         let title = cut(&slice.output_title(), 18);
-        // A long title ends at the edge of the sheet instead of beginning at the bar.
+        // A long title is aligned with the right edge of the sheet instead of the bar.
         let (x, anchor) = match title.chars().count() {
             0..15 => (bar.left, Anchor::Start),
             _ => (WIDTH - 8.0, Anchor::End),
@@ -298,7 +300,7 @@ impl Sheet {
         self.text((x, bar.top - 8.0), anchor, "label", &title);
     }
 
-    /// What hatching and grey mean, below a map.
+    /// Adds the meaning of hatched and grey cells below a map.
     pub(super) fn notes(&mut self, slice: &Slice) {
         let swatch = Frame {
             left: Frame::MAP.left,
@@ -331,7 +333,7 @@ impl Sheet {
         }
     }
 
-    /// The finished document. The title is read by screen readers and shown by browsers.
+    /// Returns the finished document. The title is read by screen readers and shown by browsers.
     pub fn finish(self, title: &str) -> String {
         let Sheet {
             width,
@@ -354,7 +356,7 @@ impl Sheet {
     }
 }
 
-/// A tenth of a pixel is as fine as a screen shows.
+/// Formats a length with a resolution of a tenth of a pixel; screens show no finer detail.
 pub(super) fn px(x: f64) -> String {
     number(x, 1)
 }

@@ -1,4 +1,4 @@
-//! The part of a decision map that a picture shows: one output over one or two inputs, the others held.
+//! The part of a decision map that is drawn: one output over one or two inputs, with the other inputs fixed.
 
 use super::{
     scale::Scale,
@@ -9,9 +9,9 @@ use crate::{
     model::{Model, Variable},
 };
 
-/// One output over one or two inputs, the others held at a value.
+/// One output over one or two inputs, with the other inputs fixed.
 ///
-/// Plain data: fill it from whatever answers, or make it of a [`DecisionMap`] by [`Slice::new`].
+/// This is plain data: construct it from any source, or convert a [`DecisionMap`] with [`Slice::new`].
 ///
 /// # Example: a curve over one input
 /// ```
@@ -48,42 +48,42 @@ pub struct Slice {
     pub range: Scale,
     /// The input along the horizontal axis.
     pub x: Axis,
-    /// The input along the vertical axis; `None` where there is one axis only.
+    /// The input along the vertical axis; `None` if there is only one axis.
     pub y: Option<Axis>,
-    /// The other inputs and the values they are held at.
+    /// The fixed inputs with their values.
     pub held: Vec<(String, f64)>,
-    /// How cells without a rule were filled; `None` where they were not.
+    /// The method by which cells without a rule were filled; `None` if they were not.
     pub filling: Option<String>,
-    /// The cells: for each point of `x`, one for each point of `y`.
+    /// The cells: for each point of `x`, one per point of `y`.
     pub cells: Vec<Cell>,
 }
 
 /// An input along an axis.
 #[derive(Debug, Clone)]
 pub struct Axis {
-    /// Its name.
+    /// The name of the input.
     pub name: String,
-    /// Its unit.
+    /// The unit of the input.
     pub unit: Option<String>,
-    /// Its values, rising evenly.
+    /// The values, evenly spaced in ascending order.
     pub points: Vec<f64>,
 }
 
 /// One cell of a slice.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Cell {
-    /// The value of the output; `None` where it is unknown.
+    /// The value of the output; `None` if it is unknown.
     pub value: Option<f64>,
     /// The largest firing strength of a rule.
     pub coverage: f64,
-    /// The index of the rule of the largest firing strength.
+    /// The index of the rule with the largest firing strength.
     pub rule: Option<usize>,
-    /// The distance to the nearest covered cell where the value was filled in from there.
+    /// The distance to the nearest covered cell, if the value was filled by interpolation.
     pub filled_from: Option<f64>,
 }
 
 impl Axis {
-    /// So many points of an input, evenly from one end of a part of its range to the other.
+    /// Creates an axis of `points` evenly spaced values over a part of the range of an input.
     pub fn new(variable: &Variable, part: Scale, points: usize) -> Axis {
         let last = points.saturating_sub(1).max(1) as f64;
         Axis {
@@ -93,7 +93,7 @@ impl Axis {
         }
     }
 
-    /// The part of the input's range that the axis shows.
+    /// Returns the part of the input's range that the axis shows.
     pub fn scale(&self) -> Scale {
         Scale {
             low: self.points.first().copied().unwrap_or(0.0),
@@ -101,14 +101,14 @@ impl Axis {
         }
     }
 
-    /// The name and the unit.
+    /// Returns the name and the unit.
     pub(super) fn title(&self) -> String {
         titled(&self.name, self.unit.as_deref())
     }
 }
 
 impl Slice {
-    /// A decision map as a slice; `None` unless it has one or two axes.
+    /// Converts a decision map to a slice; `None` unless it has one or two axes.
     pub fn new(model: &Model, map: &DecisionMap) -> Option<Slice> {
         let grid = map.grid();
         let axis = |axis: &crate::map::Axis| {
@@ -152,18 +152,18 @@ impl Slice {
         })
     }
 
-    /// The cell at a point of each axis; an empty one outside.
+    /// Returns the cell at a point of each axis; an empty one outside.
     pub fn cell(&self, x: usize, y: usize) -> Cell {
         let cell = self.cells.get(x * self.rows() + y);
         cell.copied().unwrap_or_default()
     }
 
-    /// The number of points along the horizontal axis.
+    /// Returns the number of points along the horizontal axis.
     pub fn columns(&self) -> usize {
         self.x.points.len()
     }
 
-    /// The number of points along the vertical axis; 1 where there is none.
+    /// Returns the number of points along the vertical axis; 1 if there is none.
     pub fn rows(&self) -> usize {
         self.y.as_ref().map_or(1, |y| y.points.len())
     }
@@ -176,18 +176,18 @@ impl Slice {
         self.cells.iter().any(|cell| cell.value.is_none())
     }
 
-    /// The position of a value in the output's range, in [0, 1].
+    /// Returns the position of a value in the output's range, in [0, 1].
     pub(super) fn share(&self, value: f64) -> f64 {
         self.range.share(value).clamp(0.0, 1.0)
     }
 
-    /// A line with the names of the rule set and the output, and the values of the inputs that are held.
+    /// Returns a line with the names of the rule set and the output, and the values of the fixed inputs.
     pub fn heading(&self) -> String {
         let heading = format!("{} {}", self.title(), self.held_text());
         visible(heading.trim_end()).into_owned()
     }
 
-    /// `rule set: output [unit]`.
+    /// Returns the title: `rule set: output [unit]`.
     pub(super) fn title(&self) -> String {
         format!("{}: {}", self.model, self.output_title())
     }
@@ -196,7 +196,7 @@ impl Slice {
         titled(&self.output, self.unit.as_deref())
     }
 
-    /// `at load = 0.5, at_limit = 0`; empty where no input is held.
+    /// Returns the values of the fixed inputs: `at load = 0.5, at_limit = 0`; empty if no input is fixed.
     pub(super) fn held_text(&self) -> String {
         let held = self.held.iter();
         let held: Vec<String> = held
@@ -208,7 +208,7 @@ impl Slice {
         }
     }
 
-    /// How cells were filled, in words.
+    /// Returns a description of the filling method.
     pub(super) fn filling_text(&self) -> &str {
         self.filling.as_deref().unwrap_or("filled")
     }

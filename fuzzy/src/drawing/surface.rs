@@ -1,4 +1,4 @@
-//! A slice as a surface in three dimensions, seen from above at a slant.
+//! A slice as a three-dimensional surface, viewed diagonally from above.
 
 use super::{
     colour::Colour,
@@ -9,18 +9,18 @@ use super::{
     text::short,
 };
 
-/// The most points along an axis; more only make the file larger.
+/// The maximum number of points along an axis; more points only increase the file size.
 const MOST_POINTS: usize = 41;
 
-/// The direction of view: turned about the vertical, then tipped, in degrees.
+/// The direction of view in degrees: rotation about the vertical axis, then tilt.
 const TURN_DEG: f64 = 35.0;
 const TIP_DEG: f64 = 28.0;
 
-/// The middle of the picture and its size, in pixels.
+/// The middle of the drawing and its size, in pixels.
 const MIDDLE: (f64, f64) = (280.0, 258.0);
 const SIZE: f64 = 285.0;
 
-/// Projects the unit cube onto the sheet, without perspective, so that equal heights stay equal.
+/// A projection of the unit cube onto the sheet. It has no perspective, so that equal heights stay equal.
 struct View {
     sin_turn: f64,
     cos_turn: f64,
@@ -39,7 +39,7 @@ impl View {
         }
     }
 
-    /// The place on the sheet of a point of the unit cube.
+    /// Returns the position on the sheet of a point of the unit cube.
     fn at(&self, x: f64, y: f64, z: f64) -> (f64, f64) {
         let (x, y, z) = (x - 0.5, y - 0.5, z - 0.5);
         let across = x * self.cos_turn + y * self.sin_turn;
@@ -47,13 +47,13 @@ impl View {
         (MIDDLE.0 + SIZE * across, MIDDLE.1 - SIZE * up)
     }
 
-    /// The distance from the viewer.
+    /// Returns the distance from the viewer.
     fn depth(&self, x: f64, y: f64) -> f64 {
         y * self.cos_turn - x * self.sin_turn
     }
 }
 
-/// The SVG of a slice as a surface; `None` where it has one axis only.
+/// Returns an SVG of a slice as a surface; `None` if it has only one axis.
 pub fn surface_svg(slice: &Slice) -> Option<String> {
     let y = slice.y.as_ref()?;
     let view = View::new();
@@ -86,7 +86,7 @@ pub fn surface_svg(slice: &Slice) -> Option<String> {
             }
         }
     }
-    // The farthest first: nearer ones cover it.
+    // The farthest quads are drawn first, so that nearer ones cover them.
     quads.sort_by(|a, b| b.0.total_cmp(&a.0));
     for (_, points, height, is_filled) in quads {
         let colour = step_colour(height);
@@ -103,7 +103,7 @@ pub fn surface_svg(slice: &Slice) -> Option<String> {
     Some(sheet.finish(&whole_title(slice)))
 }
 
-/// The floor with its grid, the vertical axis, ticks and titles.
+/// Draws the floor with its grid, the vertical axis, ticks and titles.
 fn floor(sheet: &mut Sheet, view: &View, slice: &Slice, y: &Axis) {
     for tick in slice.x.scale().ticks(5.0) {
         let x = slice.x.scale().share(tick);

@@ -1,9 +1,10 @@
-//! Texts in pictures: made visible, escaped for markup, short numbers, bars of characters.
+//! Text in drawings: escaping of control characters and markup, short numbers, bars of characters.
 
 use std::{borrow::Cow, fmt};
 
-/// Whether a character could act on a terminal or turn the direction of writing instead of being seen: control
-/// characters, line and paragraph separators, the bidirectional controls (Unicode, UAX 9) and what XML does not allow.
+/// Returns whether a character would affect a terminal or the direction of text instead of being displayed: control
+/// characters, line and paragraph separators, bidirectional controls (Unicode, UAX 9), and characters that XML does not
+/// allow.
 fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c,
@@ -11,7 +12,8 @@ fn is_hidden(c: char) -> bool {
             | '\u{fffe}' | '\u{ffff}')
 }
 
-/// A text from outside in one line: every character that would act instead of being seen is written as its number.
+/// Escapes a text from the input for display on one line: each character that would not be displayed is replaced by its
+/// number.
 ///
 /// ```
 /// assert_eq!(fuzzy::drawing::visible("warm\u{1b}[2J"), "warm\\u{1b}[2J");
@@ -21,7 +23,7 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     replaced(text, |_, _| false)
 }
 
-/// The same for a text of several lines: ends of lines and tabs stay.
+/// Works like [`visible`], for a text of several lines: line breaks and tabs are kept.
 pub fn visible_lines(text: &str) -> Cow<'_, str> {
     replaced(text, |c, rest| match c {
         '\n' | '\t' => true,
@@ -30,7 +32,8 @@ pub fn visible_lines(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// Writes the hidden characters as numbers; `stays` is asked about each, with the text behind it.
+/// Replaces hidden characters by their numbers. `stays` receives each one with the text after it, and returns whether
+/// to keep it.
 fn replaced(text: &str, stays: impl Fn(char, &str) -> bool) -> Cow<'_, str> {
     if !text.contains(is_hidden) {
         return Cow::Borrowed(text);
@@ -47,8 +50,8 @@ fn replaced(text: &str, stays: impl Fn(char, &str) -> bool) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// A text, escaped for the content and the attributes of HTML and SVG, and made visible ([`visible_lines`]), so that no
-/// text can make a broken file.
+/// A text that is escaped for the content and attributes of HTML and SVG and made visible ([`visible_lines`]), so that
+/// no text can break a file.
 pub struct Escaped<'a>(pub &'a str);
 
 impl fmt::Display for Escaped<'_> {
@@ -67,7 +70,7 @@ impl fmt::Display for Escaped<'_> {
     }
 }
 
-/// A number with at most so many decimals, without trailing zeros.
+/// Formats a number with at most `decimals` decimals, without trailing zeros.
 pub fn number(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let text = match text.contains('.') {
@@ -77,7 +80,7 @@ pub fn number(value: f64, decimals: usize) -> String {
     if text == "-0" { "0" } else { text }.to_owned()
 }
 
-/// A number with at most 6 decimals, without trailing zeros; empty where it is not finite.
+/// Formats a number with at most 6 decimals, without trailing zeros; empty if it is not finite.
 pub fn short(x: f64) -> String {
     if x.is_finite() {
         number(x, 6)
@@ -86,7 +89,7 @@ pub fn short(x: f64) -> String {
     }
 }
 
-/// The name and the unit of a variable: `margin [%]`.
+/// Formats the name and the unit of a variable: `margin [%]`.
 pub(super) fn titled(name: &str, unit: Option<&str>) -> String {
     match unit {
         Some(unit) => format!("{name} [{unit}]"),
@@ -94,15 +97,16 @@ pub(super) fn titled(name: &str, unit: Option<&str>) -> String {
     }
 }
 
-/// A bar of so many characters for a share from 0 to 1: `██████····`.
+/// Returns a bar of `width` characters for a fraction from 0 to 1: `██████····`.
 pub fn bar(share: f64, width: usize) -> String {
     let full = (share.clamp(0.0, 1.0) * width as f64).round() as usize;
     "█".repeat(full) + &"·".repeat(width - full)
 }
 
-/// The character that a column of so many eighths of a row shows in a row, counted from the bottom.
+/// Returns the character of a column in a row of a bar chart. The column is `eighths` eighths of a row high; rows count
+/// from the bottom.
 ///
-/// # Example: a column one row and a half high
+/// # Example: a column of one and a half rows
 /// ```
 /// use fuzzy::drawing::block;
 /// assert_eq!([block(12, 2), block(12, 1), block(12, 0)], [' ', '▄', '█']);
@@ -112,7 +116,7 @@ pub fn block(eighths: usize, row: usize) -> char {
     EIGHTHS[eighths.saturating_sub(row * 8).min(8)]
 }
 
-/// Breaks a text between words into lines of at most so many characters; a longer word is cut.
+/// Breaks a text between words into lines of at most `most` characters; longer words are cut.
 pub(super) fn wrapped(text: &str, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
@@ -128,7 +132,7 @@ pub(super) fn wrapped(text: &str, most: usize) -> Vec<String> {
     lines
 }
 
-/// The beginning of a text: at most so many characters, the last an ellipsis where the text is longer.
+/// Shortens a text to at most `most` characters; the last one is an ellipsis if the text is longer.
 pub(super) fn cut(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         return text.to_owned();

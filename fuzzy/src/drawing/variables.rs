@@ -1,4 +1,4 @@
-//! The terms of all variables of a model, and the curve of a model of one input.
+//! Drawings of the terms of all variables of a model, and of the curve of a model with one input.
 
 use super::{
     colour::{Colour, distinct, distinct_line},
@@ -12,18 +12,18 @@ use super::{
 use crate::model::{MembershipFunction, Model, Output, Term, Variable};
 
 const WIDTH: f64 = 640.0;
-/// The height of a frame, and of all that belongs to it.
+/// The height of a frame, and the height including its labels.
 const FRAME: f64 = 110.0;
 const BLOCK: f64 = 176.0;
 
-/// The SVG of the terms of every input and output of a model. `curves` are drawn below: the outputs over the one input of a
-/// model that has no other.
+/// Returns an SVG of the terms of every input and output of a model. Below it, `curves` are drawn: the outputs of a
+/// model with a single input.
 pub fn variables_svg(model: &Model, curves: &[Slice]) -> String {
     drawn(model, None, curves)
 }
 
-/// The SVG of the variables of a model whose terms were others before: terms as they are, and dashed as they were. The models
-/// have the same variables.
+/// Returns an SVG of the variables whose terms differ between two models: the new terms, and the old ones dashed. The
+/// models must have the same variables.
 pub fn moved_svg(before: &Model, after: &Model) -> String {
     let mut moved = after.clone();
     moved.inputs.retain(|input| !before.inputs.contains(input));
@@ -66,7 +66,7 @@ fn drawn(model: &Model, before: Option<&Model>, curves: &[Slice]) -> String {
         if output.defuzzifier.takes_numbers() || output.is_discrete() {
             let mut sticks_of = numbers(output);
             let old = old.map(numbers).unwrap_or_default().into_iter();
-            // Half as high: as they were.
+            // The old numbers are half as high.
             let moved = old.filter(|old| !sticks_of.contains(old));
             let moved = moved
                 .map(|(at, weight, colour, text)| (at, weight / 2.0, colour, text + " before"));
@@ -87,7 +87,7 @@ fn drawn(model: &Model, before: Option<&Model>, curves: &[Slice]) -> String {
     sheet.finish(&format!("{}: its variables and their terms", model.name))
 }
 
-/// The terms of a Takagi-Sugeno output. A linear function has no stick, only its formula.
+/// Returns the terms of a Takagi-Sugeno output. A linear function has no stick, only its formula.
 fn numbers(output: &Output) -> Vec<Number> {
     let terms = output.variable.terms.iter().enumerate();
     let numbers = terms.filter_map(|(i, term)| {
@@ -102,7 +102,7 @@ fn numbers(output: &Output) -> Vec<Number> {
     numbers.collect()
 }
 
-/// `fast = 0.1 heat + 3`; `None` for a fuzzy set.
+/// Returns the formula of a term, such as `fast = 0.1 heat + 3`; `None` for a fuzzy set.
 fn formula(term: &Term, variable: &Variable) -> Option<String> {
     let value = match &term.membership_function {
         MembershipFunction::Function { formula } if !formula.is_over(&variable.name) => {
@@ -124,13 +124,14 @@ fn formula(term: &Term, variable: &Variable) -> Option<String> {
     Some(format!("{} = {value}", term.name))
 }
 
-/// Columns and rows of a picture as text.
+/// The number of columns and rows of a drawing as text.
 const COLUMNS: usize = 60;
 const ROWS: usize = 8;
 
-/// The terms of every input and output of a model as text, and the curves below: a character for each term.
+/// Formats the terms of every input and output of a model as text, with one character per term, and the curves below
+/// them.
 ///
-/// `paint` gives a character its colour on a terminal, or returns the character alone: `|mark, _| mark.to_string()`.
+/// `paint` formats a character, given its colour on a terminal. Without colours: `|mark, _| mark.to_string()`.
 pub fn variables_text(
     model: &Model,
     curves: &[Slice],
@@ -189,12 +190,12 @@ pub fn variables_text(
     text
 }
 
-/// The character of the i-th term.
+/// Returns the character of the i-th term.
 fn mark(i: usize) -> char {
     char::from_digit((i % 35 + 1) as u32, 36).unwrap_or('+')
 }
 
-/// Lines over a scale, their values as shares of the height; the last stands on top.
+/// Draws lines over a scale; their values are fractions of the height, and the last line is on top.
 fn lines(
     text: &mut String,
     count: usize,
@@ -269,7 +270,7 @@ rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]
             .unwrap()
         };
         let svg = moved_svg(&model(10.0, 2.0), &model(15.0, 3.0));
-        // Both terms of the partition have another flank now.
+        // Both terms of the partition have a different flank now.
         assert_eq!(svg.matches("stroke-dasharray=\"5 3\"").count(), 2);
         assert!(svg.contains("heat") && !svg.contains("damp"), "{svg}");
         assert!(

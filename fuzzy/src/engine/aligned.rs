@@ -1,19 +1,19 @@
-//! Memory for the numbers of several rows.
+//! Aligned memory for the numbers of several rows.
 
 use alloc::{vec, vec::Vec};
 use core::ops::{Deref, DerefMut};
 
-/// Numbers of `L` rows each. Those of several rows begin where a cache line does, because a vector that lies on two lines takes
-/// twice as long.
+/// Numbers with `L` rows each. If `L` is larger than 1, they start at a cache line, because accessing a vector that
+/// spans two lines takes twice as long.
 #[derive(Debug, Clone)]
 pub(super) struct Rows<const L: usize> {
     numbers: Vec<f64>,
-    /// Where the first row begins.
+    /// The index of the first number of the first row.
     start: usize,
 }
 
 impl<const L: usize> Rows<L> {
-    /// So many, all 0.
+    /// Creates `count` numbers per row, all 0.
     pub(super) fn new(count: usize) -> Self {
         const LINE: usize = 64;
         let spare = if L > 1 {

@@ -14,7 +14,7 @@ use crate::table::{
     arrays_from_fields,
 };
 
-/// Above this number, a batch looks for the terms that are over 0.
+/// The maximum number of terms for which a batch evaluates every formula; with more terms it looks up those above 0.
 const MOST_FORMULAS: u32 = 32;
 
 macro_rules! define {
@@ -31,7 +31,7 @@ macro_rules! define {
         }
 
         impl OwnedTable {
-            /// Adds the arrays of another stage after those that are there.
+            /// Appends the arrays of another stage.
             pub(super) fn append(&mut self, other: &OwnedTable) {
                 // All stages have the operators of the model.
                 (self.and, self.or) = (other.and, other.or);
@@ -47,7 +47,7 @@ macro_rules! define {
                 $(self.$array.extend_from_slice(&other.$array);)*
             }
 
-            /// Where its arrays end.
+            /// Returns the lengths of its arrays.
             pub(super) fn ends(&self) -> Ends {
                 Ends {
                     $($array: self.$array.len() as u32,)*
@@ -89,7 +89,7 @@ impl OwnedTable {
         }
         let alive = literals.iter().map(Literals::most_alive).max().unwrap_or(0);
         table.sizes.alive = alive as u32 + 2;
-        // The axes of a uniform table have lines of their own.
+        // The axes of a uniform table have their own lines.
         let reads_literals = table.sizes.degrees > 0 || table.conjunctions == Conjunctions::Dense;
         for (range, literals) in inputs.iter().zip(literals) {
             if reads_literals {
@@ -102,8 +102,8 @@ impl OwnedTable {
         table
     }
 
-    /// All rules as programs and all literals by their formulas, for several rows at once; `None` where a batch has no use for
-    /// that.
+    /// Compiles all rules to programs and all literals to formulas, to evaluate several rows together. `None` if a
+    /// batch does not benefit from that.
     pub(super) fn programs_alone(
         firing: &Firing,
         inputs: &[Range],
@@ -118,7 +118,7 @@ impl OwnedTable {
             return None;
         }
         table.sizes.partial = 1;
-        // In the order of the model the strongest is found in fewer steps.
+        // In the order of the model, finding the strongest rule takes fewer steps.
         let mut drafts: Vec<&Draft> = drafts.iter().collect();
         drafts.sort_by_key(|draft| draft.rule);
         for draft in drafts {
@@ -130,7 +130,7 @@ impl OwnedTable {
         Some(table)
     }
 
-    /// The outputs, without inputs and rules.
+    /// Returns a table with the outputs, but without inputs and rules.
     fn empty(firing: &Firing, outputs: &[CompiledOutput]) -> Self {
         let mut table = OwnedTable {
             and: firing.and,
@@ -273,7 +273,7 @@ impl OwnedTable {
 }
 
 impl OwnedTable {
-    /// Adds a prepared set whose term k has the firing strengths `offsets[k]..offsets[k + 1]`.
+    /// Adds a prepared set. Term k has the firing strengths `offsets[k]..offsets[k + 1]`.
     fn set(&mut self, prepared: &Prepared, offsets: &[usize]) -> (u32, u32) {
         let (first_knot, first_flank) = (self.knots.len() as u32, self.flanks.len() as u32);
         let (first_strand, first_term) = (self.strands.len() as u32, self.set_terms.len() as u32);
@@ -316,7 +316,7 @@ impl OwnedTable {
     }
 }
 
-/// Appends items and returns their span.
+/// Appends items and returns their range of indices.
 fn extend<T: Copy>(all: &mut Vec<T>, items: &[T]) -> (u32, u32) {
     let first = all.len() as u32;
     all.extend_from_slice(items);

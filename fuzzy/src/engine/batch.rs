@@ -1,4 +1,4 @@
-//! Evaluations of many rows, given as columns.
+//! Evaluation of many rows, passed as columns.
 
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
@@ -8,27 +8,27 @@ use super::{Engine, EvaluateError, Outcome, Scratch, Stage, StageScratch};
 use crate::rows::each;
 use crate::table::{self, Results};
 
-/// The number of rows that are evaluated at once: several of the widest vectors, so that finding out what to do takes little
-/// of the time, and so few that the degrees stay in the cache.
+/// The number of rows that are evaluated together: several of the widest vectors, so that the overhead per block is
+/// small, but few enough for the degrees to stay in the cache.
 pub(crate) const ROWS: usize = 64;
 
-/// Fewer rows than this are evaluated one by one, which takes less time.
+/// Batches with fewer rows are evaluated row by row, which is faster.
 const FEWEST_ROWS: usize = 16;
 
-/// The number of rows in a task.
+/// The number of rows per task.
 #[cfg(feature = "parallel")]
 const ROWS_A_TASK: usize = 4096;
 
 impl Engine {
-    /// Evaluates a column of values for each input, and returns the outcomes row by row: those of row i have the indices
+    /// Evaluates one column of values per input, and returns the outcomes row by row: those of row i have the indices
     /// `i * outputs..(i + 1) * outputs`.
     ///
-    /// Each outcome has the bits of [`Engine::evaluate`]. The feature `parallel` splits the rows over the threads of the
-    /// current rayon pool. A row where no rule fires is [`State::NoRuleFired`](super::State::NoRuleFired), also where the
-    /// model makes that an error.
+    /// Each outcome is bitwise equal to that of [`Engine::evaluate`]. The feature `parallel` distributes the rows over
+    /// the threads of the current rayon pool. The outcome of a row for which no rule fires is
+    /// [`State::NoRuleFired`](super::State::NoRuleFired), even if the model treats that as an error.
     ///
     /// # Errors
-    /// The number of columns is not that of the inputs, or their lengths differ.
+    /// The number of columns differs from the number of inputs, or the columns differ in length.
     ///
     /// # Example: two temperatures
     /// ```
@@ -52,10 +52,10 @@ impl Engine {
         Ok(outcomes)
     }
 
-    /// [`Engine::evaluate_batch`] into outcomes of the caller, one for each row and output.
+    /// Works like [`Engine::evaluate_batch`], into `outcomes`, which has one element per row and output.
     ///
     /// # Errors
-    /// As [`Engine::evaluate_batch`], or the number of outcomes is wrong.
+    /// Fails like [`Engine::evaluate_batch`], and if the number of outcomes is wrong.
     pub fn evaluate_batch_into(
         &self,
         columns: &[&[f64]],
@@ -89,12 +89,12 @@ impl Engine {
         Ok(())
     }
 
-    /// The values alone, in a column for each output: NaN where a row has none. Each has the bits of [`Outcome::value`] at
-    /// [`Engine::evaluate`].
+    /// Evaluates only the values, into one column per output; a row without a value gets NaN. Each value is bitwise
+    /// equal to [`Outcome::value`] of [`Engine::evaluate`].
     ///
     /// # Errors
-    /// As [`Engine::evaluate_batch`], or there is not one column of values for each output, of the length of those of the
-    /// inputs.
+    /// Fails like [`Engine::evaluate_batch`], and if `values` does not have one column per output, or its columns differ
+    /// in length from those of the inputs.
     ///
     /// # Example: a column of temperatures
     /// ```
@@ -162,7 +162,8 @@ impl Engine {
         Ok(())
     }
 
-    /// The number of rows: there is a column for each input, all of a length, and an outcome for each row and output.
+    /// Returns the number of rows, after checking that there is one column per input, all of the same length, and one
+    /// outcome per row and output.
     pub(super) fn fits_columns(
         &self,
         columns: &[&[f64]],
@@ -178,7 +179,7 @@ impl Engine {
         Ok(rows)
     }
 
-    /// The length of the columns, one for each input.
+    /// Returns the common length of the columns, one per input.
     fn rows_of(&self, columns: &[&[f64]]) -> Result<usize, EvaluateError> {
         if columns.len() != self.inputs.len() {
             return Err(EvaluateError::WrongNumberOfInputs {
@@ -196,10 +197,10 @@ impl Engine {
         }
     }
 
-    /// The working memory of [`Engine::evaluate_rows`] for so many rows.
+    /// Allocates the working memory of [`Engine::evaluate_rows`] for a number of rows.
     pub(crate) fn memory(&self, rows: usize) -> Memory {
         let stage = &self.first;
-        // Models that chain and those with rule blocks are evaluated row by row.
+        // Models with chains and models with rule blocks are evaluated row by row.
         let is_plain = self.chain.is_none() && stage.arrays.blocks.is_empty();
         Memory {
             rows: (is_plain && rows >= FEWEST_ROWS).then(|| {
@@ -216,8 +217,8 @@ impl Engine {
         }
     }
 
-    /// Evaluates the rows of `range`, several at once, and calls `put` with their indices, the index of an output and its
-    /// results.
+    /// Evaluates the rows of `range` in blocks, and calls `put` with the indices of each block, the index of an output
+    /// and its results.
     pub(crate) fn evaluate_rows(
         &self,
         memory: &mut Memory,
@@ -259,13 +260,13 @@ impl Engine {
 
 /// The working memory of a batch.
 pub(crate) struct Memory {
-    /// For several rows at once, where the model allows that.
+    /// Memory for a block of rows, if the model supports evaluation in blocks.
     rows: Option<RowsScratch>,
-    /// For one row, its values and its outcomes.
+    /// Memory for a single row, with its values and outcomes.
     row: Scratch,
     values: Vec<f64>,
     outcomes: Vec<Outcome>,
-    /// One for each output.
+    /// The results, one element per output.
     results: Vec<Results<ROWS>>,
 }
 
@@ -275,7 +276,7 @@ struct RowsScratch {
     of_row: Vec<f64>,
 }
 
-/// The values of rows in a column. Rows that are missing are like the first one.
+/// Returns the values of the rows of a block in a column. Missing rows repeat the first one.
 #[inline(always)]
 fn rows_in(column: &[f64]) -> [f64; ROWS] {
     <[f64; ROWS]>::try_from(column)
@@ -283,7 +284,7 @@ fn rows_in(column: &[f64]) -> [f64; ROWS] {
 }
 
 impl Stage {
-    /// Evaluates rows, at least one and at most [`ROWS`], into the results of each output.
+    /// Evaluates between 1 and [`ROWS`] rows into the results of each output.
     fn results(
         &self,
         memory: &mut RowsScratch,
@@ -293,7 +294,7 @@ impl Stage {
     ) {
         match &self.batch {
             Some(arrays) => self.dispatch::<false>(arrays, memory, columns, rows, results),
-            // Worth code of its own with wide vectors.
+            // Uniform tables have their own instance, because they gain most from wide vectors.
             None if cfg!(feature = "simd") && table::has_cells_alone(&self.arrays) => {
                 self.dispatch::<true>(&self.arrays, memory, columns, rows, results);
             }
@@ -301,7 +302,8 @@ impl Stage {
         }
     }
 
-    /// Evaluates compiled for the widest vectors of the processor; the operations, and so the bits, stay the same.
+    /// Runs the evaluation compiled for the widest vectors of the processor. The operations, and hence the bits of the
+    /// results, stay the same.
     fn dispatch<const CELLS: bool>(
         &self,
         arrays: &OwnedTable,

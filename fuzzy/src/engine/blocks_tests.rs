@@ -18,7 +18,8 @@ fn engine(text: &str) -> Engine {
     Engine::new(&model(text)).unwrap()
 }
 
-/// Rules whose weights are their strengths, and whose values are 1, 2, 3 and 4: the weighted sum tells which fire.
+/// Four rules whose firing strengths equal their weights and whose values are 1, 2, 3 and 4, so that the weighted sum
+/// shows which of them fire.
 fn weighted_sum(activation: &str) -> f64 {
     let text = format!(
         "inputs: {{x: {{range: [0, 1], partition: [a, b]}}}}
@@ -76,14 +77,15 @@ blocks:
 fn blocks_have_operators_of_their_own() {
     let engine = engine(BLOCKS);
     let outcomes = engine.evaluate(&[0.25, 0.5]).unwrap();
-    // Strengths 0.75 0.5 and 0.25 0.5; areas scale with them: shoulders of area 4.5 with their middles at 3 and 6.
+    // The strengths are 0.75 0.5 and 0.25 0.5. The areas scale with them; the shoulders have an area of 4.5 and
+    // centroids at 3 and 6.
     let expected = (0.375 * 3.0 + 0.125 * 6.0) / 0.5;
     assert!((outcomes[0].value().unwrap() - expected).abs() < 1e-12);
     assert_eq!(
         (outcomes[0].coverage, outcomes[0].dominant_rule),
         (0.375, Some(0))
     );
-    // 0.5 against 0.5: of equal rules the first counts.
+    // 0.5 against 0.5: of rules with equal strength the first one is dominant.
     assert_eq!(outcomes[1].state, State::Defined(1.0));
     assert_eq!(outcomes[1].dominant_rule, Some(2));
     let explained = engine.explain(&[0.25, 0.5]).unwrap();
@@ -224,7 +226,7 @@ rules: [IF x IS any THEN y IS same]
     assert_eq!((at_7(""), at_7(", clamp: true")), (Some(7.0), Some(5.0)));
 }
 
-/// A method decides over all rules of its block, also over those of an output that another stage has.
+/// A method selects among all rules of its block, including those of an output in another stage.
 #[test]
 fn a_method_sees_all_rules_of_its_block() {
     let text = "inputs: {x: {range: [0, 1], partition: [a, b]}}
@@ -283,7 +285,7 @@ fn activation() -> impl Strategy<Value = Activation> {
     })
 }
 
-/// Two blocks over two inputs and two outputs, with rules of AND, OR and NOT.
+/// Any two blocks over two inputs and two outputs, with rules that contain AND, OR and NOT.
 fn any_blocks() -> impl Strategy<Value = Model> {
     let and = select(Conjunction::ALL.to_vec());
     let or = select(Disjunction::ALL.to_vec());
@@ -333,7 +335,7 @@ fn any_blocks() -> impl Strategy<Value = Model> {
 }
 
 proptest! {
-    /// Explaining computes the strengths a second time, from the tree of each rule.
+    /// Explanations compute the strengths a second time, from the syntax tree of each rule.
     #[test]
     fn all_paths_agree(built in any_blocks(), points in prop::collection::vec((0.0..=1.0f64, 0.0..=1.0f64), 9)) {
         let engine = Engine::new(&built).unwrap();
@@ -353,7 +355,7 @@ proptest! {
         }
     }
 
-    /// What is written reads back and computes the same.
+    /// A model that is written and parsed again evaluates to the same outcomes.
     #[test]
     fn written_blocks_read_back(built in any_blocks()) {
         let text: String = yaml::to_string(&built);

@@ -1,4 +1,4 @@
-//! Evaluates a model whose outputs read other outputs, stage by stage.
+//! Stage-by-stage evaluation of a model whose outputs read other outputs.
 
 use alloc::vec::Vec;
 
@@ -7,13 +7,13 @@ use super::{Engine, Outcome, Scratch, Stage};
 use crate::model::chain;
 use crate::table;
 
-/// How the stages of a model that chains fit together.
+/// The stages of a model with chains, and the outputs that connect them.
 #[derive(Debug, Clone)]
 pub(super) struct Chain {
-    /// Of the first stage.
+    /// The position of the first stage in the model.
     first: Place,
     later: Vec<Later>,
-    /// The same as plain arrays: a [`table::Chain`].
+    /// The same stages as plain arrays: a [`table::Chain`].
     pub(super) flat: OwnedTable,
     pub(super) stages: Vec<table::Stage>,
     pub(super) places: Vec<u32>,
@@ -26,10 +26,10 @@ pub(super) struct Later {
     pub(super) stage: Stage,
 }
 
-/// What a stage is in the whole model.
+/// The relation of a stage to the whole model.
 #[derive(Debug, Clone)]
 struct Place {
-    /// The outputs that it reads. Their values stand after those of the inputs.
+    /// The outputs that the stage reads. Their values follow those of the inputs.
     reads: Vec<u32>,
     /// The index in the model of each of its outputs.
     outputs: Vec<u32>,
@@ -98,13 +98,13 @@ impl Chain {
         &self.later
     }
 
-    /// The stages in the order of their evaluation, each with what it is in the model.
+    /// Returns the stages in the order of evaluation, each with its relation to the model.
     fn stages<'a>(&'a self, first: &'a Stage) -> impl Iterator<Item = (&'a Place, &'a Stage)> {
         let later = self.later.iter().map(|later| (&later.place, &later.stage));
         core::iter::once((&self.first, first)).chain(later)
     }
 
-    /// The most outputs that a stage reads.
+    /// Returns the maximum number of outputs that a stage reads.
     pub(super) fn most_reads(&self) -> usize {
         let reads = self.later.iter().map(|later| later.place.reads.len());
         reads.max().unwrap_or(0)
@@ -112,9 +112,9 @@ impl Chain {
 }
 
 impl Engine {
-    /// [`Engine::outcomes`](super::Engine) of a model that chains. `keep` may change the outcome of an output before others read
-    /// it.
-    // Apart from the evaluation of one stage, so that this one costs nothing where there is no chain.
+    /// Implements [`Engine::outcomes`](super::Engine) for a model with chains. `keep` may change the outcome of an
+    /// output before other outputs read it.
+    // Separate from the evaluation of a single stage, so that models without chains do not pay for it.
     #[inline(never)]
     pub(super) fn chained(
         &self,
@@ -144,8 +144,9 @@ impl Engine {
         }
     }
 
-    /// The compiled arrays of a model in which an output [reads](crate::Model::reads) another one, to be evaluated without
-    /// this engine or written out; `None` of another one, which is a [`table`](Engine::table).
+    /// Returns the compiled arrays of a model in which an output [reads](crate::Model::reads) another one, to evaluate
+    /// them without this engine or to write them to a file. `None` for any other model, which is a
+    /// [`table`](Engine::table).
     pub fn chain(&self) -> Option<table::Chain<'_>> {
         let chain = self.chain.as_deref()?;
         Some(table::Chain {
@@ -157,8 +158,9 @@ impl Engine {
 }
 
 impl Engine {
-    /// The stage of an output in a model that chains: its number, the output's place in it, and the number of rules of the
-    /// stages before it. The scratch memory has the values that it reads; `None` where one of them is unknown.
+    /// Finds the stage of an output in a model with chains. Returns the number of the stage, the stage, the index of
+    /// the output in it, and the number of rules of all earlier stages. The values that the stage reads are stored in
+    /// the scratch memory; `None` if one of them is undefined.
     pub(super) fn stage_of<'a>(
         &'a self,
         chain: &'a Chain,

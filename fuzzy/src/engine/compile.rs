@@ -1,4 +1,4 @@
-//! From names to indices, once a model has been validated.
+//! Compilation of a validated model: names are resolved to indices.
 
 use alloc::{boxed::Box, collections::BTreeMap, string::String, sync::Arc, vec, vec::Vec};
 
@@ -20,12 +20,12 @@ use crate::table::{Action, Op, Step};
 use crate::validate::validate;
 
 impl Engine {
-    /// Compiles a model: names become indices, rules a table, output terms closed forms.
+    /// Compiles a model: resolves names to indices, and converts rules to a table and output terms to closed forms.
     ///
     /// # Errors
-    /// All that [`validate`](crate::validate()) finds in the model.
+    /// All errors that [`validate`](crate::validate()) finds in the model.
     ///
-    /// # Example: all errors at once
+    /// # Example: all errors are reported together
     /// ```
     /// use fuzzy::{Engine, Model, model::{Output, Variable}};
     ///
@@ -50,7 +50,7 @@ impl Engine {
         Ok(Engine::compile(model))
     }
 
-    /// Compiles a valid model.
+    /// Compiles a model that is known to be valid.
     pub(crate) fn compile(model: &Model) -> Self {
         let (first, later) = stages(model);
         let inputs = model.inputs.iter().map(Input::of);
@@ -79,10 +79,10 @@ impl Engine {
 }
 
 impl Document {
-    /// Compiles its model; `text` is what it was read from.
+    /// Compiles the model; `text` is the text that it was read from.
     ///
     /// # Errors
-    /// As [`validate`](Self::validate).
+    /// Fails like [`validate`](Self::validate).
     pub fn compile(&self, text: &str) -> Result<Engine, Findings> {
         self.validate(text)?;
         Ok(Engine::compile(&self.model))
@@ -90,7 +90,7 @@ impl Document {
 }
 
 impl Stage {
-    /// Compiles a valid model in which no output reads another one.
+    /// Compiles a valid model in which no output reads another output.
     pub(super) fn new(model: &Model) -> Self {
         let compiler = Compiler::new(model);
         let firing = Firing::of(model);
@@ -109,15 +109,15 @@ impl Input {
     }
 }
 
-/// Input, term and hedges in the order in which they apply.
+/// The key of a literal: input, term, and hedges in the order in which they are applied.
 pub(super) type LiteralKey = (usize, Option<usize>, Vec<Hedge>);
 
-/// Compiles a valid model, in which every name is known.
+/// The compiler of a valid model, in which every name is defined.
 pub(super) struct Compiler<'m> {
     pub(super) model: &'m Model,
     /// The index of each input by its name.
     inputs: BTreeMap<&'m str, usize>,
-    /// Numbered by input, term and hedges, whatever the order of the rules.
+    /// The index of each literal. They are numbered by input, term and hedges, independently of the order of the rules.
     pub(super) literals: BTreeMap<LiteralKey, u32>,
 }
 
@@ -133,7 +133,7 @@ impl<'m> Compiler<'m> {
         compiler
     }
 
-    /// Finds and numbers all literals of all rules.
+    /// Collects and numbers the literals of all rules.
     fn literals(&mut self) {
         let model = self.model;
         for rule in model.rules.iter().filter(|rule| model.is_enabled(rule)) {
@@ -164,8 +164,9 @@ impl<'m> Compiler<'m> {
             .unwrap_or(0)
     }
 
-    /// The rules as literals, steps and actions, in an order that is that of their content: the order of
-    /// lines in a rule set changes no bit of an answer. Only activation methods, of which some depend on it, keep that order.
+    /// Returns the rules as literals, steps and actions, sorted by their content, so that the order of rules in a rule
+    /// set does not affect the bits of a result. Rules with an activation method keep their order, because some methods
+    /// depend on it.
     fn drafts(&self) -> Vec<Draft> {
         let model = self.model;
         let inputs_of: Vec<usize> = self.literals.keys().map(|key| key.0).collect();
@@ -199,7 +200,7 @@ impl<'m> Compiler<'m> {
                 }));
             }
             let kept = (activation != Activation::General).then_some(index);
-            // A rule without consequents here may still count for the activation method of its block.
+            // A rule without consequents in this stage may still affect the activation method of its block.
             if by_hedges.is_empty() {
                 by_hedges.insert(Vec::new(), Vec::new());
             }
@@ -325,7 +326,7 @@ impl<'m> Compiler<'m> {
         }
     }
 
-    /// Compiles an output and gives the drafts' actions on it the indices of their firing strengths.
+    /// Compiles an output, and assigns firing strengths to the drafts' actions on it.
     fn output(
         &self,
         index: usize,
@@ -382,7 +383,7 @@ impl<'m> Compiler<'m> {
     }
 }
 
-/// The literals of a plain AND of different inputs, ascending; `None` of another condition.
+/// Returns the literals of a plain AND of different inputs, in ascending order; `None` for any other condition.
 fn plain(steps: &[Step], inputs_of: &[usize]) -> Option<Vec<u32>> {
     let (first, others) = steps
         .split_first()

@@ -1,70 +1,70 @@
-//! Why inputs could not be evaluated.
+//! Errors of evaluation.
 
 use alloc::{format, string::String, sync::Arc};
 use core::fmt;
 
-/// Why inputs could not be evaluated.
+/// An error of evaluation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EvaluateError {
-    /// Not one value for each input.
+    /// The number of values differs from the number of inputs.
     WrongNumberOfInputs {
-        /// How many inputs the model has.
+        /// The number of inputs of the model.
         expected: usize,
-        /// How many values were given.
+        /// The number of values.
         got: usize,
     },
-    /// Not one outcome for each output.
+    /// The number of outcomes differs from the number of outputs.
     WrongNumberOfOutputs {
-        /// How many outputs the model has.
+        /// The number of outputs of the model.
         expected: usize,
-        /// How many outcomes were lent.
+        /// The number of outcomes that the caller passed.
         got: usize,
     },
-    /// Columns of a batch that are not equally long.
+    /// The columns of a batch have different lengths.
     ColumnsOfDifferentLengths {
         /// The length of the first column.
         first: usize,
-        /// Another length.
+        /// The length of the first column that differs.
         other: usize,
     },
-    /// A name that is no input.
+    /// The model has no input of this name.
     UnknownInput {
-        /// The name.
+        /// The unknown name.
         name: String,
     },
-    /// An input without a value.
+    /// An input has no value.
     MissingInput {
-        /// The input.
+        /// The name of the input.
         name: Arc<str>,
     },
-    /// An input with two values.
+    /// An input has two values.
     RepeatedInput {
-        /// The input.
+        /// The name of the input.
         name: Arc<str>,
     },
-    /// A value that is no struct or map of numbers.
+    /// The value is not a struct or map of numbers.
     NoFields {
-        /// What was expected.
+        /// The error message, which states the expected type.
         message: String,
     },
     /// An input is NaN or infinite, so there is nothing to explain.
     InputNotFinite,
-    /// No rule of an output fired, and the model says that this is an error.
+    /// No rule of an output fired, and the model treats that as an error.
     NoRuleFired {
-        /// The output's name.
+        /// The name of the output.
         output: Arc<str>,
     },
-    /// A grid has more cells than a decision map takes.
+    /// A grid has more cells than a decision map supports.
     TooManyCells {
-        /// How many; `usize::MAX` where there are more than fit.
+        /// The number of cells; `usize::MAX` if it does not fit into `usize`.
         cells: usize,
-        /// The most cells of a decision map.
+        /// The maximum number of cells of a decision map.
         most: usize,
     },
 }
 
-/// `1 input`, `2 inputs`.
+/// Formats a count with its noun: `1 input`, `2 inputs`.
 fn counted(count: usize, word: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {word}{plural}")

@@ -1,4 +1,4 @@
-//! Why an output is what it is: memberships, fired rules, the aggregated set.
+//! Computing explanations: degrees of terms, rules that fired, and aggregated sets.
 
 use alloc::{
     collections::BTreeMap,
@@ -19,18 +19,19 @@ use crate::model::{
 use crate::rule::{Condition, Proposition};
 use crate::table::{self, Partial};
 
-/// Even steps of the aggregated set.
+/// The number of steps at which the aggregated set is sampled.
 const STEPS: usize = 200;
 
 impl Engine {
-    /// Explains the outputs: the degrees of the inputs' terms, the fired rules with strength and share, the aggregated set.
+    /// Explains the outputs: returns the degrees of the inputs' terms, the rules that fired with their strengths and
+    /// shares, and the aggregated sets.
     ///
-    /// It allocates and is slow; use [`Engine::evaluate`] for values alone.
+    /// This allocates and is slow; use [`Engine::evaluate`] if only the values are needed.
     ///
     /// # Errors
-    /// Not one finite value for each input.
+    /// `inputs` does not have one finite value per input.
     ///
-    /// # Example: which rules fire, and how strongly?
+    /// # Example: the rules that fire and their firing strengths
     /// ```
     /// use fuzzy::{Engine, Model};
     ///
@@ -68,7 +69,8 @@ impl Engine {
         })
     }
 
-    /// The outcomes at a point. That no rule fires is no error here: it is what an explanation explains.
+    /// Returns the outcomes at a point. Unlike [`Engine::evaluate`], it does not fail if no rule fires, because an
+    /// explanation reports that too.
     pub(super) fn outcomes_at(&self, inputs: &[f64]) -> Result<Vec<Outcome>, EvaluateError> {
         if inputs.len() != self.inputs.len() {
             return Err(EvaluateError::WrongNumberOfInputs {
@@ -105,7 +107,7 @@ fn degrees(terms: &[Term], value: f64) -> Vec<Degree> {
     terms.iter().map(degree).collect()
 }
 
-/// The values that conditions read.
+/// The values that conditions can read.
 pub(super) struct Known<'a> {
     pub(super) model: &'a Model,
     pub(super) inputs: &'a [ExplainedInput],
@@ -113,14 +115,14 @@ pub(super) struct Known<'a> {
 }
 
 impl<'a> Known<'a> {
-    /// An input or output by its name, and its value.
+    /// Returns the input or output of a name, with its value.
     pub(super) fn variable(&self, name: &str) -> Option<(&'a Variable, Option<f64>)> {
         let inputs = self.model.inputs.iter().zip(self.inputs);
         let inputs = inputs.map(|(variable, input)| (variable, Some(input.value)));
         let outputs = self.model.outputs.iter().zip(self.outcomes);
         let outputs = outputs.map(|(output, outcome)| {
             let (variable, value) = (&output.variable, outcome.value());
-            // As an input: clamped to the range.
+            // Clamped to the range, as an input would be.
             (variable, value.map(|value| clamped(variable, value)))
         });
         inputs
@@ -128,7 +130,7 @@ impl<'a> Known<'a> {
             .find(|(variable, _)| variable.name == name)
     }
 
-    /// Whether all outputs that an output reads have values. Otherwise none of its rules is evaluated.
+    /// Returns whether all outputs that an output reads have values. If not, none of its rules is evaluated.
     pub(super) fn is_evaluated(&self, output: &str) -> bool {
         let mut reads = self.model.reads(output).into_iter();
         reads.all(|read| {
@@ -180,12 +182,12 @@ fn fired(known: &Known<'_>) -> Vec<FiredRule> {
             }
         }
     }
-    // Of equally strong rules the first in the file stands first.
+    // Rules of equal strength stay in the order of the file.
     fired.sort_by(|a, b| b.strength.total_cmp(&a.strength).then(a.rule.cmp(&b.rule)));
     fired
 }
 
-/// The degree of a condition, read from its tree.
+/// Returns the degree of a condition, computed from its syntax tree.
 pub(super) fn holds(condition: &Condition, operators: Operators, known: &Known<'_>) -> f64 {
     let degree = |part: &Condition| holds(part, operators, known);
     match condition {
@@ -327,7 +329,7 @@ fn explain_output(
     }
 }
 
-/// The number that a rule gives to a Takagi-Sugeno or Tsukamoto output at the values of the inputs.
+/// Returns the number that a rule yields for a Takagi-Sugeno or Tsukamoto output at the values of the inputs.
 fn number(output: &Output, active: &Active<'_>, known: &Known<'_>) -> Option<f64> {
     let (variable, term) = (&output.variable, active.term);
     if output.defuzzifier == Defuzzifier::Tsukamoto {
@@ -363,7 +365,7 @@ struct Active<'m> {
     rule: usize,
     term: &'m Term,
     strength: f64,
-    /// What it adds to the result, so far.
+    /// Its contribution to the result, accumulated so far.
     part: f64,
 }
 
@@ -380,7 +382,8 @@ fn aggregated(active: &[Active<'_>], operators: Operators, x: f64) -> f64 {
     degrees.fold(0.0, |all, degree| operators.aggregation.of(all, degree))
 }
 
-/// Adds what each consequent contributes at `x`: under the maximum all of it is the highest one's.
+/// Adds the contribution of each consequent at `x`. With maximum as aggregation, only the highest consequent
+/// contributes.
 fn add_parts(active: &mut [Active<'_>], operators: Operators, x: f64) {
     if operators.aggregation != Aggregation::Maximum {
         for one in active {

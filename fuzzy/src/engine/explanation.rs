@@ -1,8 +1,8 @@
-//! Why an output is what it is, as data.
+//! The explanation of an evaluation, as data.
 
 use alloc::{string::String, vec::Vec};
 
-/// Why an evaluation gives its values.
+/// The explanation of an evaluation: degrees, rules that fired, and their contributions.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -10,23 +10,23 @@ use alloc::{string::String, vec::Vec};
 pub struct Explanation {
     /// The inputs, with the degree of each of their terms.
     pub inputs: Vec<ExplainedInput>,
-    /// The rules that fired, the strongest first.
+    /// The rules that fired, by decreasing firing strength.
     pub rules: Vec<FiredRule>,
     /// The outputs.
     pub outputs: Vec<ExplainedOutput>,
 }
 
-/// An input, and the degrees of its terms.
+/// An input with the degrees of its terms.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ExplainedInput {
-    /// Its name.
+    /// The name of the input.
     pub name: String,
-    /// The value that was given.
+    /// The value before clamping.
     pub given: f64,
-    /// The value that was used: the end of the range where the given one lies outside.
+    /// The value that was used: clamped to the range of the input.
     pub value: f64,
     /// The degree of each term.
     pub terms: Vec<Degree>,
@@ -38,7 +38,7 @@ pub struct ExplainedInput {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Degree {
-    /// The term.
+    /// The name of the term.
     pub term: String,
     /// The degree, in [0, 1].
     pub degree: f64,
@@ -50,74 +50,77 @@ pub struct Degree {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FiredRule {
-    /// Its index in the model; serialised, rules count from 1.
+    /// The index of the rule in the model; serialised as the rule number, which counts from 1.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub rule: usize,
-    /// The rule as it is written.
+    /// The text of the rule.
     pub text: String,
     /// The degree of its condition.
     pub degree: f64,
-    /// The degree times the weight, as the activation method leaves it; hedges of its consequents change it in
-    /// [`Share::strength`].
+    /// The degree of the condition times the weight of the rule, adjusted by the activation method. Hedges of its
+    /// consequents are applied in [`Share::strength`].
     pub strength: f64,
 }
 
-/// An output, and the rules that contribute to it.
+/// An output with the rules that contribute to it.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ExplainedOutput {
-    /// Its name.
+    /// The name of the output.
     pub name: String,
-    /// The value; none where no rule fires and the model has no default.
+    /// The value; `None` if no rule fires and the output has no default.
     pub value: Option<f64>,
-    /// Whether no rule fires and the value is the model's default.
+    /// Whether no rule fires and the value is the default of the output.
     pub is_default: bool,
-    /// Whether it keeps its previous value where no rule fires. One point has none before it.
+    /// Whether the output keeps its previous value where no rule fires. An explanation covers a single point, which has
+    /// no previous value.
     pub keeps_previous: bool,
-    /// The outputs whose values it reads. Where one of them has no value, no rule of this output fires, and it has none.
+    /// The outputs whose values this output reads. If one of them has no value, no rule of this output fires, and it
+    /// has no value either.
     pub reads: Vec<String>,
     /// The largest firing strength of a rule of this output.
     pub coverage: f64,
-    /// The rules that contribute to it, the largest share first.
+    /// The rules that contribute to it, by decreasing share.
     pub rules: Vec<Share>,
     /// The degree of the value in each term; empty for Takagi-Sugeno outputs.
     pub terms: Vec<Degree>,
-    /// The aggregated set: `(value, degree)` at even steps over the range, or at the places of singletons; empty for
+    /// The aggregated set: `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for
     /// Takagi-Sugeno and Tsukamoto outputs.
     pub set: Vec<(f64, f64)>,
 }
 
-/// What a rule contributes to an output.
+/// The contribution of a rule to an output.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Share {
-    /// The rule's index in the model; serialised, rules count from 1.
+    /// The index of the rule in the model; serialised as the rule number, which counts from 1.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub rule: usize,
-    /// The term it concludes.
+    /// The term that the rule concludes.
     pub term: String,
-    /// Its firing strength.
+    /// The firing strength.
     pub strength: f64,
-    /// Its share of the result, in [0, 1]. With the maximum as aggregation, the part of the aggregated set's area where
-    /// this rule is the highest; with sums, its part of the area of all sets; in a Takagi-Sugeno or Tsukamoto output, its
-    /// part of the weights.
+    /// The share of the result, in [0, 1]. With maximum as aggregation, it is the fraction of the aggregated set's area
+    /// in which this rule is the highest; with sums, the rule's fraction of the area of all sets; in a Takagi-Sugeno or
+    /// Tsukamoto output, its fraction of the weights.
     pub share: f64,
-    /// In a Takagi-Sugeno or Tsukamoto output, and one of singletons, the number that its consequent gives at these inputs.
+    /// The number that the consequent yields at these inputs; only for Takagi-Sugeno and Tsukamoto outputs and for
+    /// singletons.
     pub value: Option<f64>,
-    /// The implied set: `(value, degree)` at even steps over the range; empty for Takagi-Sugeno and
-    /// Tsukamoto outputs. Not serialised.
+    /// The implied set: `(value, degree)` at evenly spaced values over the range. Empty for Takagi-Sugeno and Tsukamoto
+    /// outputs. Not serialised.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub implied: Vec<(f64, f64)>,
 }

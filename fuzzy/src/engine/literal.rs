@@ -6,24 +6,25 @@ use crate::model::{MembershipFunction, Term};
 use crate::rule::Hedge;
 use crate::table::Line;
 
-/// A term of an input with its hedges, in the order in which they apply.
+/// A term of an input with its hedges, in the order in which they are applied.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Literal {
     pub(super) term: Term,
     pub(super) hedges: Vec<Hedge>,
 }
 
-/// The literals of an input. Straight ones are cut into intervals, so that an evaluation reads only those that can be over
-/// 0.
+/// The literals of an input. Straight literals are divided into intervals, so that an evaluation reads only those that
+/// can be above 0.
 #[derive(Debug, Clone)]
 pub(super) struct Literals {
-    /// The index of the first among the literals of all inputs.
+    /// The index of the first literal of this input among those of all inputs.
     pub(super) first: u32,
-    /// Their number.
+    /// The number of literals.
     pub(super) count: u32,
-    /// The bounds between intervals. Values below the first cut are in interval 0.
+    /// The limits between intervals. Values below the first cut are in interval 0.
     pub(super) cuts: Vec<f64>,
-    /// The lines over 0 on interval i are `lines[starts[i]..starts[i + 1]]`.
+    /// The index of the first line of each interval: the lines above 0 on interval i are
+    /// `lines[starts[i]..starts[i + 1]]`.
     pub(super) starts: Vec<u32>,
     pub(super) lines: Vec<Line>,
     pub(super) curved: Vec<(u32, Literal)>,
@@ -70,7 +71,7 @@ impl Literals {
         table
     }
 
-    /// All of them by their formulas, for several values at once.
+    /// Stores all literals as formulas, to evaluate several values together.
     pub(super) fn by_formula(first: u32, literals: Vec<Literal>) -> Self {
         Literals {
             first,
@@ -82,7 +83,7 @@ impl Literals {
         }
     }
 
-    /// The lines over 0 on each interval.
+    /// Iterates over the intervals; each item contains the lines above 0 on the interval.
     pub(super) fn intervals(&self) -> impl Iterator<Item = &[Line]> {
         let ends = self.starts.iter().zip(self.starts.iter().skip(1));
         ends.map(|(start, end)| &self.lines[*start as usize..*end as usize])
@@ -92,15 +93,15 @@ impl Literals {
         !self.curved.is_empty()
     }
 
-    /// The most literals that can be over 0 at once.
+    /// Returns the maximum number of literals that can be above 0 at the same value.
     pub(super) fn most_alive(&self) -> usize {
         let most = self.intervals().map(<[Line]>::len).max();
         most.unwrap_or(0) + self.curved.len()
     }
 }
 
-/// The lines of a straight term without hedges, each with the start of its interval, from minus infinity on; `None` of
-/// another literal.
+/// Returns the lines of a straight term without hedges, each with the start of its interval, beginning at minus
+/// infinity. `None` for any other literal.
 pub(super) fn lines(literal: &Literal) -> Option<Vec<(f64, Line)>> {
     if !literal.hedges.is_empty() || literal.term.height != 1.0 {
         return None;
@@ -123,8 +124,8 @@ pub(super) fn lines(literal: &Literal) -> Option<Vec<(f64, Line)>> {
     Some(lines)
 }
 
-/// Adds the line from a corner to the next, or to infinity where there is none. At a step, the corner itself may have another
-/// degree and is a line of its own.
+/// Adds the line from a corner to the next one, or to infinity if there is none. At a discontinuity the corner itself
+/// may have a different degree, and then gets its own line.
 fn after(
     lines: &mut Vec<(f64, Line)>,
     shape: &MembershipFunction,
@@ -235,7 +236,7 @@ mod tests {
     }
 
     proptest! {
-        /// The table gives the bits of the membership functions.
+        /// The table is bitwise equal to the membership functions.
         #[test]
         fn table_is_membership(x in prop_oneof![
             0.0..=1.0,

@@ -1,15 +1,15 @@
-//! The compiled model: immutable, evaluated without allocation.
+//! The compiled model: immutable, and evaluated without allocation.
 //!
-//! From a model to an answer, with the rules `IF heat IS low THEN speed IS slow` and `IF heat IS high THEN speed IS fast` over
-//! three triangles each, from 0 to 10:
+//! The steps from a model to an outcome, for the rules `IF heat IS low THEN speed IS slow` and
+//! `IF heat IS high THEN speed IS fast`, with three triangles for each variable from 0 to 10:
 //!
-//! 1. `compile` gives each proposition a number: `heat IS low` is literal 0, `heat IS high` literal 1. Rules become drafts of
-//!    indices, and each output gets firing strengths: 0 to 2 for `slow`, `medium` and `fast`.
+//! 1. `compile` assigns a number to each proposition: `heat IS low` is literal 0, `heat IS high` is literal 1. Rules become
+//!    drafts that contain indices, and each output gets firing strengths: 0 to 2 for `slow`, `medium` and `fast`.
 //! 2. `strategy` chooses how the output is computed and how rules fire. Here the output is a partition, and all rules are in
-//!    a table of one axis with two cells.
-//! 3. `rules` and `arrays` lay all that out as the arrays of a [`Table`]; its [module](table) shows them for this example.
-//! 4. An evaluation at 8 finds the degrees of the two literals alive there (0 and 0.6), raises the firing strengths to
-//!    (0, 0, 0.6) and has `table/closed.rs` compute the centroid 8.14.
+//!    a table with one axis and two cells.
+//! 3. `rules` and `arrays` store the result in the arrays of a [`Table`]; its [module](table) shows them for this example.
+//! 4. An evaluation at 8 computes the degrees of the two literals (0 and 0.6), sets the firing strengths to (0, 0, 0.6), and
+//!    computes the centroid 8.14 in `table/closed.rs`.
 
 use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::ops::Range;
@@ -54,9 +54,9 @@ pub use sequence::Sequence;
 pub use silent::{Silence, SilentRule};
 pub use what_if::{Change, Effect};
 
-/// A compiled model: immutable, and shared by any number of threads.
+/// A compiled model. It is immutable and can be shared by any number of threads.
 ///
-/// # Example: from a model to an answer
+/// # Example: compile a model and evaluate it
 /// ```
 /// use fuzzy::{Engine, Model};
 ///
@@ -75,28 +75,28 @@ pub use what_if::{Change, Effect};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Engine {
-    /// What it was compiled from.
+    /// The model it was compiled from.
     model: Arc<Model>,
     inputs: Vec<Input>,
     outputs: Vec<NamedOutput>,
-    /// The outputs that read no other output: all of them, unless the model chains.
+    /// The outputs that read no other output: all outputs, unless the model has chains.
     first: Stage,
-    /// The other outputs, which are evaluated after those they read.
+    /// The remaining outputs, which are evaluated after the outputs they read.
     chain: Option<Box<Chain>>,
 }
 
-/// The outcomes of an evaluation, one for each output in the order of the model; up to 8 without an allocation.
+/// The outcomes of an evaluation, one per output in the order of the model; up to 8 are stored without allocation.
 pub type Outcomes = SmallVec<[Outcome; 8]>;
 
-/// Outputs that are evaluated at once.
+/// Outputs that are evaluated in one pass.
 #[derive(Debug, Clone)]
 struct Stage {
     outputs: Vec<CompiledOutput>,
-    /// What is evaluated.
+    /// The compiled rules and outputs.
     arrays: OwnedTable,
-    /// The same rules, all of them as programs, where a batch is faster with them.
+    /// The same rules, compiled to programs; only if that makes a batch faster.
     batch: Option<OwnedTable>,
-    /// How the rules fire on a single row.
+    /// The method that fires the rules for a single row.
     single: Single,
 }
 
@@ -110,7 +110,7 @@ struct Input {
 #[derive(Debug, Clone)]
 struct NamedOutput {
     name: Arc<str>,
-    /// Whether evaluation is an error where no rule fires.
+    /// Whether evaluation returns an error if no rule fires.
     must_fire: bool,
 }
 
@@ -119,48 +119,49 @@ struct CompiledOutput {
     low: f64,
     high: f64,
     when_no_rule_fires: NoRuleFires,
-    /// The span of its firing strengths.
+    /// The range of its firing strengths.
     strengths: Range<usize>,
-    /// The offset in that span of each term's firing strengths, and the end of the last term's.
+    /// The offset, within that range, of each term's firing strengths, followed by the end of the last term's.
     offsets: Vec<usize>,
-    /// Whether a value outside the range is clamped to it.
+    /// Whether values outside the output's range are clamped to it.
     clamps: bool,
     method: Method,
 }
 
-/// Working memory of an evaluation: made once by [`Engine::scratch`], then reused.
+/// The working memory of an evaluation, created by [`Engine::scratch`] and then reused.
 #[derive(Debug, Clone)]
 pub struct Scratch {
     first: StageScratch,
-    /// Of the later stages of a model that chains.
+    /// The memory of the later stages, if the model has chains.
     later: Vec<StageScratch>,
     /// The values of the inputs, then of the outputs that a later stage reads.
     values: Vec<f64>,
-    /// The outcomes of a stage of a model that chains.
+    /// The outcomes of one stage, if the model has chains.
     own: Vec<Outcome>,
-    /// Those of all its outputs, where a rule is looked for.
+    /// The outcomes of all outputs of the model, used to search for a rule.
     outcomes: Vec<Outcome>,
-    /// The stage in which a rule was looked for last.
+    /// The stage of the latest search for a rule.
     asked: usize,
 }
 
 #[derive(Debug, Clone)]
 struct StageScratch<const L: usize = 1> {
     table: RowBuffers<L>,
-    /// For outputs that have no closed form.
+    /// Memory for outputs without a closed form.
     workspace: Workspace,
 }
 
 #[cfg(feature = "check")]
 impl Scratch {
-    /// Bounds the steps of further integrations: those that would take more end early, and their values mean nothing.
+    /// Limits the steps of further integrations. Integrations that need more steps end early, and their values are
+    /// invalid.
     pub(crate) fn bound_steps(&mut self, most: u64) {
         for workspace in self.workspaces() {
             workspace.steps = crate::defuzzify::workspace::Steps { taken: 0, most };
         }
     }
 
-    /// The steps of integrations since they were bounded, and whether there were enough.
+    /// Returns the number of integration steps since they were limited, and whether the limit sufficed.
     pub(crate) fn steps(&mut self) -> (u64, bool) {
         let steps = self.workspaces().map(|workspace| workspace.steps);
         steps.fold((0, true), |(sum, enough), steps| {
@@ -178,38 +179,38 @@ impl Scratch {
 type RowBuffers<const L: usize> = Buffers<Rows<L>, Vec<Partial<L>>, Vec<Strongest<L>>>;
 
 impl Engine {
-    /// The index of an input.
+    /// Returns the index of an input; `None` if there is no input of this name.
     pub fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| &*input.name == name)
     }
 
-    /// The index of an output.
+    /// Returns the index of an output; `None` if there is no output of this name.
     pub fn output(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|output| &*output.name == name)
     }
 
-    /// The names of the inputs, in the order of their values.
+    /// Returns the names of the inputs, in the order of their values.
     pub fn input_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.inputs.iter().map(|input| &*input.name)
     }
 
-    /// The names of the outputs, in the order of their outcomes.
+    /// Returns the names of the outputs, in the order of their outcomes.
     pub fn output_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.outputs.iter().map(|output| &*output.name)
     }
 
-    /// The model it was compiled from.
+    /// Returns the model the engine was compiled from.
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// Name, lower and upper end of each input.
+    /// Returns the name and the lower and upper limit of each input.
     pub(crate) fn ranges(&self) -> impl Iterator<Item = (&Arc<str>, f64, f64)> {
         self.inputs.iter().map(|v| (&v.name, v.low, v.high))
     }
 
-    /// Working memory for [`Engine::evaluate_with`]; each thread needs its own.
+    /// Allocates working memory for [`Engine::evaluate_with`]. Each thread needs its own.
     pub fn scratch(&self) -> Scratch {
         let Some(chain) = &self.chain else {
             return Scratch {
@@ -235,25 +236,26 @@ impl Engine {
         }
     }
 
-    /// The compiled arrays, to be evaluated without this engine or written out: see [`table`]. `None` where an output
-    /// [reads](Model::reads) another one, because a table has one stage. Outputs whose set is
-    /// [`ClosedForm::Integrated`](table::ClosedForm::Integrated) have no closed form, and only the engine knows their values.
+    /// Returns the compiled arrays, which can be evaluated without this engine or written to a file: see [`table`].
+    /// `None` if an output [reads](Model::reads) another one, because a table has only one stage. A table cannot
+    /// evaluate outputs whose set is [`ClosedForm::Integrated`](table::ClosedForm::Integrated); only the engine can.
     pub fn table(&self) -> Option<Table<'_>> {
         self.chain.is_none().then(|| self.first.arrays.table())
     }
 
-    /// Evaluates one value for each input, in the order of the model, and gives one outcome for each output.
+    /// Evaluates one value per input, in the order of the model, and returns one outcome per output.
     ///
-    /// It allocates working memory, which takes longer than a small evaluation, except for the rule sets that the feature `simd`
-    /// evaluates as a plane. In a loop use [`Engine::evaluate_with`].
+    /// This allocates working memory, which takes longer than a small evaluation, except for the rule sets that the
+    /// feature `simd` evaluates as a plane. In loops use [`Engine::evaluate_with`].
     ///
-    /// A value outside its input's range is clamped to it, and the outcome says so.
-    /// A value that is NaN or infinite makes every outcome [`State::InputNotFinite`].
+    /// A value outside the range of its input is clamped to it; the outcome reports that.
+    /// If a value is NaN or infinite, every outcome is [`State::InputNotFinite`].
     ///
     /// # Errors
-    /// Not one value for each input; or no rule fires for an output whose model says that this is an error.
+    /// The number of values differs from the number of inputs, or no rule fires for an output with
+    /// `when_no_rule_fires: error`.
     ///
-    /// # Example: a value, no value, and an input outside its range
+    /// # Example: a defined value, an undefined one, and an input outside its range
     /// ```
     /// use fuzzy::{Engine, Model, engine::State};
     ///
@@ -280,12 +282,12 @@ impl Engine {
         Ok(outcomes)
     }
 
-    /// [`Engine::evaluate`] without allocation: `outcomes` has one element for each output.
+    /// Works like [`Engine::evaluate`], without allocation: `outcomes` has one element per output.
     ///
     /// # Errors
-    /// As [`Engine::evaluate`]; and not one element for each output.
+    /// Fails like [`Engine::evaluate`], and if the length of `outcomes` differs from the number of outputs.
     ///
-    /// # Example: in a loop that must not allocate
+    /// # Example: a loop that does not allocate
     /// ```
     /// # use fuzzy::{Engine, Model};
     /// use fuzzy::engine::Outcome;
@@ -312,7 +314,7 @@ impl Engine {
         self.must_fire(outcomes)
     }
 
-    /// Whether there is one value for each input and one outcome for each output.
+    /// Checks that there is one value per input and one outcome per output.
     #[inline(always)]
     fn fits(&self, inputs: &[f64], outcomes: &[Outcome]) -> Result<(), EvaluateError> {
         if inputs.len() != self.inputs.len() {
@@ -330,7 +332,7 @@ impl Engine {
         Ok(())
     }
 
-    /// An error where no rule fires for an output that must have a value.
+    /// Returns an error if no rule fires for an output that must have a value.
     #[inline(always)]
     fn must_fire(&self, outcomes: &[Outcome]) -> Result<(), EvaluateError> {
         for (output, outcome) in self.outputs.iter().zip(outcomes) {
@@ -343,7 +345,7 @@ impl Engine {
         Ok(())
     }
 
-    /// Evaluates as many values as there are inputs into as many outcomes as there are outputs.
+    /// Evaluates one value per input into one outcome per output; the caller has checked the lengths.
     #[inline(always)]
     fn outcomes(&self, scratch: &mut Scratch, inputs: &[f64], outcomes: &mut [Outcome]) {
         match &self.chain {
@@ -354,7 +356,7 @@ impl Engine {
 }
 
 impl Stage {
-    /// Working memory for an evaluation of `L` rows by these arrays.
+    /// Allocates working memory to evaluate `L` rows with these arrays.
     fn scratch<const L: usize>(&self, arrays: &OwnedTable) -> StageScratch<L> {
         let sizes = arrays.sizes;
         let strengths = sizes.strengths as usize;
@@ -368,11 +370,11 @@ impl Stage {
                 partial: vec![Partial::NONE; sizes.partial as usize],
                 next: vec![Partial::NONE; sizes.partial as usize],
                 stack: Rows::new(sizes.stack as usize),
-                // Cleared eight at a time.
+                // They are cleared eight at a time.
                 strengths: Rows::new(strengths.next_multiple_of(8)),
                 strongest: vec![Strongest::NONE; self.outputs.len()],
             },
-            // A term passes two levels of its implication, each rising and falling.
+            // A term crosses two levels of its implication, on its rising and on its falling side.
             workspace: Workspace::new(strengths, 5 * strengths + cuts.max().unwrap_or(0)),
         }
     }
@@ -428,7 +430,7 @@ impl Stage {
 }
 
 impl CompiledOutput {
-    /// The integrator of an output without a closed form.
+    /// Returns the integrator of an output without a closed form.
     fn integrated(&self) -> Option<&Integrated> {
         match &self.method {
             Method::Integrated(integrated) => Some(integrated),

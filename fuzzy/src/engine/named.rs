@@ -9,8 +9,9 @@ use super::{Engine, EvaluateError, Explanation, NamedOutput, Outcome, Outcomes};
 #[cfg(feature = "serde")]
 use crate::fields::Fields;
 
-/// The outcomes of an evaluation by the names of the outputs, in the order of the model. Like a map it is indexed by a name, and
-/// indexing panics if there is no output of this name; [`NamedOutcomes::get`] does not.
+/// The outcomes of an evaluation with the names of their outputs, in the order of the model. They can be indexed by
+/// name; like that of a map, indexing panics if there is no output of this name, whereas [`NamedOutcomes::get`] returns
+/// `None`.
 #[derive(Clone)]
 pub struct NamedOutcomes<'e> {
     outputs: &'e [NamedOutput],
@@ -18,7 +19,7 @@ pub struct NamedOutcomes<'e> {
 }
 
 impl NamedOutcomes<'_> {
-    /// The outcome of an output; `None` if the rule set has no output of this name.
+    /// Returns the outcome of an output; `None` if the rule set has no output of this name.
     pub fn get(&self, name: &str) -> Option<&Outcome> {
         let mut named = self.iter();
         named
@@ -26,7 +27,7 @@ impl NamedOutcomes<'_> {
             .map(|(_, outcome)| outcome)
     }
 
-    /// The name and the outcome of each output.
+    /// Iterates over the name and the outcome of each output.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&str, &Outcome)> {
         let names = self.outputs.iter().map(|output| &*output.name);
         names.zip(&self.outcomes)
@@ -63,10 +64,11 @@ impl serde::Serialize for NamedOutcomes<'_> {
 }
 
 impl Engine {
-    /// Evaluates values by the names of the inputs, in any order, and gives outcomes by the names of the outputs.
+    /// Evaluates values that are identified by the names of the inputs, in any order, and returns the outcomes by the
+    /// names of the outputs.
     ///
     /// # Errors
-    /// As [`Engine::evaluate`]; a name that is not an input, an input without a value or with two.
+    /// Fails like [`Engine::evaluate`], and if a name is not an input, or an input has no value or two values.
     ///
     /// # Example
     /// ```
@@ -98,10 +100,10 @@ impl Engine {
         })
     }
 
-    /// [`Engine::explain`], with values by the names of the inputs, in any order.
+    /// Works like [`Engine::explain`], with values identified by the names of the inputs, in any order.
     ///
     /// # Errors
-    /// As [`Engine::evaluate_named`].
+    /// Fails like [`Engine::evaluate_named`].
     ///
     /// # Example
     /// ```
@@ -125,7 +127,7 @@ impl Engine {
         self.explain(&self.values_of(inputs)?)
     }
 
-    /// The values of all inputs, in their order.
+    /// Returns the values of all inputs in the order of the model.
     fn values_of<'a>(
         &self,
         inputs: impl IntoIterator<Item = (&'a str, f64)>,
@@ -150,10 +152,10 @@ impl Engine {
         Ok(values)
     }
 
-    /// [`Engine::evaluate_named`] of a struct or map of numbers: fields are inputs.
+    /// Works like [`Engine::evaluate_named`] with a struct or map of numbers, whose fields are the inputs.
     ///
     /// # Errors
-    /// As [`Engine::evaluate_named`]; and anything but a struct or map of numbers.
+    /// Fails like [`Engine::evaluate_named`], and if `inputs` is not a struct or map of numbers.
     ///
     /// # Example
     /// ```

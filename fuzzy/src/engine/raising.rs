@@ -1,4 +1,4 @@
-//! Which rule raises an output most, and what its antecedent says.
+//! The rule that raises an output most, and the propositions of its antecedent.
 
 use alloc::{collections::BTreeMap, string::String, vec::Vec};
 
@@ -13,32 +13,33 @@ use crate::model::{
 use crate::rule::Proposition;
 use crate::table;
 
-/// A proposition of a rule's antecedent.
+/// A proposition in the antecedent of a rule.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Said {
-    /// The place of the rule among those of all stages, in the order of their evaluation: its index, where no output reads
-    /// another one.
+    /// The index of the rule in evaluation order, which counts the rules of all stages. It equals `rule` if no output
+    /// reads another one.
     pub place: usize,
     /// The index of the rule in the model.
     pub rule: usize,
-    /// The index of the input; of an output that is read, the number of inputs and its index.
+    /// The index of the input. For an output that is read, the number of inputs plus the index of the output.
     pub input: usize,
     /// The term with its hedges: `very hot`.
     pub term: String,
-    /// The index of its degree in [`Scratch::degrees`].
+    /// The index of the degree of the proposition in [`Scratch::degrees`].
     pub literal: usize,
-    /// The number of rules that have the same proposition.
+    /// The number of rules that contain the same proposition.
     pub rules: usize,
-    /// Of an output that is read.
+    /// The term, if the proposition is about an output.
     read: Option<Literal>,
 }
 
 impl Engine {
-    /// The place of the rule that raises an output most: [`Table::raised_by`](table::Table::raised_by). `None` where no rule
-    /// fires, a value is not finite, or the output is unknown. Places are those of [`Said::place`].
+    /// Returns the rule that raises an output most, as [`Table::raised_by`](table::Table::raised_by) defines it. The
+    /// result is an index in evaluation order, as [`Said::place`]. `None` if no rule fires, a value is not finite, or
+    /// there is no such output.
     ///
-    /// # Example: why is the fan fast?
+    /// # Example: the rule that makes the fan fast
     /// ```
     /// use fuzzy::{Engine, Model};
     ///
@@ -70,9 +71,9 @@ impl Engine {
         self.rule_of(scratch, inputs, output, Sought::Raises(value))
     }
 
-    /// The place of the rule that says most that a proposition about an output holds: of the rules of that output that fire,
-    /// the one with the largest product of its firing strength and the degree of the proposition at the value of the output
-    /// if only this rule fired. `None` where the proposition is about an input.
+    /// Returns the rule that contributes most to a proposition about an output, as an index in evaluation order. This
+    /// is the firing rule of that output with the largest product of its firing strength and the degree that the
+    /// proposition would have if only this rule fired. `None` if the proposition is about an input.
     pub fn concluded_by(
         &self,
         scratch: &mut Scratch,
@@ -119,8 +120,8 @@ impl Engine {
         Some(rules + rule)
     }
 
-    /// The propositions of all rules, in the order of the rules; within a rule, those of the fewest rules first. A
-    /// proposition that many rules have says little about one of them.
+    /// Returns the propositions of all rules, in the order of the rules. Within a rule, propositions that occur in few
+    /// rules come first, because a proposition that occurs in many rules does not characterise any of them.
     pub fn propositions(&self) -> Vec<Said> {
         let (first, later) = stages(self.model());
         let mut all = Vec::new();
@@ -144,7 +145,7 @@ impl Engine {
         all
     }
 
-    /// The propositions of the rules of a stage, whose first rule has this place.
+    /// Returns the propositions of the rules of a stage; `first_place` is the evaluation index of its first rule.
     fn propositions_of(&self, stage: &chain::Stage<'_>, first_place: usize) -> Vec<Said> {
         let model = &*stage.model;
         let compiler = Compiler::new(model);
@@ -176,7 +177,7 @@ impl Engine {
     }
 }
 
-/// Which rule is looked for.
+/// The criterion by which a rule is selected.
 #[derive(Clone, Copy)]
 enum Sought<'a> {
     Raises(f64),
@@ -210,7 +211,8 @@ fn rule_of(
     }
 }
 
-/// The term of a proposition about a variable, with its hedges; of `any` alone, a term of the whole range.
+/// Returns the term of a proposition about a variable, with its hedges. For `any` without a term, it is a term over the
+/// whole range.
 fn literal(variable: &Variable, proposition: &Proposition) -> Option<Literal> {
     let term = match &proposition.term {
         Some(name) => {
@@ -233,7 +235,7 @@ fn literal(variable: &Variable, proposition: &Proposition) -> Option<Literal> {
 }
 
 impl Chain {
-    /// Adds the terms that propositions about outputs name after the curves of all stages.
+    /// Appends the terms of propositions about outputs after the curves of all stages.
     pub(super) fn conclusions(&mut self, said: &[Said]) {
         for literal in said.iter().filter_map(|said| said.read.as_ref()) {
             self.flat.curve(0, &literal.term, &literal.hedges);
@@ -242,8 +244,8 @@ impl Chain {
 }
 
 impl Scratch {
-    /// The degrees of the literals at the latest evaluation; empty where all rules are plain ANDs that a table finds. Then
-    /// every proposition of a rule that fires holds.
+    /// Returns the degrees of the literals in the latest evaluation. They are empty if all rules are plain ANDs that a
+    /// table looks up; in that case every proposition of a firing rule has a degree above 0.
     pub fn degrees(&self) -> &[f64] {
         let stage = match self.asked.checked_sub(1) {
             None => Some(&self.first),
@@ -253,7 +255,7 @@ impl Scratch {
     }
 }
 
-/// A term with its hedges: `not very low`.
+/// Formats the term of a proposition with its hedges: `not very low`.
 fn term(proposition: &Proposition) -> String {
     let hedges = proposition.hedges.iter().map(|hedge| hedge.word());
     let term = proposition.term.iter().map(|term| term.text.as_str());

@@ -1,4 +1,4 @@
-//! Rules as arrays: plain ANDs in a uniform or dense table or a trie, all others as programs.
+//! Rules as arrays: plain ANDs in a uniform table, a dense table or a trie; all other rules as programs.
 
 use alloc::{vec, vec::Vec};
 
@@ -9,34 +9,35 @@ use crate::table::{
     Action, Axis, Block, Conjunctions, Dimension, Edge, Hedge, Line, Node, Op, Program, Step,
 };
 
-/// A rule with indices in place of names.
+/// A rule whose names are replaced by indices.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
-    /// The literals of a plain AND, ascending, each of another input; `None` of another antecedent, and where there are hedges.
+    /// The literals of a plain AND, in ascending order, each of a different input; `None` for any other antecedent and
+    /// for rules with hedges.
     pub(super) literals: Option<Vec<u32>>,
     pub(super) steps: Vec<Step>,
-    /// The hedges of its consequents, in the order in which they apply.
+    /// The hedges of the consequents, in the order in which they are applied.
     pub(super) hedges: Vec<Hedge>,
-    /// The rule's weight.
+    /// The weight of the rule.
     pub(super) weight: f64,
     pub(super) actions: Vec<Action>,
     /// The index of the rule.
     pub(super) rule: usize,
-    /// The index of its block.
+    /// The index of the block of the rule.
     pub(super) block: usize,
 }
 
-/// How the rules of a stage fire.
+/// The operators and activation methods with which the rules of a stage fire.
 #[derive(Debug, Clone)]
 pub(super) struct Firing {
     pub(super) and: Conjunction,
     pub(super) or: Disjunction,
     pub(super) least_strength: f64,
-    /// Empty where all rules share the operators and fire as they hold.
+    /// The rule blocks; empty if all rules share the operators and have no activation method.
     pub(super) blocks: Vec<FiringBlock>,
 }
 
-/// How the rules of a block fire.
+/// The operators and the activation method with which the rules of a block fire.
 #[derive(Debug, Clone)]
 pub(super) struct FiringBlock {
     pub(super) index: usize,
@@ -82,23 +83,23 @@ impl Firing {
 /// The literals and actions of a plain AND.
 type Plain<'d> = (&'d [u32], &'d [Action]);
 
-/// A dense table has at most this number of cells, and at most the second number for each rule.
+/// The maximum number of cells of a dense table, and its maximum number of cells per rule.
 const MOST_CELLS: usize = 1 << 16;
 const MOST_CELLS_A_RULE: usize = 32;
-/// More axes would visit more than 64 cells, of which most have a degree of 0.
+/// The maximum number of axes. With more, an evaluation would visit more than 64 cells, most of them with degree 0.
 const MOST_AXES: usize = 6;
 const MOST_ACTIONS_A_CELL: usize = 2;
-/// Up to this number of steps, computing all rules takes less time than finding those that fire.
+/// The maximum number of steps for which evaluating all rules is faster than finding those that fire.
 const MOST_STEPS_OF_FEW_RULES: usize = 64;
 
-/// Whether computing all rules takes less time than finding those that fire.
+/// Returns whether evaluating all rules is faster than finding those that fire.
 fn are_few(drafts: &[Draft]) -> bool {
     let steps: usize = drafts.iter().map(|draft| draft.steps.len()).sum();
     steps <= MOST_STEPS_OF_FEW_RULES
 }
 
-/// Whether a batch computes all rules, each for several rows at once. The order of a sum of more than two numbers would
-/// differ from that of a single evaluation.
+/// Returns whether a batch may evaluate all rules, each for several rows together. It may not if a firing strength is a
+/// sum of more than two numbers, because their order would differ from that of a single evaluation.
 pub(super) fn may_be_programs(drafts: &[Draft]) -> bool {
     let actions = || drafts.iter().flat_map(|draft| &draft.actions);
     let keeps_its_bits = |action: &Action| {
@@ -109,15 +110,15 @@ pub(super) fn may_be_programs(drafts: &[Draft]) -> bool {
 }
 
 impl OwnedTable {
-    /// Adds the rules. The order of `drafts` does not depend on the order of the model's rules. `unused` is the index of the
-    /// firing strength of no output.
+    /// Adds the rules. The order of `drafts` does not depend on the order of the rules in the model. `unused` is the
+    /// index of a firing strength that no output uses.
     pub(super) fn rules(&mut self, drafts: &[Draft], inputs: &[Literals], unused: u32) {
         let plain: Vec<Plain<'_>> = drafts
             .iter()
             .filter_map(|draft| Some((draft.literals.as_deref()?, &*draft.actions)))
             .collect();
         let is_short = are_few(drafts);
-        // Programs read all degrees, so that others may read them too.
+        // Programs need all degrees, so other rules may use them too.
         let is_plain = plain.len() == drafts.len();
         let has_table = (is_plain || !is_short) && self.dense(&plain, inputs).is_some();
         let is_uniform = has_table && self.uniform(inputs, unused).is_some();
@@ -142,13 +143,13 @@ impl OwnedTable {
         }
     }
 
-    /// Adds the rules of blocks, in the order of `drafts`.
+    /// Adds the rules of blocks in the order of `drafts`.
     pub(super) fn blocks(&mut self, blocks: &[FiringBlock], drafts: &[Draft]) {
         for block in blocks {
             let first_program = self.programs.len() as u32;
             let mut latest = None;
             for draft in drafts.iter().filter(|draft| draft.block == block.index) {
-                // The method takes each rule once, also where hedges make several programs of it.
+                // The method considers each rule once, even if its hedges split it into several programs.
                 let selects = block.activation != Activation::General;
                 let again = selects && latest.replace(draft.rule) == Some(draft.rule);
                 let steps = if again { &[][..] } else { &draft.steps };
@@ -160,13 +161,14 @@ impl OwnedTable {
             self.blocks.push(block);
             self.sizes.partial = self.sizes.partial.max(end_program - first_program);
         }
-        // No rule is found by it.
+        // An empty trie, so that no rule is found in it.
         self.nodes.push(Node::default());
         self.conjunctions = Conjunctions::Trie;
         self.sizes.partial = self.sizes.partial.max(1);
     }
 
-    /// Adds a rule as a program. Literals of a plain AND are in the order of a table, for the same bits.
+    /// Adds a rule as a program. The literals of a plain AND are in the same order as in a table, to give the same
+    /// bits.
     pub(super) fn program(&mut self, draft: &Draft) {
         match &draft.literals {
             Some(literals) => {
@@ -198,7 +200,7 @@ impl OwnedTable {
         self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);
     }
 
-    /// Adds a dense table; `None` where it would have too many cells.
+    /// Adds a dense table; `None` if it would have too many cells.
     fn dense(&mut self, plain: &[Plain<'_>], inputs: &[Literals]) -> Option<()> {
         let used = |input: &Literals, literals: &[u32]| {
             let range = input.first..input.first + input.count;
@@ -248,8 +250,8 @@ impl OwnedTable {
         Some(())
     }
 
-    /// Replaces a dense table by a uniform one; `None` where an input has curved or hedged literals, or where too many cells
-    /// would be visited.
+    /// Replaces a dense table by a uniform one; `None` if an input has curved or hedged literals, or if an evaluation
+    /// would visit too many cells.
     fn uniform(&mut self, inputs: &[Literals], unused: u32) -> Option<()> {
         let (mut axes, mut cuts, mut lines) = (Vec::new(), Vec::new(), Vec::new());
         for dimension in &self.dimensions {
@@ -294,7 +296,7 @@ impl OwnedTable {
             actions.extend(cell);
             actions.resize(end, Action::none(unused));
         }
-        // The padded cells take the place of those of the dense table.
+        // The padded cells replace those of the dense table.
         let first_action = self.cells.first().copied()?;
         self.conjunctions = Conjunctions::Uniform {
             actions_a_cell: actions_a_cell as u32,
@@ -310,8 +312,9 @@ impl OwnedTable {
         Some(())
     }
 
-    /// Adds the node of a trie for rules that share their first `depth` literals. Returns its index, and the most nodes that
-    /// wait at once while it is walked: its children, of which the last is walked first, or fewer of them and those below.
+    /// Adds the node of a trie for rules that share their first `depth` literals. Returns its index, and the maximum
+    /// size of the stack of nodes during a traversal. The stack contains either all children of the node, of which the
+    /// last one is visited first, or fewer children and the nodes below one of them.
     fn node(&mut self, rules: &[Plain<'_>], depth: usize) -> (u32, u32) {
         let node = self.nodes.len();
         self.nodes.push(Node::default());

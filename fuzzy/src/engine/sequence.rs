@@ -1,16 +1,16 @@
-//! Evaluations one after another, in which outputs keep their previous value.
+//! Evaluation of consecutive rows, in which outputs can keep their previous value.
 
 use alloc::{vec, vec::Vec};
 
 use super::{Engine, EvaluateError, Outcome, Scratch, State};
 use crate::model::{Model, NoRuleFires, Output};
 
-/// Evaluates rows in their order. An output with `when_no_rule_fires: previous` keeps the value it had in the row before, also
-/// for outputs that read it.
+/// Evaluates rows in order. An output with `when_no_rule_fires: previous` keeps the value of the previous row, and
+/// outputs that read it use that value.
 ///
-/// An engine has no memory: [`Engine::evaluate`] and all that stands on it answers as for the first row.
+/// An engine has no memory: [`Engine::evaluate`] and the methods based on it treat every row as the first row.
 ///
-/// # Example: a fan that keeps its speed between the rules
+/// # Example: a fan that keeps its speed while no rule fires
 /// ```
 /// use fuzzy::{Engine, Model, engine::{Sequence, State}};
 ///
@@ -36,7 +36,7 @@ pub struct Sequence<'e> {
     previous: Previous,
 }
 
-/// The values of the outputs in the row before.
+/// The values of the outputs in the previous row.
 #[derive(Debug, Clone)]
 pub(super) struct Previous {
     /// Whether each output keeps its value.
@@ -45,7 +45,7 @@ pub(super) struct Previous {
 }
 
 impl Previous {
-    /// Gives an output its previous value where no rule fires, and keeps its value for the next row.
+    /// Replaces the outcome of an output by its previous value if no rule fires, and stores its value for the next row.
     #[inline(always)]
     pub(super) fn keep(&mut self, output: usize, outcome: &mut Outcome) {
         if !self.keeps[output] {
@@ -61,22 +61,22 @@ impl Previous {
 }
 
 impl Model {
-    /// Whether an output keeps its previous value where no rule fires. Then rows are evaluated by a
-    /// [`Sequence`], in their order.
+    /// Returns whether an output keeps its previous value where no rule fires. Such a model has to be evaluated in the
+    /// order of the rows, by a [`Sequence`].
     pub fn keeps_previous(&self) -> bool {
         self.outputs.iter().any(Output::keeps_previous)
     }
 }
 
 impl Output {
-    /// Whether it keeps its previous value where no rule fires.
+    /// Returns whether the output keeps its previous value where no rule fires.
     pub fn keeps_previous(&self) -> bool {
         matches!(self.when_no_rule_fires, NoRuleFires::Previous(_))
     }
 }
 
 impl<'e> Sequence<'e> {
-    /// Before the first row.
+    /// Creates a sequence that has not evaluated any row yet.
     pub fn new(engine: &'e Engine) -> Self {
         let outputs = engine.model().outputs.iter();
         Sequence {
@@ -90,11 +90,11 @@ impl<'e> Sequence<'e> {
         }
     }
 
-    /// Evaluates the next row, without allocation. A row with an input that is NaN or infinite leaves the previous values as
-    /// they are.
+    /// Evaluates the next row, without allocation. If an input is NaN or infinite, the previous values remain
+    /// unchanged.
     ///
     /// # Errors
-    /// As [`Engine::evaluate`].
+    /// Fails like [`Engine::evaluate`].
     pub fn evaluate(&mut self, inputs: &[f64]) -> Result<&[Outcome], EvaluateError> {
         self.engine.fits(inputs, &self.outcomes)?;
         self.next(inputs);
@@ -102,11 +102,11 @@ impl<'e> Sequence<'e> {
         Ok(&self.outcomes)
     }
 
-    /// Evaluates rows, given as a column for each input, into one outcome for each row and output. As
-    /// [`Engine::evaluate_batch_into`], but in the order of the rows, and so on one core.
+    /// Evaluates rows, passed as one column per input, into one outcome per row and output. Unlike
+    /// [`Engine::evaluate_batch_into`], this evaluates the rows in order and therefore on one core.
     ///
     /// # Errors
-    /// As [`Engine::evaluate_batch_into`].
+    /// Fails like [`Engine::evaluate_batch_into`].
     pub fn evaluate_batch_into(
         &mut self,
         columns: &[&[f64]],
@@ -144,7 +144,7 @@ impl<'e> Sequence<'e> {
         }
     }
 
-    /// Forgets the previous values.
+    /// Clears the previous values.
     pub fn reset(&mut self) {
         self.previous.values.fill(None);
     }

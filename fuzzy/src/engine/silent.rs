@@ -1,4 +1,4 @@
-//! Why rules do not fire.
+//! The reasons for which rules do not fire.
 
 use alloc::{
     string::{String, ToString},
@@ -15,50 +15,50 @@ use crate::{
     rule::Condition,
 };
 
-/// A rule that does not fire at a point, and why.
+/// A rule that does not fire at a point, with the reason.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SilentRule {
-    /// Its index in the model; serialised, rules count from 1.
+    /// The index of the rule in the model; serialised as the rule number, which counts from 1.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub rule: usize,
-    /// The rule as it is written.
+    /// The text of the rule.
     pub text: String,
-    /// Why it does not fire.
+    /// The reason for which it does not fire.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub silence: Silence,
 }
 
-/// Why a rule does not fire.
+/// A reason for which a rule does not fire.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(tag = "reason", rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Silence {
-    /// This part of its condition, the first such one, has the degree 0.
+    /// A part of the condition has degree 0; this is the first such part.
     Condition {
-        /// The part as it is written.
+        /// The text of the part.
         condition: String,
     },
-    /// An output that it reads has no value.
+    /// An output that the rule reads has no value.
     NoValue {
-        /// The output.
+        /// The name of that output.
         output: String,
     },
-    /// Its block is not enabled.
+    /// The block of the rule is not enabled.
     Disabled,
-    /// Its weight is 0.
+    /// The weight of the rule is 0.
     Weight,
-    /// The activation method or the least strength leaves its strength out.
+    /// The activation method excludes the rule, or its strength is below the least strength.
     Activation {
-        /// The degree of its condition times its weight.
+        /// The degree of the condition times the weight.
         strength: f64,
     },
 }
@@ -82,12 +82,12 @@ impl fmt::Display for Silence {
 }
 
 impl Engine {
-    /// The rules that do not fire at the point of an explanation, each with the reason.
+    /// Returns the rules that do not fire at the point of an explanation, each with the reason.
     ///
     /// # Errors
-    /// The explanation is of another model.
+    /// The explanation belongs to a different model.
     ///
-    /// # Example: the condition that is 0
+    /// # Example: a condition of degree 0
     /// ```
     /// use fuzzy::{Engine, Model};
     ///
@@ -162,7 +162,7 @@ fn silence(rule: &Rule, known: &Known<'_>) -> Silence {
     }
 }
 
-/// The first part of a condition of degree 0 that makes all of it 0.
+/// Returns the first part of an AND that has degree 0 and therefore makes the whole condition 0.
 fn zero<'c>(condition: &'c Condition, operators: Operators, known: &Known<'_>) -> &'c Condition {
     let Condition::And(parts) = condition else {
         return condition;

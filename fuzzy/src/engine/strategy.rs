@@ -1,26 +1,26 @@
-//! The choice of strategy: how the rules of a stage fire, and how each output becomes a number.
+//! The choice of strategy: how the rules of a stage fire, and how each output is reduced to a number.
 //!
-//! Times are nanoseconds per evaluation of the rule set `published(true)` of `benches/src/lib.rs` (2 inputs, 10 rules, 5 output
-//! terms), changed to the operators of the line, on one machine: only their ratios hold.
+//! Times are nanoseconds per evaluation of the rule set `published(true)` of `benches/src/lib.rs` (2 inputs, 10 rules,
+//! 5 output terms), with the operators of the respective row, on one machine. Only their ratios are meaningful.
 //!
-//! # How an output becomes a number
+//! # How an output is reduced to a number
 //!
-//! The first line that fits is chosen, by [`method`]. A line with a [`ClosedForm`] is evaluated by the table alone, also on
-//! board; the method `Integrated` needs the engine.
+//! [`method`] chooses the first row that applies. Methods with a [`ClosedForm`] can be evaluated by the table alone,
+//! also on board; `Integrated` needs the engine.
 //!
 //! | defuzzifier, operators, terms | [`Method`] | prepared in | evaluated in | ns |
 //! |---|---|---|---|---|
 //! | weighted average, weighted sum | `Sugeno` | `defuzzify/weighted.rs` | `table/closed.rs` | 24 |
 //! | Tsukamoto | `Tsukamoto` | - | `table/closed.rs` | 46 |
 //! | terms that are all singletons | `Integrated`, as singletons | `defuzzify/singletons.rs` | the same | 122 |
-//! | `samples` are given | `Integrated`, as samples | `defuzzify/sampled.rs` | the same | 36 a sample |
+//! | `samples` are given | `Integrated`, as samples | `defuzzify/sampled.rs` | the same | 36 per sample |
 //! | centroid, minimum or product with maximum, a partition | `Partition` | `defuzzify/partition.rs` | `table/closed.rs` | 27 |
 //! | centroid, product with sum, up to 64 terms, no formula | `Moments` | `defuzzify/prepared.rs` | `table/closed.rs` | 23 |
-//! | centroid, minimum with maximum, straight terms as above | `Layered` | `defuzzify/layers.rs` | `table/layers.rs` | 60 |
+//! | centroid, minimum with maximum, straight terms (limits as above) | `Layered` | `defuzzify/layers.rs` | `table/layers.rs` | 60 |
 //! | minimum or product with maximum, or with sum except for maxima, up to 64 terms, no formula | `Prepared` | `defuzzify/prepared.rs` | `table/set.rs` | 73 to 1,200 |
 //! | any other | `Integrated`, in pieces | `defuzzify/curves.rs` | the same | 250 to 3,000 |
 //!
-//! # How firing strengths of rules with the same consequent combine
+//! # How firing strengths of rules with the same consequent are combined
 //!
 //! | defuzzifier and operators | [`Merging`] |
 //! |---|---|
@@ -30,15 +30,15 @@
 //!
 //! # How rules fire
 //!
-//! One layout of the rules is chosen in `engine/rules.rs`; blocks with operators or activation methods of their own are always
-//! programs. All give the same bits.
+//! `engine/rules.rs` chooses one layout for the rules. Blocks with their own operators or activation methods are always
+//! compiled to programs. All layouts give bitwise the same results.
 //!
 //! | rules | layout | fired by | when |
 //! |---|---|---|---|
-//! | ANDs of straight terms, at most two alive per input | [`Conjunctions::Uniform`] | `table/conjunctions.rs` | up to 6 inputs, 2 consequents a cell |
-//! | other ANDs | [`Conjunctions::Dense`] | `table/conjunctions.rs` | up to 65,536 cells and 32 cells a rule |
+//! | ANDs of straight terms, at most two alive per input | [`Conjunctions::Uniform`] | `table/conjunctions.rs` | up to 6 inputs, 2 consequents per cell |
+//! | other ANDs | [`Conjunctions::Dense`] | `table/conjunctions.rs` | up to 65,536 cells and 32 cells per rule |
 //! | ANDs in larger tables | [`Conjunctions::Trie`] | `table/conjunctions.rs` | always possible |
-//! | other conditions, and ANDs of small rule sets | programs | `table/firing.rs` | always possible |
+//! | any other conditions, and ANDs of small rule sets | programs | `table/firing.rs` | always possible |
 //!
 //! | evaluation | [`Single`] | file | when | ns |
 //! |---|---|---|---|---|
@@ -46,7 +46,7 @@
 //! | one row | `Vectors` | `engine/vectors/uniform.rs` | feature `simd`, a uniform table of 3 or 4 inputs and 1 output | 66 (`four_inputs`) |
 //! | one row | `Cells` | `table/firing.rs` | any other uniform table without programs | 73 (2 outputs) |
 //! | one row | `Rules` | `table/firing.rs` | any other rules | 82 (`tipper`) |
-//! | many rows | - | `engine/batch.rs` | programs alone, if there are few ([`OwnedTable::programs_alone`]); else as laid out | 13 |
+//! | many rows | - | `engine/batch.rs` | programs alone, if there are few ([`OwnedTable::programs_alone`]); otherwise the layout above | 13 |
 
 use super::arrays::OwnedTable;
 #[cfg(feature = "simd")]
@@ -59,18 +59,18 @@ use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Var
 use crate::table::{ClosedForm, Conjunctions};
 use crate::table::{OfMaxima, Outcome, SetDefuzzifier, has_cells_alone};
 
-/// How the rules of a stage fire on a single row.
+/// The method that fires the rules of a stage for a single row.
 #[derive(Debug, Clone)]
 pub(super) enum Single {
-    /// By vectors, and the output is defuzzified at once.
+    /// Vector instructions, which also defuzzify the output.
     #[cfg(feature = "simd")]
     Plane(alloc::boxed::Box<Plane>),
-    /// By vectors.
+    /// Vector instructions.
     #[cfg(feature = "simd")]
     Vectors(alloc::boxed::Box<Uniform>),
-    /// The cells of a uniform table.
+    /// A table that consists of uniform cells only.
     Cells,
-    /// Any rules.
+    /// Any other layout.
     Rules,
 }
 
@@ -88,7 +88,7 @@ impl Single {
         }
     }
 
-    /// Evaluates a plane, which needs no working memory. Returns whether it is one.
+    /// Evaluates the row if the rules are a plane, which needs no working memory; returns whether they are.
     #[inline(always)]
     #[cfg_attr(not(feature = "simd"), expect(unused_variables))]
     pub(super) fn by_plane(&self, inputs: &[f64], outcomes: &mut [Outcome]) -> bool {
@@ -107,14 +107,14 @@ impl Single {
     }
 }
 
-/// How the firing strengths of one consequent combine before the aggregated set is integrated.
+/// How firing strengths of the same consequent are combined before the aggregated set is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Merging {
-    /// The largest counts: `max_r min(h_r, mu) = min(max_r h_r, mu)`, and the same for other implications.
+    /// By maximum: `max_r min(h_r, mu) = min(max_r h_r, mu)`, and likewise for the other implications.
     Largest,
-    /// The sum counts: `sum_r h_r mu = (sum_r h_r) mu`.
+    /// By sum: `sum_r h_r mu = (sum_r h_r) mu`.
     Sum,
-    /// Each rule keeps its own.
+    /// Not at all: the firing strength of each rule is kept.
     Apart,
 }
 
@@ -148,11 +148,11 @@ impl Merging {
 
 /// The effect of an implication on a term.
 enum Activated {
-    /// It is cut off at the firing strength.
+    /// The term is cut off at the firing strength.
     Cut,
-    /// It is scaled by the firing strength.
+    /// The term is scaled by the firing strength.
     Scaled,
-    /// Neither: it has no closed form.
+    /// Any other effect, which has no closed form.
     Otherwise,
 }
 
@@ -170,11 +170,11 @@ impl Activated {
     }
 }
 
-/// How two activated terms are aggregated.
+/// The aggregation of two activated terms.
 enum Aggregated {
     Maximum,
     Sum,
-    /// Neither: the set has no closed form.
+    /// Any other aggregation, which has no closed form.
     Otherwise,
 }
 
@@ -193,7 +193,8 @@ impl Aggregated {
     }
 }
 
-/// Chooses how an output of a valid model becomes a number. `input` finds the index of an input that a consequent names.
+/// Chooses the method that reduces an output of a valid model to a number. `input` returns the index of an input that a
+/// consequent names.
 pub(super) fn method(
     output: &Output,
     operators: Operators,
@@ -216,7 +217,7 @@ pub(super) fn method(
     }
 }
 
-/// The fastest method for a fuzzy set that is exact.
+/// Returns the fastest exact method for a fuzzy set.
 fn method_of_set(output: &Output, operators: Operators, defuzzifier: SetDefuzzifier) -> Method {
     let closed = match (output.samples, output.is_discrete()) {
         (None, false) => closed_form(output, operators, defuzzifier),

@@ -1,4 +1,4 @@
-//! What an outcome says.
+//! Tests of outcomes.
 
 use alloc::string::ToString;
 
@@ -6,7 +6,7 @@ use super::*;
 use crate::model::{MembershipFunction, Model, NoRuleFires, Output, Variable};
 use crate::rule::{Condition, Rule};
 
-/// `x` in [0, 10] says `y` in [0, 100]: a gap without a rule from 4 to 6.
+/// `x` in [0, 10] determines `y` in [0, 100]; no rule covers 4 to 6.
 fn gap(when_no_rule_fires: NoRuleFires) -> Model {
     let shoulder = |top, foot| MembershipFunction::LeftShoulder { top, foot };
     Model::builder("gap")
@@ -176,7 +176,7 @@ fn every_problem_of_a_model_at_once() {
     );
 }
 
-/// A batch and single calls must agree in every bit; prints as bits so that -0.0 and 0.0 differ.
+/// Compares the bits of two outcomes, which distinguishes -0.0 from 0.0, and prints them if they differ.
 fn same_bits(one: &Outcome, other: &Outcome) -> bool {
     let bits = |outcome: &Outcome| {
         let value = outcome.value().map(f64::to_bits);
@@ -191,7 +191,7 @@ fn same_bits(one: &Outcome, other: &Outcome) -> bool {
         && core::mem::discriminant(&one.state) == core::mem::discriminant(&other.state)
 }
 
-/// Rules of all kinds of terms that the batch computes for several rows at once.
+/// Rules over all kinds of terms that a batch evaluates for several rows together.
 fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
     let triangle = |left, peak, right| MembershipFunction::Triangle { left, peak, right };
     let risk = Variable::new("z", -1.0, 3.0)
@@ -318,7 +318,7 @@ mod laws {
             }
         }
 
-        /// The mirror image of a model at the mirrored point gives the mirrored value.
+        /// A mirrored model at the mirrored point gives the mirrored value.
         #[test]
         fn mirrored_models_give_mirrored_values((x, y) in (0.0..=1.0f64, 0.0..=1.0f64)) {
             let model = slopes(NoRuleFires::Undefined);
@@ -340,7 +340,7 @@ mod laws {
             }
         }
 
-        /// One input, terms in order, consequents in the same order: the output follows the input.
+        /// With one input, ordered terms and consequents in the same order, the output increases with the input.
         #[test]
         fn monotone_models_are_monotone(a in 0.0..=10.0f64, b in 0.0..=10.0f64) {
             let three = |name| Variable::new(name, 0.0, 10.0)

@@ -1,5 +1,5 @@
-//! Single evaluations by the widest vectors of the processor, for rule sets that are plain ANDs of straight terms, of which at
-//! most two overlap. The operations and their order are those of the table, and so are the bits.
+//! Single evaluations with the widest vectors of the processor, for rule sets that are plain ANDs of straight terms of
+//! which at most two overlap. The operations and their order are those of the table, so the results are bitwise equal.
 
 use fearless_simd::f64x4;
 use fearless_simd::prelude::*;
@@ -14,15 +14,15 @@ mod uniform;
 pub(super) use plane::Plane;
 pub(super) use uniform::Uniform;
 
-/// The most intervals of an input, less one.
+/// The maximum number of intervals of an input, minus one.
 const MOST_CUTS: usize = 8;
 
-/// The bounds between the intervals of an input, ascending, padded with infinity.
+/// The limits between the intervals of an input, in ascending order, padded with infinity.
 #[derive(Debug, Clone)]
 struct Cuts([f64; MOST_CUTS]);
 
 impl Cuts {
-    /// `None` where there are too many.
+    /// Returns `None` if there are too many cuts.
     fn new(table: &OwnedTable, axis: &Axis) -> Option<Self> {
         let given = table
             .cuts
@@ -36,19 +36,19 @@ impl Cuts {
         1 + self.0.iter().filter(|cut| cut.is_finite()).count()
     }
 
-    /// The number of the interval that holds `x`.
+    /// Returns the index of the interval that contains `x`.
     #[inline(always)]
     fn interval<S: Simd>(&self, simd: S, x: f64) -> usize {
         let mut above = 0;
         for (i, cuts) in self.0.as_chunks().0.iter().enumerate() {
             above |= splat(simd, x).simd_ge(four(simd, cuts)).to_bitmask() << (4 * i);
         }
-        // The cuts are ascending, so those at or below it are the lowest bits.
+        // The cuts are in ascending order, so those at or below `x` are the lowest bits.
         (above + 1).trailing_zeros() as usize
     }
 }
 
-/// The conjunctions that vectors know.
+/// The conjunctions that are implemented with vectors.
 #[derive(Debug, Clone, Copy)]
 enum And {
     Minimum,
@@ -76,8 +76,8 @@ impl And {
         }
     }
 
-    /// Of the degrees of two lines of each of two inputs: the first of both, the second with the first, the first with the
-    /// second, and the second of both.
+    /// Combines the degrees of two lines of each of two inputs. With pairs (line of the first input, line of the second
+    /// input), the result is in the order (1, 1), (2, 1), (1, 2), (2, 2).
     #[inline(always)]
     fn cells<S: Simd>(self, simd: S, degrees: f64x4<S>) -> f64x4<S> {
         let [a, b, c, d] = degrees.to_array();
@@ -85,7 +85,7 @@ impl And {
     }
 }
 
-/// Four lines, two of each of two inputs: [`Line`].
+/// Four lines, two of each of two inputs: see [`Line`].
 #[derive(Debug, Clone)]
 struct Lines {
     base: [f64; 4],
@@ -104,7 +104,7 @@ impl Lines {
         }
     }
 
-    /// Their degrees at the values of the two inputs.
+    /// Returns the degrees of the lines at the values of the two inputs.
     #[inline(always)]
     fn degrees<S: Simd>(&self, simd: S, [x, y]: [f64; 2]) -> f64x4<S> {
         let at = four(simd, &[x, x, y, y]);
@@ -113,13 +113,13 @@ impl Lines {
     }
 }
 
-/// The two lines of an interval of an axis.
+/// Returns the two lines of an interval of an axis.
 fn lines(table: &OwnedTable, axis: &Axis, interval: usize) -> Option<[Line; 2]> {
     let first = axis.first_line as usize + 2 * interval;
     table.lines.get(first..first + 2)?.try_into().ok()
 }
 
-/// Firing strengths, 0 where they are below the least one.
+/// Returns the firing strengths, with those below `least` replaced by 0.
 #[inline(always)]
 fn fires<S: Simd>(simd: S, strengths: f64x4<S>, least: f64) -> f64x4<S> {
     let is_below = strengths.simd_lt(splat(simd, least));

@@ -1,14 +1,14 @@
-//! What changes next if one input changes.
+//! The nearest changes in the result if one input changes.
 
 use alloc::{string::String, vec::Vec};
 
 use super::{Engine, EvaluateError};
 use crate::{model::Variable, table::Outcome};
 
-/// Even steps over the range of an input; between them its terms' corners are examined too.
+/// The number of evenly spaced steps over the range of an input. The corners of its terms are examined in addition.
 const STEPS: usize = 200;
 
-/// The nearest change if one input changes and the others stay.
+/// The nearest change of the result if one input changes and the others do not.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -16,39 +16,40 @@ const STEPS: usize = 200;
 pub struct Change {
     /// The input that changes.
     pub input: String,
-    /// The value of the input from which on the change holds.
+    /// The value of the input at which the change takes effect.
     pub at: f64,
-    /// How far that is from its value now; negative below it.
+    /// The difference between that value and the current one; negative if it is below.
     pub by: f64,
     /// Whether the input decreases. Not serialised.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub is_below: bool,
-    /// What changes.
+    /// The effect of the change.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub effect: Effect,
 }
 
-/// What changes if an input changes.
+/// The effect of changing an input.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(tag = "effect", rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Effect {
-    /// Another term of the input has the largest degree; none where all are 0.
+    /// A different term of the input has the largest degree; `None` if all degrees are 0.
     Term {
         /// The term.
         term: Option<String>,
     },
-    /// Another rule is the dominant one of an output.
+    /// A different rule is the dominant rule of an output.
     Rule {
-        /// The output.
+        /// The name of the output.
         output: String,
-        /// The index of the rule in the model, none where no rule fires; serialised, rules count from 1.
+        /// The index of the rule in the model, `None` if no rule fires; serialised as the rule number, which counts
+        /// from 1.
         #[cfg_attr(feature = "serde", serde(serialize_with = "rule_number"))]
         #[cfg_attr(feature = "schema", schemars(with = "Option<usize>", range(min = 1)))]
         rule: Option<usize>,
-        /// The value of the output there.
+        /// The value of the output at the changed input.
         value: Option<f64>,
     },
 }
@@ -59,15 +60,16 @@ fn rule_number<S: serde::Serializer>(rule: &Option<usize>, to: S) -> Result<S::O
 }
 
 impl Engine {
-    /// For each input, with the others as they are, the nearest values below and above it at which another term of it is the
-    /// strongest, and at which another rule is the dominant one of an output.
+    /// Returns, for each input, the nearest values below and above its current one at which a different term of it has
+    /// the largest degree, or a different rule is the dominant rule of an output. The other inputs keep their values.
     ///
-    /// A change that lies between two neighbouring steps of 200 over the range, and is undone between them, may be missed.
+    /// The search examines 200 evenly spaced steps over the range. A change that is reversed before the next step may
+    /// be missed.
     ///
     /// # Errors
-    /// Not one finite value for each input.
+    /// `inputs` does not have one finite value per input.
     ///
-    /// # Example: how much warmer until the fan is fast?
+    /// # Example: the temperature increase at which the fan becomes fast
     /// ```
     /// use fuzzy::{Engine, Model, engine::Effect};
     ///
@@ -120,7 +122,8 @@ impl Engine {
     }
 }
 
-/// Values of an input to look at, rising: even steps, and the places where its terms change their run, each with the numbers beside it.
+/// Returns the values of an input to examine, in ascending order: evenly spaced ones, and the corners of its terms with
+/// their neighbouring numbers.
 fn places(variable: &Variable) -> Vec<f64> {
     let (low, high) = (variable.low, variable.high);
     let even = (0..=STEPS).map(|i| {
@@ -138,7 +141,7 @@ fn places(variable: &Variable) -> Vec<f64> {
     places
 }
 
-/// A way from the value of an input towards an end of its range.
+/// A search from the value of an input towards one end of its range.
 struct Walk<'a> {
     engine: &'a Engine,
     inputs: &'a [f64],
@@ -155,7 +158,7 @@ impl Walk<'_> {
             let terms = self.variable.terms.iter();
             let degrees = terms.map(|term| (term, term.membership(x)));
             let degrees = degrees.filter(|(_, degree)| *degree > 0.0);
-            // Of equal degrees the first term.
+            // The first of the terms with the largest degree.
             let strongest = degrees.reduce(|a, b| if b.1 > a.1 { b } else { a });
             strongest.map(|(term, _)| term.name.as_str())
         };
@@ -184,7 +187,7 @@ impl Walk<'_> {
         Some(self.change(at, effect))
     }
 
-    /// The nearest value on the way where `same` no longer holds, by bisection between two places.
+    /// Returns the nearest value at which `same` is false, by bisection between two examined values.
     fn first(&self, places: &[f64], same: impl Fn(f64) -> bool) -> Option<f64> {
         let changed = places.iter().position(|x| !same(*x))?;
         let mut to = *places.get(changed)?;

@@ -1,4 +1,4 @@
-//! Findings that an author accepts: `allow: [{finding: jump, because: limits of the regulation}]`.
+//! The list of findings that an author accepts: `allow: [{finding: jump, because: limits of the regulation}]`.
 
 use alloc::{format, vec::Vec};
 use core::ops::Range;
@@ -12,7 +12,7 @@ use crate::{
 
 pub(super) const KEYS: [&str; 2] = ["finding", "because"];
 
-/// The codes of findings that an author can accept: those of the analysis that depend on the rule set alone.
+/// The codes of findings that an author can accept: the findings of the analysis that depend only on the rule set.
 pub(crate) const CODES: [&str; 14] = [
     "uncovered",
     "no-rule-fires",
@@ -72,7 +72,7 @@ fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<A
     })
 }
 
-/// The key `allow` of a file; `None` if the author accepts no findings.
+/// Returns the value of the key `allow`; `None` if the author accepts no findings.
 pub(super) fn write(allow: &[Allowed]) -> Option<Node> {
     let entries = allow.iter().map(|one| {
         Node::mapping([

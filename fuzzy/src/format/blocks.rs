@@ -26,7 +26,7 @@ pub(super) const COMPARISONS: [(&str, Comparison); 6] = [
     ("above", Comparison::Above),
 ];
 
-/// Reads the blocks; what a block does not say is as in `model`.
+/// Reads the blocks; keys that a block omits are as in `model`.
 pub(super) fn read(
     node: &Node,
     model: &mut Model,
@@ -105,8 +105,8 @@ fn one(
     block
 }
 
-/// `general`, `{first: 1}`, `{first: {rules: 2, at_least: 0.1}}`, `{threshold: {at_least: 0.3}}`; the span of the whole goes to
-/// `span`.
+/// Reads `general`, `{first: 1}`, `{first: {rules: 2, at_least: 0.1}}` or `{threshold: {at_least: 0.3}}`; `span` is set
+/// to the position of the whole value.
 pub(super) fn activation(
     what: &str,
     node: &Node,
@@ -150,7 +150,7 @@ pub(super) fn activation(
             rules: count(&of, method.value, findings)?,
         }),
         "threshold" => threshold(&of, method.value, findings),
-        // An unknown key is a finding.
+        // Unknown keys are reported elsewhere.
         _ => None,
     }
 }
@@ -160,7 +160,7 @@ fn count(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<u32>
     Some(u32::try_from(rules).unwrap_or(u32::MAX))
 }
 
-/// `2`, or `{rules: 2, at_least: 0.1}`
+/// Reads `2` or `{rules: 2, at_least: 0.1}`.
 fn counted(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(u32, f64)> {
     let Value::Mapping(_) = &node.value else {
         return Some((count(what, node, findings)?, 0.0));
@@ -174,7 +174,7 @@ fn counted(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(u
     Some((rules?, at_least?))
 }
 
-/// `{at_least: 0.3}`
+/// Reads `{at_least: 0.3}`.
 fn threshold(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Activation> {
     let help = "write `{at_least: 0.3}`, or `below`, `at_most`, `equal`, `not_equal`, `above`";
     let Value::Mapping(_) = &node.value else {
@@ -199,7 +199,7 @@ fn threshold(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<
     })
 }
 
-/// The blocks of a model with their rules.
+/// Returns the blocks of a model with their rules.
 pub(super) fn write(model: &Model) -> Node {
     let blocks = model.blocks.iter().enumerate().map(|(index, block)| {
         let mut entries: Vec<(&str, Node)> = Vec::new();

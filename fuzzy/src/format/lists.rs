@@ -1,7 +1,7 @@
 //! Inputs, outputs, terms and blocks as lists of named entries: `[{name: heat, range: [0, 40], ...}]`.
 //!
-//! Some formats sort the keys of a mapping, and the order of these parts has a meaning: inputs are evaluated by position. So serde
-//! writes lists, and lists are read wherever mappings are.
+//! Some formats sort the keys of a mapping, but the order of these parts is significant: inputs are evaluated by
+//! position. Therefore the serde implementation writes lists, and lists can be read wherever mappings can.
 
 use alloc::{borrow::Cow, format, string::String, vec::Vec};
 
@@ -11,10 +11,11 @@ use crate::{
 };
 
 const NAME: &str = "name";
-/// The keys of a variable that have an entry for each term.
+/// The keys of a variable whose value has an entry per term.
 const TERMS: [&str; 2] = ["terms", "steps"];
 
-/// Replaces the lists of named entries by mappings, which the reader knows. An entry without a name is a finding and left out.
+/// Replaces lists of named entries by mappings, which the reader supports. An entry without a name is reported and
+/// omitted.
 pub(super) fn to_mappings<'t>(tree: &'t Node, findings: &mut Vec<Diagnostic>) -> Cow<'t, Node> {
     let has_lists = ["inputs", "outputs", "blocks"]
         .into_iter()
@@ -38,7 +39,7 @@ pub(super) fn from_mappings(tree: Node) -> Node {
                 let mut fields = Vec::from([(Node::text(NAME), name.clone())]);
                 match &entry.value {
                     Value::Mapping(own) => fields.extend(own.iter().cloned()),
-                    // Of `steps`: the last one has no limit, and not every format has a word for nothing.
+                    // In `steps`, the last term has no limit, and not every format has a null value.
                     _ if entry.is_null() => {}
                     _ => fields.push((Node::text("below"), entry.clone())),
                 }
@@ -49,7 +50,7 @@ pub(super) fn from_mappings(tree: Node) -> Node {
     })
 }
 
-/// Whether a part of a rule set, or the terms in it, is a list.
+/// Returns whether a part of a rule set, or the terms in it, is a list.
 fn has_list(key: &str, part: &Node) -> bool {
     match &part.value {
         Value::List(_) => true,
@@ -61,8 +62,8 @@ fn has_list(key: &str, part: &Node) -> bool {
     }
 }
 
-/// Changes the terms of each variable, and then the inputs, the outputs and the blocks. `change` gets the name of each for
-/// messages, such as ``the terms of `heat` ``.
+/// Calls `change` for the terms of each variable, and then for the inputs, the outputs and the blocks. Its first
+/// argument describes the part for messages, such as ``the terms of `heat` ``.
 fn changed(mut tree: Node, change: &mut impl FnMut(&str, &mut Node)) -> Node {
     for (key, part) in entries_mut(&mut tree) {
         let Some(key) = key else { continue };
@@ -101,7 +102,8 @@ fn changed(mut tree: Node, change: &mut impl FnMut(&str, &mut Node)) -> Node {
     tree
 }
 
-/// A list of named entries as a mapping; `None` of a list without mappings, which is not meant as one, and of what is not a list.
+/// Converts a list of named entries to a mapping; `None` for other values, including lists of which no entry is a
+/// mapping.
 fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<Node> {
     let Value::List(items) = &list.value else {
         return None;
@@ -128,7 +130,7 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
             None => {
                 let message = format!("{entry} has no `name`");
                 let finding = Diagnostic::error("missing-key", item.span.clone(), message);
-                // `- heat: {range: [0, 40]}` is a mapping of one entry.
+                // `- heat: {range: [0, 40]}` is a mapping with one entry.
                 let only = match own.as_slice() {
                     [(key, value)] if is_mapping(value) => text(key).map(|key| (key, value)),
                     _ => None,
@@ -148,7 +150,7 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
     Some(with(list, Value::Mapping(entries)))
 }
 
-/// Another value at the same place.
+/// Returns another value with the same position.
 fn with(node: &Node, value: Value) -> Node {
     Node {
         value,

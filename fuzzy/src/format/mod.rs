@@ -1,7 +1,7 @@
-//! The file format of rule sets, version 1: [`Model`] from a tree and back.
+//! The file format of rule sets, version 1: conversion between [`Model`]s and trees.
 //!
-//! The format has this one reader, whatever a rule set is written in: `yaml::parse` gives it a tree with spans, serde a
-//! tree without. `docs/rule-sets.md` documents the keys.
+//! There is only this reader for all text formats: `yaml::parse` passes it a tree with positions, serde a tree without
+//! them. `docs/rule-sets.md` documents the keys.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -37,22 +37,23 @@ pub use shapes::text as shape_text;
 #[doc(hidden)]
 pub use words::word_of_or;
 
-/// The version of the format this library reads and writes.
+/// The version of the format that this library reads and writes.
 pub const VERSION: u64 = 1;
 
-/// Reads a model from a tree. Reports all findings at once, except those that follow from another one.
+/// Reads a model from a tree. All findings are reported together, except those that follow from another finding.
 ///
 /// # Errors
-/// All findings, where one of them is an error. Without a text at hand they have no line and column.
+/// All findings, if any of them is an error. Without a text they have no line and column.
 #[doc(hidden)]
 pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
-    // A rule set without rules can be read: rules are learned into it.
+    // A rule set may have no rules, because rules can be learned for it.
     read_lacking(tree, |model, finding| {
         model.rules.is_empty() && finding.code == "no-rules"
     })
 }
 
-/// As [`read`], of a rule set that is being built: it may lack outputs and rules. An error tells errors alone.
+/// Works like [`read`] for an unfinished rule set, which may have no outputs and no rules. If there are errors, only
+/// these are returned.
 #[doc(hidden)]
 pub fn read_unfinished(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     read_lacking(tree, |model, finding| {
@@ -65,7 +66,7 @@ pub fn read_unfinished(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     })
 }
 
-/// Reads a model from a tree. What it `may_lack` is a warning.
+/// Reads a model from a tree. Missing parts that `may_lack` accepts are reported as warnings.
 fn read_lacking(
     tree: &Node,
     may_lack: fn(&Model, &Diagnostic) -> bool,
@@ -92,19 +93,20 @@ fn read_lacking(
     }
 }
 
-/// A rule set as far as it can be read, for editors.
+/// The readable part of a rule set, for editors.
 #[doc(hidden)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Partial {
-    /// What could be read. Of a part that could not, there is only the name.
+    /// The parts that could be read. Of a part that could not be read, only the name is included.
     pub model: Model,
-    /// Where its parts stand.
+    /// The positions of its parts.
     pub spans: Spans,
-    /// Some rule or spelt-out term could not be read, so that the names in it are unknown.
+    /// Whether a rule or a term with explicit membership function could not be read, so that the names in it are
+    /// unknown.
     pub names_unread: bool,
 }
 
-/// Reads as much as possible of a model from a tree; `None` without inputs and outputs.
+/// Reads as much of a model as possible from a tree; `None` if there are no inputs and outputs.
 #[doc(hidden)]
 pub fn read_partly(tree: &Node) -> Option<Partial> {
     let mut spans = Spans::default();
@@ -122,7 +124,7 @@ pub fn read_partly(tree: &Node) -> Option<Partial> {
     })
 }
 
-/// The model as far as it can be read. A part that cannot be read is a finding, and in the model only its name.
+/// Reads the model as far as possible. A part that cannot be read is reported, and only its name is included.
 fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Option<Model> {
     const KEYS: [&str; 12] = [
         "fuzzy",
@@ -155,7 +157,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
                 "this program reads version {VERSION}; a newer one may read this file"
             )),
         );
-        // Another version may mean something else by every other key.
+        // In another version, all other keys may have a different meaning.
         return None;
     }
     findings.append(&mut unknown_keys);
@@ -239,20 +241,21 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
     Some(model)
 }
 
-/// The model as a tree; reading it again gives the same model.
+/// Converts the model to a tree; reading it gives the same model.
 #[doc(hidden)]
 #[must_use]
 pub fn write(model: &Model) -> Node {
     write::model(model)
 }
 
-/// As [`write`], with a list of named entries for each mapping whose order has a meaning: many formats sort keys.
+/// Works like [`write`], but uses lists of named entries for mappings whose order is significant, because many formats
+/// sort keys.
 #[cfg(feature = "serde")]
 pub(crate) fn write_lists(model: &Model) -> Node {
     lists::from_mappings(write::model(model))
 }
 
-/// Text behind a key, where there is some.
+/// Returns the text of a key, if there is one.
 fn optional_text(
     fields: &crate::tree::Fields<'_>,
     key: &str,

@@ -1,4 +1,4 @@
-//! The commands that made a rule set: `provenance`.
+//! The commands that produced a rule set: `provenance`.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -100,7 +100,7 @@ fn loss(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<LossC
     })
 }
 
-/// The steps as they stand in a file; `None` where there are none.
+/// Returns the steps in the format of a file; `None` if there are no steps.
 pub(super) fn write(steps: &[Step]) -> Option<Node> {
     let steps: Vec<Node> = steps.iter().map(write_step).collect();
     (!steps.is_empty()).then(|| Node::list(steps))

@@ -1,4 +1,4 @@
-//! Rules in a file: `- IF ... THEN ...`, or a mapping that says where the rule came from.
+//! Rules in a file: `- IF ... THEN ...`, or a mapping that also contains the provenance of the rule.
 
 use alloc::{format, string::ToString, vec::Vec};
 use core::ops::Range;
@@ -13,7 +13,7 @@ use crate::{
 
 pub(super) const KEYS: [&str; 5] = ["rule", "confidence", "support", "against", "note"];
 
-/// Reads the rules of a list, which come after so many others.
+/// Reads the rules of a list; `before` is the number of rules that precede it.
 pub(super) fn read(
     node: &Node,
     before: usize,
@@ -102,7 +102,7 @@ fn one(
     Some(found)
 }
 
-/// A rule that a colon makes a mapping: `RULE 4 : IF ...`, or `IF ... THEN speed IS fast: why`.
+/// Reports a rule that a colon turns into a mapping: `RULE 4 : IF ...`, or `IF ... THEN speed IS fast: why`.
 fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
     let is_rule = |node: &Node| match &node.value {
         Value::Scalar(scalar) => {
@@ -123,7 +123,7 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
     Some(Diagnostic::error("wrong-type", key.span.clone(), message).help(help))
 }
 
-/// `{term: high, degree: 0.4, support: 3}`, with the spans of the term and the degree
+/// Reads `{term: high, degree: 0.4, support: 3}`; also returns the positions of the term and the degree.
 fn beaten(
     what: &str,
     node: &Node,
@@ -148,7 +148,8 @@ fn beaten(
     Some((beaten, term_span, span))
 }
 
-/// Parses the rule in a scalar, with the span of its weight; its spans become spans of the document.
+/// Parses the rule in a scalar, and also returns the position of its weight. Positions are converted to those in the
+/// document.
 fn parse(scalar: &Scalar, findings: &mut Vec<Diagnostic>) -> Option<(rule::Rule, Range<usize>)> {
     match rule::parse_with_weight(&scalar.text) {
         Ok((mut rule, weight)) => {
@@ -163,7 +164,7 @@ fn parse(scalar: &Scalar, findings: &mut Vec<Diagnostic>) -> Option<(rule::Rule,
     }
 }
 
-/// The rule as it stands in a file.
+/// Returns the rule in the format of a file.
 pub(super) fn write(rule: &Rule) -> Node {
     let text = Node::text(rule.rule.to_string());
     let is_bare = rule.confidence.is_none()

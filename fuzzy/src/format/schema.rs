@@ -1,7 +1,8 @@
-//! The file format as a JSON Schema (draft 2020-12), for editors that complete and check while one types.
+//! The file format as a JSON Schema (draft 2020-12), for editors that complete and check while typing.
 //!
-//! It is made from the tables that read the format, so it lists the membership functions and operators that exist. What a
-//! schema cannot express (parameters in order, names in rules) [`validate`](crate::validate()) checks.
+//! The schema is generated from the tables that the reader uses, so it lists exactly the existing membership functions
+//! and operators. Constraints that a schema cannot express (the order of parameters, names in rules) are checked by
+//! [`validate`](crate::validate()).
 
 mod nodes;
 
@@ -24,7 +25,7 @@ use crate::{
     tree::Node,
 };
 
-/// The schema as a tree; `rules/schema.json` is what serde makes of it.
+/// Returns the schema as a tree; `rules/schema.json` is its serialization.
 ///
 /// # Example
 /// ```
@@ -134,7 +135,7 @@ fn definitions() -> Node {
     ])
 }
 
-/// What stands behind a key of an input or output.
+/// Returns the schema of a key of an input or output.
 fn variable_key(key: &str) -> Node {
     match key {
         "description" => text("What it means"),
@@ -223,7 +224,7 @@ fn variable_key(key: &str) -> Node {
         "clamp" => boolean(
             "Whether a value outside the range is clamped to it; only a weighted defuzzifier gives one",
         ),
-        // Every key that is read has its line above; a new one is at least allowed.
+        // All keys that are read have an entry above; a new key is at least allowed.
         _ => Node::mapping(Entries::new()),
     }
 }
@@ -285,7 +286,7 @@ fn step() -> Node {
     ))
 }
 
-/// A name may look like a number or like yes and no.
+/// A name may look like a number or a boolean.
 fn scalar() -> Node {
     Node::list(["string", "number", "boolean"].map(Node::text).into())
 }
@@ -349,7 +350,7 @@ fn term() -> Node {
     Node::mapping(entries)
 }
 
-/// The parameters of a shape, in each spelling it has.
+/// Returns the schema of the parameters of a shape, with all its notations.
 fn shape(form: &Form) -> Node {
     let properties = form.parameters.iter().map(|(name, role)| {
         let mut entries = Vec::from([("type", Node::text("number"))]);
@@ -372,7 +373,7 @@ fn shape(form: &Form) -> Node {
     any_of(form.about, options)
 }
 
-/// With the aggregation, or as a block has them.
+/// Returns the schema of operators. `all` adds the aggregation, which blocks do not have.
 fn operators(description: &str, all: bool) -> Node {
     let properties = [
         ("and", words("AND; minimum where absent", &CONJUNCTIONS)),
@@ -494,7 +495,7 @@ fn rule() -> Node {
 }
 
 fn rule_text() -> Node {
-    // Comments and space may come first; a rule of only these is none.
+    // Comments and space may precede the rule; a text that consists only of these is not a rule.
     let pattern = r"^(\s|#[^\n]*\n)*[Ii][Ff]\b";
     about(
         "IF input IS [not|very|somewhat|extremely|seldom|any] term {AND|OR ...} THEN output IS term [WITH weight]",
@@ -509,7 +510,7 @@ fn rule_text() -> Node {
 mod tests {
     use super::*;
 
-    /// `UPDATE_SCHEMA=1 cargo test -p flagred-fuzzy schema` writes the file anew.
+    /// `UPDATE_SCHEMA=1 cargo test -p flagred-fuzzy schema` updates the file.
     #[test]
     fn the_file_is_what_the_types_say() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/schema.json");

@@ -1,4 +1,4 @@
-//! Membership functions in a document: read by the forms that the shapes have, and written.
+//! Reading and writing membership functions in a document, based on the table of shapes.
 
 use alloc::{
     format,
@@ -13,8 +13,8 @@ use crate::{
     tree::{Fields, Node, Value},
 };
 
-/// Reads the membership function out of a term `{triangle: [0, 1, 2], height: 1}`; `term` names it in messages. The
-/// spans of its parameters go to `spans`.
+/// Reads the membership function of a term such as `{triangle: [0, 1, 2], height: 1}`; `term` names it in messages. The
+/// positions of its parameters are added to `spans`.
 pub(super) fn read(
     term: &str,
     fields: &Fields<'_>,
@@ -43,7 +43,7 @@ pub(super) fn read(
             message,
         );
         finding.help = match &shape.value.value {
-            // `{type: triangle, points: [0, 1, 2]}`
+            // For example `{type: triangle, points: [0, 1, 2]}`.
             Value::Scalar(name) if known.clone().any(|known| known == name.text) => Some(format!(
                 "a membership function is the key itself: `{{{}: ...}}`",
                 name.text
@@ -102,7 +102,7 @@ fn by_form(
                 read(parameter, node, findings);
             }
         }
-        // One parameter needs no brackets.
+        // A single parameter needs no brackets.
         Value::Scalar(_) if names.len() == 1 => {
             read(names.first().copied().unwrap_or(""), node, findings);
         }
@@ -134,7 +134,7 @@ fn by_form(
     (form.build)(&values)
 }
 
-/// How the shape is written, for messages.
+/// Returns the notation of the shape for messages.
 fn spelling(form: &Form) -> String {
     let names = form.names();
     let list = names.join(", ");
@@ -181,7 +181,7 @@ fn points(
     (points.len() == items.len()).then_some(MembershipFunction::Piecewise { points })
 }
 
-/// `function: 2 * speed^2 + 1`
+/// Reads `function: 2 * speed^2 + 1`.
 fn function(
     term: &str,
     node: &Node,
@@ -243,7 +243,7 @@ fn linear(
     })
 }
 
-/// The shape as the key and the value of a term's mapping.
+/// Returns the shape as the key and the value in a term's mapping.
 pub(super) fn write(shape: &MembershipFunction) -> (&'static str, Node) {
     let numbers = |values: &[f64]| Node::list(values.iter().copied().map(Node::number).collect());
     match shape.parts() {
@@ -274,7 +274,7 @@ pub(super) fn write(shape: &MembershipFunction) -> (&'static str, Node) {
     }
 }
 
-/// A membership function as it stands in a file, in one line: `triangle: [0, 2, 4]`.
+/// Formats a membership function as in a file, on one line: `triangle: [0, 2, 4]`.
 pub fn text(shape: &MembershipFunction) -> String {
     fn flow(node: &Node) -> String {
         match &node.value {

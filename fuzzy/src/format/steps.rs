@@ -1,4 +1,4 @@
-//! Terms by their limits: `steps: {fine: 36, stretched: 43, over: }`.
+//! Terms that are defined by their limits: `steps: {fine: 36, stretched: 43, over: }`.
 
 use alloc::{format, vec::Vec};
 
@@ -12,7 +12,7 @@ use crate::{
 const HELP: &str =
     "write the limit of each term, and none for the last: `steps: {low: 10, medium: 20, high: }`";
 
-/// Reads the terms of a variable by their limits.
+/// Reads the terms of a variable that are defined by limits.
 pub(super) fn read(
     what: &str,
     node: &Node,
@@ -35,7 +35,7 @@ pub(super) fn read(
     }
     if findings.len() == before {
         order(what, &steps, findings);
-        // Formats that sort keys do not keep the order in which the terms were written.
+        // Formats that sort keys do not preserve the order in which the terms were written.
         let by_limit = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
         steps.sort_by(|(_, a), (_, b)| by_limit(*a).total_cmp(&by_limit(*b)));
         check(what, node, &steps, variable, findings);
@@ -69,7 +69,7 @@ pub(super) fn read(
     spans.terms_unread = variable.terms.is_empty();
 }
 
-/// The limit of a term: a number, nothing, or `{below: 36}` as the lists of serde have it.
+/// Reads the limit of a term: a number, null, or `{below: 36}` as in the lists of serde.
 fn limit(what: &str, entry: &Entry<'_>, findings: &mut Vec<Diagnostic>) -> Option<f64> {
     let limit = format!("the limit of `{}` of {what}", entry.key);
     let number = match &entry.value.value {
@@ -83,7 +83,7 @@ fn limit(what: &str, entry: &Entry<'_>, findings: &mut Vec<Diagnostic>) -> Optio
     number.finite(&limit, findings)
 }
 
-/// Where the number of a limit stands.
+/// Returns the node that contains the number of a limit.
 fn number(value: &Node) -> &Node {
     match &value.value {
         Value::Mapping(entries) => entries.first().map_or(value, |(_, number)| number),
@@ -91,7 +91,7 @@ fn number(value: &Node) -> &Node {
     }
 }
 
-/// Warns of limits that fall in the order in which they are written: one of them may be a mistake.
+/// Warns about limits that decrease in the order of the text, because one of them may be a mistake.
 fn order(what: &str, steps: &[(Entry<'_>, Option<f64>)], findings: &mut Vec<Diagnostic>) {
     for pair in steps.windows(2) {
         if let [(left, Some(high)), (right, Some(low))] = pair
@@ -111,7 +111,7 @@ fn order(what: &str, steps: &[(Entry<'_>, Option<f64>)], findings: &mut Vec<Diag
     }
 }
 
-/// Reports limits that do not divide the range into the terms; the steps are sorted.
+/// Reports limits that do not divide the range into the terms; `steps` must be sorted.
 fn check(
     what: &str,
     node: &Node,

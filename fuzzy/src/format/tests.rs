@@ -24,7 +24,7 @@ fn with_condition(model: &mut Model, condition: Condition) {
     first_rule(model).condition = condition;
 }
 
-/// All rules in one block.
+/// Moves all rules into one block.
 fn in_block(model: &mut Model) -> &mut Block {
     for rule in &mut model.rules {
         rule.block = 0;
@@ -33,10 +33,10 @@ fn in_block(model: &mut Model) -> &mut Block {
     &mut model.blocks[0]
 }
 
-/// A code, and what makes a model deserve it.
+/// A finding's code, and a change to a model that causes it.
 type Mistake = (&'static str, fn(&mut Model));
 
-/// Every way to break a model, and the code of what is wrong then.
+/// All ways to invalidate a model, with the code of the expected finding.
 const MISTAKES: [Mistake; 39] = [
     ("value-outside-range", |m| m.least_strength = 0.0),
     ("value-outside-range", |m| {
@@ -172,7 +172,7 @@ const MISTAKES: [Mistake; 39] = [
         with_condition(m, Condition::is(&m.inputs[0].name.clone(), "nothing"))
     }),
     ("circular-outputs", |m| {
-        // The rules of a disabled block read nothing.
+        // The rules of a disabled block do not read anything.
         m.blocks.iter_mut().for_each(|block| block.enabled = true);
         with_condition(m, Condition::is("the output", "t 0"))
     }),
@@ -215,7 +215,8 @@ proptest! {
         prop_assert_eq!(&crate::yaml::parse(&text).unwrap().model, &model, "{}", text);
     }
 
-    /// What compiles can be written and read, and what reads without error compiles, unless it has no rules yet.
+    /// Every model that compiles can be written and read, and every model that is read without errors compiles, unless
+    /// it has no rules yet.
     #[test]
     fn reading_and_compiling_refuse_the_same_models(
         model in any_model(),
@@ -243,7 +244,7 @@ proptest! {
         }
     }
 
-    /// Each mistake is found by compiling and by reading; reading marks it in the text.
+    /// Each error is reported when compiling and when reading; reading also reports its position in the text.
     #[test]
     fn every_mistake_is_found_with_its_position(model in valid_model(), (code, make) in select(&MISTAKES[..])) {
         let mut model = model;
@@ -257,7 +258,8 @@ proptest! {
         }
     }
 
-    /// Whatever compiles answers: a value in the output's range, or that no rule fires, never a silent number.
+    /// Every model that compiles yields an outcome: a value in the output's range, or the information that no rule
+    /// fires, but never an arbitrary number.
     #[test]
     fn a_model_that_compiles_answers_every_finite_input(
         model in valid_model(),
@@ -292,18 +294,18 @@ proptest! {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
-    /// What we write means the same to the YAML organisation's crate, and what it writes to us.
+    /// The YAML organisation's crate reads the same model from our text, and we read the same model from its text.
     #[test]
     fn generated_rule_sets_mean_the_same_to_another_reader(model in valid_model()) {
         let ours = crate::yaml::to_string(&model);
         let read = serde_yaml::from_str::<Model>(&ours);
         prop_assert_eq!(read.as_ref().ok(), Some(&model), "{}\n{:?}", ours, read);
-        // They write text of line breaks alone as a block that our YAML library takes for empty.
+        // That crate writes text that consists of line breaks as a block that our YAML library reads as empty.
         let outputs = model.outputs.iter().map(|output| &output.variable);
         let texts = model.inputs.iter().chain(outputs).flat_map(|v| [&v.unit, &v.description]);
         let texts = texts.chain(model.rules.iter().map(|rule| &rule.note));
         let texts = texts.chain(model.blocks.iter().map(|block| &block.description)).flatten();
-        // The two fold the line separators of YAML 1.1 in different ways.
+        // The two fold the line separators of YAML 1.1 differently.
         let separators = ['\u{85}', '\u{2028}', '\u{2029}'];
         let is_alike = |text: &String| !text.trim_matches('\n').is_empty() && !text.contains(separators);
         prop_assume!(texts.chain([&model.name]).all(is_alike));

@@ -1,4 +1,4 @@
-//! Inputs and outputs: ranges, partitions, terms.
+//! Reading inputs and outputs: ranges, partitions, terms.
 
 use alloc::{
     collections::BTreeMap,
@@ -105,7 +105,7 @@ pub(super) fn outputs(
     Some(entries.iter().map(read).collect())
 }
 
-/// `{midpoint: 1000}`; the span of the number goes to `span`.
+/// Reads `{midpoint: 1000}`; `span` is set to the position of the number.
 fn samples(
     node: &Node,
     span: &mut Range<usize>,
@@ -135,7 +135,8 @@ fn samples(
     })
 }
 
-/// `undefined`, `error`, `previous`, `{value: 50}` or `{previous: 50}`; the span of the value goes to `span`.
+/// Reads `undefined`, `error`, `previous`, `{value: 50}` or `{previous: 50}`; `span` is set to the position of the
+/// value.
 fn no_rule_fires(
     what: &str,
     node: &Node,
@@ -175,7 +176,7 @@ fn no_rule_fires(
     node.choice(&key, &words, findings)
 }
 
-/// The variable as far as it can be read: its name and those of its terms stand even where the rest is wrong.
+/// Reads a variable as far as possible: its name and the names of its terms are included even if the rest is invalid.
 fn variable(
     what: &str,
     entry: &Entry<'_>,
@@ -247,7 +248,7 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
     Some((low?, high?))
 }
 
-/// `{low: 0, high: 1}` (peaks) or `[low, high]` (evenly spaced over the range)
+/// Reads `{low: 0, high: 1}` (peaks) or `[low, high]` (evenly spaced over the range).
 fn partition(
     what: &str,
     node: &Node,
@@ -292,7 +293,7 @@ fn partition(
                             .into(),
                     );
                 }
-                // `{dry, wet}`
+                // For example `{dry, wet}`.
                 if entries.iter().all(|entry| entry.value.is_null())
                     && let Some(finding) = findings.get_mut(before)
                 {
@@ -300,7 +301,7 @@ fn partition(
                     let names = names.join(", ");
                     finding.help = Some(format!("for even spacing write a list: `[{names}]`"));
                 }
-                // `{warm: 20,5}` reads as a term `5` without a peak.
+                // `{warm: 20,5}` is parsed as a term `5` without a peak.
                 if entry.value.is_null()
                     && entry.key.bytes().all(|c| c.is_ascii_digit())
                     && let Some(finding) = findings.get_mut(before)
@@ -311,7 +312,7 @@ fn partition(
             if found.len() == entries.len() {
                 let mut peaks_of: Vec<_> = entries.into_iter().zip(found).collect();
                 falling(what, &peaks_of, findings);
-                // Formats that sort keys do not keep the order in which the terms were written.
+                // Formats that sort keys do not preserve the order in which the terms were written.
                 peaks_of.sort_by(|(_, a), (_, b)| a.total_cmp(b));
                 (entries, found) = peaks_of.into_iter().unzip();
                 names = entries.iter().map(|one| (one.key, one.value)).collect();
@@ -363,7 +364,7 @@ fn term_spans<'a>(names: impl Iterator<Item = &'a Range<usize>>) -> Vec<TermSpan
     spans.collect()
 }
 
-/// Warns of peaks that fall in the order in which they are written: one of them may be a mistake.
+/// Warns about peaks that decrease in the order of the text, because one of them may be a mistake.
 fn falling(what: &str, peaks: &[(Entry<'_>, f64)], findings: &mut Vec<Diagnostic>) {
     for pair in peaks.windows(2) {
         if let [(left, high), (right, low)] = pair
@@ -381,7 +382,7 @@ fn falling(what: &str, peaks: &[(Entry<'_>, f64)], findings: &mut Vec<Diagnostic
     }
 }
 
-/// Whether ascending peaks of a partition differ and lie in the range.
+/// Returns whether ascending peaks of a partition are distinct and in the range.
 fn rising(
     what: &str,
     names: &[(&str, &Node)],
@@ -402,7 +403,7 @@ fn rising(
                     .help("give each term of a partition a peak of its own"),
             );
         }
-        // Where the range is the wrong way round, that is the finding.
+        // An inverted range is reported on its own.
         let has_range = variable.low < variable.high;
         if has_range && (peak < variable.low || peak > variable.high) {
             let (low, high) = (variable.low, variable.high);
@@ -419,7 +420,8 @@ fn rising(
     findings.len() == before
 }
 
-/// A term whose membership function cannot be read: its name is known, so that rules that name it are not told off.
+/// Returns a term whose membership function cannot be read. Its name is known, so that rules that use it are not
+/// reported.
 pub(super) fn unread(name: &str) -> Term {
     Term {
         name: String::from(name),
@@ -428,7 +430,7 @@ pub(super) fn unread(name: &str) -> Term {
     }
 }
 
-/// `{low: {triangle: [0, 1, 2], height: 0.8}}`
+/// Reads `{low: {triangle: [0, 1, 2], height: 0.8}}`.
 fn terms(
     what: &str,
     node: &Node,
@@ -479,7 +481,7 @@ fn term(
         }));
         return None;
     };
-    // Which keys are known depends on the membership function, so any key is let through here and looked at there.
+    // The valid keys depend on the membership function, so all keys are accepted here and checked there.
     let keys: Vec<&str> = pairs
         .iter()
         .filter_map(|(key, _)| match &key.value {

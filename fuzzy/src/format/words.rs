@@ -1,4 +1,4 @@
-//! The words of the format for operators and defuzzifiers.
+//! The names of operators and defuzzifiers in the format.
 
 use alloc::vec::Vec;
 
@@ -50,7 +50,7 @@ pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); Defuzzifier::ALL.len()] = [
     ("tsukamoto", Defuzzifier::Tsukamoto),
 ];
 
-/// The word for a value; every value has one.
+/// Returns the word for a value; every value has one.
 pub(super) fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'static str {
     words
         .iter()
@@ -58,12 +58,12 @@ pub(super) fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'
         .map_or("", |(word, _)| *word)
 }
 
-/// The word for a disjunction.
+/// Returns the word for a disjunction.
 pub fn word_of_or(or: Disjunction) -> &'static str {
     word_of(&DISJUNCTIONS, or)
 }
 
-/// Reads operators under some of the keys; what is not written is as in `otherwise`.
+/// Reads operators from some of the keys; omitted operators are as in `otherwise`.
 pub(super) fn operators(
     node: &Node,
     what: &str,
@@ -92,7 +92,7 @@ pub(super) fn operators(
     Some(operators)
 }
 
-/// The operators in a file, each with its key.
+/// Returns the operators in the format of a file, each with its key.
 pub(super) fn written(operators: Operators) -> [(&'static str, Node); 4] {
     [
         ("and", Node::text(word_of(&CONJUNCTIONS, operators.and))),

@@ -1,4 +1,4 @@
-//! A model as a tree, in the short forms where they mean the same.
+//! Conversion of a model to a tree, in the short notations where possible.
 
 use alloc::{string::String, vec::Vec};
 
@@ -89,7 +89,7 @@ fn output(output: &Output) -> Node {
     Node::mapping(entries)
 }
 
-/// The terms, as a partition or as steps where they are.
+/// Returns the terms; as a partition or as steps if they form one.
 fn terms(variable: &Variable) -> (&'static str, Node) {
     let terms = &variable.terms;
     let names = || terms.iter().map(|term| term.name.as_str());

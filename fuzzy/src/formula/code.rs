@@ -1,39 +1,40 @@
-//! Formulas as flat code: all that a table in firmware knows of them.
+//! Formulas as flat code, which is also used by tables in firmware.
 
 use libm::{
     acos, acosh, asin, asinh, atan, atan2, atanh, ceil, cos, cosh, exp, fabs, floor, fmod, log,
     log1p, log10, pow, round, sin, sinh, sqrt, tan, tanh,
 };
 
-/// An operation's number, and its operand: of [`Operation::NUMBER`] the number, of [`Operation::INPUT`] the index of the
-/// variable. A pair of numbers, as the corners of piecewise linear terms are, with which code shares an array.
+/// The code of an operation, followed by its operand: the number for [`Operation::NUMBER`], and the index of the
+/// variable for [`Operation::INPUT`]. It is a pair of numbers because code shares an array with the corners of
+/// piecewise linear terms.
 pub(crate) type Instruction = [f64; 2];
 
 /// An operation on a stack of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Operation(pub(crate) u32);
 
-/// The deepest stack of an evaluation.
+/// The maximum depth of the evaluation stack.
 pub(crate) const DEEPEST: usize = 32;
 
-/// An operation with its name in formulas and the number of its operands.
+/// Defines operations, each with its name in formulas, its code and its operands.
 macro_rules! operations {
     ($($name:ident $word:literal $number:literal ($($operand:ident),*) $value:expr;)+) => {
         impl Operation {
-            /// Push a number.
+            /// Pushes a number.
             pub(crate) const NUMBER: Operation = Operation(0);
-            /// Push the value of a variable.
+            /// Pushes the value of a variable.
             pub(crate) const INPUT: Operation = Operation(1);
             $(pub(crate) const $name: Operation = Operation($number);)+
 
-            /// All that have operands: the name, and how many operands.
+            /// All operations that have operands, each with its name and the number of operands.
             #[cfg(feature = "alloc")]
             pub(crate) const ALL: &[(Operation, &str, usize)] = &[
                 $((Operation($number), $word, [$(stringify!($operand)),*].len())),+
             ];
 
-            /// The number that operands give; `b` counts only where there are two. Comparisons and logic give 1 for true and
-            /// 0 for false, and take every number but 0 for true.
+            /// Returns the result of the operation; `b` is ignored if it takes one operand. Comparisons and logical
+            /// operations return 1 for true and 0 for false; as operands, all numbers other than 0 are true.
             fn of(self, a: f64, b: f64) -> f64 {
                 match self {
                     $(Operation::$name => {
@@ -57,7 +58,7 @@ macro_rules! operations {
     (@bind ($a:ident, $b:ident) ($x:ident, $y:ident)) => { let ($x, $y) = ($a, $b); };
 }
 
-// The numbers stand in exported data, and never change.
+// The codes appear in exported data and must never change.
 operations! {
     OR "or" 2 (x, y) truth(x != 0.0 || y != 0.0);
     AND "and" 3 (x, y) truth(x != 0.0 && y != 0.0);
@@ -111,7 +112,7 @@ impl Operation {
         [f64::from(self.0), operand]
     }
 
-    /// The index of the variable that an instruction reads.
+    /// Returns the index of the variable that an instruction reads.
     #[cfg(feature = "alloc")]
     pub(crate) fn input_of(instruction: &Instruction) -> Option<usize> {
         let [operation, operand] = *instruction;
@@ -119,7 +120,7 @@ impl Operation {
     }
 }
 
-/// The value of a formula; NaN of code that is damaged.
+/// Returns the value of a formula; NaN if the code is damaged.
 pub(crate) fn evaluate(code: &[Instruction], value: impl Fn(usize) -> f64) -> f64 {
     let mut stack = [f64::NAN; DEEPEST];
     let mut depth = 0usize;
@@ -144,7 +145,7 @@ pub(crate) fn evaluate(code: &[Instruction], value: impl Fn(usize) -> f64) -> f6
     result
 }
 
-/// How deep the stack becomes.
+/// Returns the maximum depth of the stack during evaluation.
 #[cfg(feature = "alloc")]
 pub(crate) fn depth(code: &[Instruction]) -> usize {
     let (mut depth, mut deepest) = (0usize, 0);

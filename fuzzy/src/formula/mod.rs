@@ -1,7 +1,7 @@
 //! Formulas over the values of variables, such as `2 * speed^2 + min(wind, 1)`.
 //!
-//! A formula is parsed once into flat code and evaluated without allocation. Its functions are `libm`'s, so the same values
-//! give the same bits on every machine.
+//! A formula is parsed once to flat code, and evaluated without allocation. Its functions are those of `libm`, so the
+//! results for the same values are bitwise equal on every machine.
 
 mod code;
 #[cfg(feature = "alloc")]
@@ -25,7 +25,7 @@ pub(crate) use code::{Instruction, Operation};
 
 /// A formula over the values of variables.
 ///
-/// # Example: parsed once, evaluated often, printed back
+/// # Example: parse, evaluate and print a formula
 /// ```
 /// use fuzzy::model::Formula;
 ///
@@ -40,9 +40,9 @@ pub(crate) use code::{Instruction, Operation};
 #[derive(Debug, Clone)]
 pub struct Formula {
     expression: Expression,
-    /// What it reads, each variable once, in the order in which they are first named.
+    /// The variables that it reads, each once, in the order of their first occurrence.
     variables: Vec<Variable>,
-    /// Reads the variables by their index in that list.
+    /// The code, which reads the variables by their index in `variables`.
     code: Vec<Instruction>,
 }
 
@@ -51,7 +51,7 @@ pub struct Formula {
 #[derive(Debug, Clone)]
 pub(crate) struct Variable {
     pub(crate) name: String,
-    /// Where it is named, from left to right.
+    /// The positions of its name, from left to right.
     pub(crate) spans: Vec<Range<usize>>,
 }
 
@@ -59,28 +59,28 @@ pub(crate) struct Variable {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Expression {
     Number(f64),
-    /// By its index in [`Formula::variables`].
+    /// The index in [`Formula::variables`].
     Variable(usize),
-    /// An operator or a function of one or two numbers.
+    /// An operator or a function with one or two operands.
     Apply(Operation, Vec<Expression>),
 }
 
-/// Deeper brackets than this are an error: a tree is walked by recursion.
+/// The maximum nesting depth of brackets; deeper nesting is an error because a tree is processed recursively.
 #[cfg(feature = "alloc")]
 const DEEPEST_NESTING: usize = 64;
-/// More numbers, variables and operations than this are an error.
+/// The maximum count of numbers, variables and operations.
 #[cfg(feature = "alloc")]
 const LONGEST: usize = 1000;
 
 #[cfg(feature = "alloc")]
 impl Formula {
-    /// The names of the variables that it reads, each once, in the order in which they are first named.
+    /// Returns the names of the variables that it reads, each once, in the order of their first occurrence.
     pub fn variables(&self) -> impl ExactSizeIterator<Item = &str> {
         self.variables.iter().map(|variable| &*variable.name)
     }
 
-    /// Its value where `value` gives those of the variables. It is NaN or infinite where the formula has no value, such as
-    /// that of `1 / x` at 0.
+    /// Returns its value, where `value` returns the values of the variables. The result is NaN or infinite if the
+    /// formula is undefined, such as `1 / x` at 0.
     pub fn evaluate(&self, value: impl Fn(&str) -> f64) -> f64 {
         evaluate(&self.code, |index| {
             self.variables
@@ -89,10 +89,10 @@ impl Formula {
         })
     }
 
-    /// Puts the formula together in another notation, from the inside out: `apply` gets the word of an operator or a function,
-    /// as `+` or `max`, and its operands. A sign is `-` with one operand.
+    /// Converts the formula to another notation, from the inside out: `apply` receives the word of an operator or a
+    /// function, such as `+` or `max`, and its operands. A negative sign is `-` with one operand.
     ///
-    /// # Example: as calls of functions
+    /// # Example: print a formula as function calls
     /// ```
     /// use fuzzy::model::Formula;
     ///
@@ -135,19 +135,19 @@ impl Formula {
         }
     }
 
-    /// Whether it is a function of this variable alone, and no constant.
+    /// Returns whether the formula reads exactly this variable and no other.
     #[cfg(any(feature = "check", feature = "drawing"))]
     pub(crate) fn is_over(&self, variable: &str) -> bool {
         matches!(&self.variables[..], [only] if only.name == variable)
     }
 
-    /// Where its variables are first named in the text it was parsed from.
+    /// Returns the position of the first occurrence of each variable in the text it was parsed from.
     pub(crate) fn spans(&self) -> impl Iterator<Item = &Range<usize>> {
         let firsts = self.variables.iter().map(|variable| variable.spans.first());
         firsts.flatten()
     }
 
-    /// Each place where a variable is named in the text it was parsed from, with its name.
+    /// Returns each occurrence of a variable in the text it was parsed from, as its name and position.
     pub(crate) fn places(&self) -> impl Iterator<Item = (&str, &Range<usize>)> {
         self.variables.iter().flat_map(|variable| {
             let spans = variable.spans.iter();
@@ -155,12 +155,12 @@ impl Formula {
         })
     }
 
-    /// Its code, which reads variables by their index.
+    /// Returns the code, which reads variables by their index.
     pub(crate) fn code(&self) -> &[Instruction] {
         &self.code
     }
 
-    /// Its code, with the variables read by another index.
+    /// Returns the code, with the indices of the variables replaced by `index`.
     pub(crate) fn code_with(
         &self,
         index: impl Fn(&str) -> Option<usize>,
@@ -187,7 +187,7 @@ impl Formula {
 
 #[cfg(feature = "alloc")]
 impl Expression {
-    /// Adds its code: operands first, then the operation.
+    /// Appends the code of the expression: operands first, then the operation.
     fn append(&self, code: &mut Vec<Instruction>) {
         match self {
             Expression::Number(number) => code.push(Operation::NUMBER.with(*number)),
@@ -202,7 +202,7 @@ impl Expression {
     }
 }
 
-/// Formulas are equal that are written with the same operations, numbers and names.
+/// Formulas are equal if they consist of the same operations, numbers and names.
 #[cfg(feature = "alloc")]
 impl PartialEq for Formula {
     fn eq(&self, other: &Self) -> bool {
@@ -215,7 +215,7 @@ impl FromStr for Formula {
     type Err = Box<Diagnostic>;
 
     /// # Errors
-    /// The first mistake, with its span in the text and what to do.
+    /// The first syntax error, with its position in the text and a suggestion.
     fn from_str(text: &str) -> Result<Self, Box<Diagnostic>> {
         parse::parse(text)
     }

@@ -12,8 +12,8 @@
 //! operand    = number | pi | name | function "(" any-of { "," any-of } ")" | "(" any-of ")"
 //! ```
 //!
-//! A name is letters, digits, `_` and `.`, and begins with no digit; any other stands in single or double quotes, `\` before
-//! a quote or a `\` in it.
+//! A name consists of letters, digits, `_` and `.`, and does not start with a digit. Any other name is written in
+//! single or double quotes, in which `\` precedes a quote or a `\`.
 
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
@@ -28,7 +28,7 @@ use nom::{
 use super::{DEEPEST_NESTING, Expression, Formula, LONGEST, Operation, Variable, code};
 use crate::diagnostic::{Diagnostic, suggest};
 
-/// Functions of other programs, and what they are here.
+/// Functions of other programs, with the equivalent operations.
 const OTHER_NAMES: [(&str, Operation); 11] = [
     ("pow", Operation::POWER),
     ("fmod", Operation::REMAINDER),
@@ -73,42 +73,42 @@ pub(super) fn parse(text: &str) -> Result<Formula, Box<Diagnostic>> {
             Ok(formula)
         }
         Err(Err::Error(mistake) | Err::Failure(mistake)) => Err(Box::new(mistake.explain(text))),
-        // Only nom's streaming parsers ask for more, and none is used.
+        // Only nom's streaming parsers report incomplete input, and they are not used here.
         Err(Err::Incomplete(_)) => whole("the formula ends too early".into(), "finish it"),
     }
 }
 
 type Step<'a, T> = IResult<&'a str, T, Mistake<'a>>;
 
-/// What is wrong, and the text that was left when it was met.
+/// A syntax error, with the remaining text at the position where it was detected.
 struct Mistake<'a> {
     rest: &'a str,
     kind: Wrong<'a>,
 }
 
 enum Wrong<'a> {
-    /// No number, name or bracket.
+    /// A number, name or bracket was expected.
     Operand,
-    /// No operator, and no end.
+    /// An operator or the end was expected.
     Operator,
     /// A second comparison.
     Chain,
-    /// A function that is not known, by its name.
+    /// An unknown function, by its name.
     Function(&'a str),
-    /// A function's name, and the number of operands that it takes and has.
+    /// A function with a wrong number of operands: its name, the expected number and the actual one.
     Count(&'a str, usize, usize),
-    /// A bracket without its partner.
+    /// An unclosed bracket.
     OpenBracket,
-    /// A quote without its partner, or with nothing in it.
+    /// An unclosed or empty quote.
     Quote,
-    /// Digits that are no number, or too large a one.
+    /// Digits that are not a valid number, or a number that is too large.
     Number(&'a str),
     TooDeep,
     TooLong,
 }
 
 impl<'a> ParseError<&'a str> for Mistake<'a> {
-    // nom's own parsers are only tried, never required: what they would say is always replaced.
+    // nom's own parsers are always optional here, so their errors are always replaced.
     fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
         Mistake {
             rest,
@@ -137,7 +137,7 @@ fn in_name(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | '.')
 }
 
-/// The word here, empty where there is none.
+/// Returns the word at this position; empty if there is none.
 fn word(rest: &str) -> &str {
     if !rest.starts_with(begins_name) {
         return "";
@@ -151,12 +151,12 @@ fn is_keyword(word: &str) -> bool {
     words.iter().any(|known| known.eq_ignore_ascii_case(word))
 }
 
-/// Whether a name can stand in a formula without quotes.
+/// Returns whether a name needs no quotes in a formula.
 pub(super) fn is_plain_name(name: &str) -> bool {
     !name.is_empty() && word(name) == name && !is_keyword(name) && name != "pi"
 }
 
-/// Takes the operator if it stands here.
+/// Parses an operator; returns the text after it, or `None` if it is not at this position.
 fn operator(rest: &str, operation: Operation) -> Option<&str> {
     let symbol = operation.word();
     let rest = after_space(rest);
@@ -167,16 +167,16 @@ fn operator(rest: &str, operation: Operation) -> Option<&str> {
             .then(|| rest.get(found.len()..).unwrap_or(""));
     }
     let after = rest.strip_prefix(symbol)?;
-    // `<` is not the beginning of `<=`, nor `*` of `**`.
+    // `<` must not match the start of `<=`, nor `*` that of `**`.
     let longer = after.starts_with('=') && matches!(symbol, "<" | ">")
         || symbol == "*" && after.starts_with('*');
     (!longer).then_some(after)
 }
 
-/// How tightly comparisons bind; one does not follow another.
+/// The precedence of comparisons, which cannot be chained.
 const COMPARISONS: u8 = 4;
 
-/// The operator between two operands that stands here, if it binds at least as tightly as `binds`.
+/// Parses a binary operator whose precedence is at least `binds`.
 fn infix(rest: &str, binds: u8) -> Option<(Operation, &str)> {
     let all = Operation::ALL.iter();
     let mut infix = all.filter(|(operation, _, operands)| {
@@ -188,13 +188,13 @@ fn infix(rest: &str, binds: u8) -> Option<(Operation, &str)> {
 struct Parser<'a> {
     text: &'a str,
     variables: Vec<Variable>,
-    /// How many numbers, names and operations were read.
+    /// The count of numbers, names and operations that were parsed.
     parts: usize,
 }
 
 impl<'a> Parser<'a> {
-    /// An expression whose operators bind at least as tightly as `binds`. One call reads all of a level of brackets, so that the
-    /// stack grows with their nesting alone.
+    /// Parses an expression whose operators have a precedence of at least `binds`. A single call parses a whole level
+    /// of brackets, so that the stack grows only with their nesting.
     fn level(&mut self, rest: &'a str, binds: u8, depth: usize) -> Step<'a, Expression> {
         if depth > DEEPEST_NESTING {
             return wrong(after_space(rest), Wrong::TooDeep);
@@ -207,7 +207,7 @@ impl<'a> Parser<'a> {
                 return wrong(after_space(rest), Wrong::Chain);
             }
             last = Some(own);
-            // A power is read from the right and may have a sign behind it: `2^-x^2` is `2^(-(x^2))`.
+            // A power is right-associative, and its exponent may have a sign: `2^-x^2` is `2^(-(x^2))`.
             let (after, right) = match operation {
                 Operation::POWER => self.level(after, own - 1, depth + 1)?,
                 _ => self.level(after, own + 1, depth)?,
@@ -218,7 +218,7 @@ impl<'a> Parser<'a> {
         Ok((rest, left))
     }
 
-    /// An operand, or `not` or `-` and all that it applies to.
+    /// Parses an operand, or `not` or `-` with its operand.
     fn signed(&mut self, rest: &'a str, binds: u8, depth: usize) -> Step<'a, Expression> {
         for prefix in [Operation::NOT, Operation::NEGATE] {
             let own = prefix.binds().unwrap_or(0);
@@ -233,7 +233,8 @@ impl<'a> Parser<'a> {
         self.operand(rest, depth)
     }
 
-    /// Counts a number, a name or an operation, so that a formula that is too long is refused before it becomes a deep tree.
+    /// Counts a number, a name or an operation, so that a formula that is too long is rejected before it becomes a deep
+    /// tree.
     fn part(
         &mut self,
         rest: &'a str,
@@ -295,7 +296,7 @@ impl<'a> Parser<'a> {
         Expression::Variable(index)
     }
 
-    /// A function; `operands` is the text behind its bracket.
+    /// Parses a function call; `operands` is the text after its opening bracket.
     fn call(
         &mut self,
         start: &'a str,
@@ -351,7 +352,7 @@ fn number(rest: &str) -> Step<'_, Expression> {
     }
 }
 
-/// A name in quotes; a backslash takes the next quote or backslash as it is.
+/// Parses a name in quotes; a quote or backslash after a backslash is taken literally.
 fn quoted(rest: &str, quote: char) -> Step<'_, String> {
     let mut name = String::new();
     let mut letters = rest.char_indices().skip(1);
@@ -371,7 +372,7 @@ fn quoted(rest: &str, quote: char) -> Step<'_, String> {
 }
 
 impl Mistake<'_> {
-    /// The mistake in words.
+    /// Returns the diagnostic of the syntax error.
     fn explain(self, text: &str) -> Diagnostic {
         let rest = after_space(self.rest);
         let start = text.len() - rest.len();

@@ -1,11 +1,11 @@
-//! Formulas as text: what is printed reads back as the same formula.
+//! Printing formulas; parsing the printed text gives the same formula.
 
 use core::fmt::{self, Display, Formatter, Write};
 
 use super::{Expression, Formula, Operation, parse::is_plain_name};
 
 impl Operation {
-    /// How tightly it binds as an operator; `None` of a function.
+    /// Returns the precedence of an operator; `None` for a function.
     pub(super) fn binds(self) -> Option<u8> {
         Some(match self {
             Operation::OR => 1,
@@ -32,7 +32,7 @@ impl Operation {
     }
 }
 
-/// The formula as it is written; parsing it again gives the same formula.
+/// Prints the formula; parsing the text gives the same formula.
 impl Display for Formula {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         self.write(f, &self.expression, 0)
@@ -40,7 +40,7 @@ impl Display for Formula {
 }
 
 impl Formula {
-    /// Writes an expression, in brackets where it binds less tightly than what it is an operand of.
+    /// Writes an expression, in brackets if its precedence is lower than that of the enclosing operation.
     fn write(&self, f: &mut Formatter<'_>, expression: &Expression, around: u8) -> fmt::Result {
         let (operation, operands) = match expression {
             Expression::Number(number) if *number == core::f64::consts::PI => {
@@ -79,11 +79,11 @@ impl Formula {
             (Operation::POWER, [base, exponent]) => {
                 self.write(f, base, binds + 1)?;
                 f.write_char('^')?;
-                // To its right a sign needs no brackets, and powers nest.
+                // To the right of the operator, a sign needs no brackets, and powers may be nested.
                 self.write(f, exponent, binds - 1)?;
             }
             (_, [left, right]) => {
-                // Comparisons do not chain; of other operators the left operand may be the same.
+                // Comparisons cannot be chained; the left operand of any other operator may have the same precedence.
                 let left_around = if binds == 4 { binds + 1 } else { binds };
                 self.write(f, left, left_around)?;
                 write!(f, " {} ", operation.word())?;
@@ -98,7 +98,7 @@ impl Formula {
     }
 }
 
-/// A name, in quotes where it needs them.
+/// Writes a name, in quotes if necessary.
 fn name(f: &mut Formatter<'_>, name: &str) -> fmt::Result {
     if is_plain_name(name) {
         return f.write_str(name);

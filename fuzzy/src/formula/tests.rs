@@ -1,4 +1,4 @@
-//! Values, brackets and mistakes of formulas.
+//! Tests of values, precedence and syntax errors of formulas.
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -92,7 +92,7 @@ fn functions_are_those_of_the_standard_library() {
             "{name}: {found} {expected}"
         );
     }
-    // Every function is tried above.
+    // All functions are tested above.
     for (operation, word, _) in Operation::ALL {
         if operation.binds().is_none() && !["max", "min"].contains(word) {
             assert!(include_str!("tests.rs").contains(&alloc::format!("(\"{word}(")));
@@ -115,7 +115,7 @@ fn without_a_value_it_is_no_finite_number() {
     assert_eq!(value("min(1, 1 / 0)"), 1.0);
 }
 
-/// Where a mistake stands, what it is, and what to do.
+/// Returns the position of a syntax error, its message, and the suggestion.
 fn mistake(text: &str) -> String {
     let found = text.parse::<Formula>().unwrap_err();
     let here = &text[found.span.clone()];
@@ -159,7 +159,7 @@ fn mistakes_are_told_with_their_place() {
     assert!(mistake(&wide).contains("more than 32 numbers"));
 }
 
-/// Any formula that can be written down.
+/// Generates formulas that can be written as text.
 pub(crate) fn any_formula() -> impl Strategy<Value = Formula> {
     let number = prop_oneof![
         0.0..1000.0,
@@ -177,7 +177,7 @@ pub(crate) fn any_formula() -> impl Strategy<Value = Formula> {
             Expression::Apply(operation, [a, b].into_iter().take(count).collect())
         })
     });
-    // Variables are numbered as they are met.
+    // Variables are numbered in the order of their first occurrence.
     tree.prop_map(|mut tree| {
         let mut names: Vec<usize> = Vec::new();
         fn renumber(tree: &mut Expression, met: &mut Vec<usize>) {
@@ -237,7 +237,7 @@ proptest! {
     }
 }
 
-/// Runs in a thread with a stack as small as those of some hosts.
+/// Runs in a thread whose stack is as small as that of some hosts.
 fn in_a_small_thread(run: impl FnOnce() + Send + 'static) {
     let thread = std::thread::Builder::new().stack_size(256 << 10);
     thread.spawn(run).unwrap().join().unwrap();

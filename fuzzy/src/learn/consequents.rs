@@ -1,15 +1,15 @@
-//! Which term of the output a value belongs to.
+//! Assignment of output values to terms of the output.
 
 use alloc::vec::Vec;
 
 use crate::model::{MembershipFunction, Variable};
 
-/// The terms of the output.
+/// The peaks of the terms of the output.
 #[derive(Debug, Clone)]
 pub(super) struct Consequents {
-    /// The number of each term that is one, the peak of each fuzzy set.
+    /// The value of each term that is a number, or the peak of each fuzzy set.
     pub(super) peaks: Vec<f64>,
-    /// Whether all terms are numbers, constants or singletons, which have no memberships between them.
+    /// Whether all terms are numbers (constants or singletons). Values between numbers have no memberships.
     are_numbers: bool,
 }
 
@@ -24,15 +24,15 @@ impl Consequents {
         }
     }
 
-    /// The index of the term to which a value belongs most, the first of equal ones, and its degree; `None` where every
-    /// degree is 0.
+    /// Returns the index of the term with the highest degree at a value, the first of equal ones, and that degree.
+    /// `None` if all degrees are 0.
     pub(super) fn highest(&self, output: &Variable, value: f64) -> Option<(u16, f64)> {
         if !self.are_numbers {
             return highest(output, value);
         }
         let term = self.nearest_peak(value);
         let at = *self.peaks.get(usize::from(term))?;
-        // The neighbour on the other side of the value.
+        // The neighbouring peak on the other side of the value.
         let others = self.peaks.iter().filter(|other| match value < at {
             true => **other < at,
             false => **other > at,
@@ -42,7 +42,7 @@ impl Consequents {
         Some((term, degree))
     }
 
-    /// As [`Consequents::highest`], and the term with the nearest peak where every degree is 0.
+    /// Works like [`Consequents::highest`], but returns the term with the nearest peak if all degrees are 0.
     pub(super) fn nearest(&self, output: &Variable, value: f64) -> u16 {
         let highest = self.highest(output, value);
         highest.map_or_else(|| self.nearest_peak(value), |(term, _)| term)
@@ -64,8 +64,8 @@ fn number(shape: &MembershipFunction) -> Option<f64> {
     shape.number().or_else(|| shape.at())
 }
 
-/// The index of the term with the highest membership, the first of equal ones, and that membership; `None` where every
-/// membership is 0.
+/// Returns the index of the term with the highest membership, the first of equal ones, and that membership. `None` if
+/// all memberships are 0.
 pub(super) fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
     let mut best: Option<(u16, f64)> = None;
     for (i, term) in (0..=u16::MAX).zip(&variable.terms) {
@@ -77,7 +77,7 @@ pub(super) fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
     best
 }
 
-/// The middle of the interval where a term is highest.
+/// Returns the middle of the interval where a term is highest.
 pub(super) fn peak(variable: &Variable, shape: &MembershipFunction) -> f64 {
     let (first, last) = variable.plateau(shape);
     (first + last) / 2.0

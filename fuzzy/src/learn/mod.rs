@@ -1,14 +1,15 @@
-//! Rules from data, after Wang and Mendel (1992): each sample votes for the rule with the highest memberships.
+//! Learning rules from data by the method of Wang and Mendel (1992): each sample votes for the rule with the highest
+//! memberships.
 //!
-//! 1. Each value of a sample is given to the term with its highest membership (the first of equal ones). The terms of
-//!    the inputs are the antecedent, the term of the output the consequent, and the degree of the vote is the product
-//!    of all memberships, times the sample's weight. Where all terms of the output are constants or singletons, a value
-//!    belongs to the two neighbouring ones by its distance: 30 belongs to 0 with 0.4 and to 50 with 0.6. Beyond the outer
-//!    ones it belongs to these with 1.
-//! 2. Where the samples of an antecedent disagree, [`Resolution`] decides.
-//! 3. The rule keeps the consequents that lost, the number of its samples (support) and its confidence.
+//! 1. Each value of a sample is assigned to the term with its highest membership (the first of equal ones). The terms of
+//!    the inputs are the antecedent, the term of the output is the consequent, and the degree of the vote is the product
+//!    of all memberships, times the weight of the sample. If all terms of the output are constants or singletons, a value
+//!    belongs to its two neighbours, with degrees that decrease linearly with the distance: with terms 0 and 50, the value
+//!    30 belongs to 0 with degree 0.4 and to 50 with degree 0.6. Values beyond the outermost terms belong to them with degree 1.
+//! 2. If the samples of an antecedent disagree, [`Resolution`] selects the consequent.
+//! 3. The rule stores the rejected consequents, the number of its samples (support) and its confidence.
 //!
-//! Sums are in fixed point, so the result does not depend on the order of the samples.
+//! Sums use fixed-point arithmetic, so the result does not depend on the order of the samples.
 
 use alloc::{boxed::Box, collections::BTreeMap, vec, vec::Vec};
 
@@ -33,9 +34,9 @@ pub use settings::{Direction, LearnError, Refusal, Resolution, Settings, WEIGHTS
 use sum::Sum;
 pub use unchained::Unchained;
 
-/// Collects samples and derives rules from them.
+/// A learner, which collects samples and derives rules from them.
 ///
-/// # Example: a fan's rules from three samples, two of which contradict each other
+/// # Example: rules for a fan from three samples, two of which contradict each other
 ///
 /// ```
 /// use fuzzy::learn::{Learner, Settings};
@@ -67,34 +68,35 @@ pub struct Learner {
     settings: Settings,
     consequents: Consequents,
     samples: u64,
-    /// The largest weight of a sample.
+    /// The largest weight of a sample so far.
     heaviest: f64,
     cells: BTreeMap<Box<[u16]>, Cell>,
 }
 
-/// The learned rules, and counts of the data.
+/// The learned rules, with statistics about the data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Learned {
-    /// The model with its own rules, then the learned ones in the order of their antecedents.
+    /// The model with its own rules, followed by the learned ones in the order of their antecedents.
     pub model: Model,
     /// The number of samples.
     pub samples: u64,
-    /// The number of antecedents whose samples voted for more than one consequent.
+    /// The number of antecedents whose samples voted for different consequents.
     pub conflicts: u64,
     /// The number of antecedents without a rule.
     pub missing: u64,
-    /// The first [`Learned::SHOWN`] antecedents without a rule.
+    /// The first antecedents without a rule, at most [`Learned::SHOWN`].
     pub missing_antecedents: Vec<Condition>,
-    /// The number of antecedents with samples, but below [`Settings::min_support`] or [`Settings::min_degree`].
+    /// The number of antecedents that have samples but fall below [`Settings::min_support`] or
+    /// [`Settings::min_degree`].
     pub left_out: u64,
-    /// The number of rules completed from their neighbours.
+    /// The number of rules that were completed from their neighbours.
     pub completed: u64,
-    /// The number of rules whose consequent was moved for [`Settings::monotone`].
+    /// The number of rules whose consequent was changed to satisfy [`Settings::monotone`].
     pub moved: u64,
 }
 
 impl Learned {
-    /// The most antecedents in [`Learned::missing_antecedents`].
+    /// The maximum length of [`Learned::missing_antecedents`].
     pub const SHOWN: usize = 100;
 }
 
@@ -102,11 +104,11 @@ impl Learned {
 #[derive(Debug, Clone, Default)]
 struct Cell {
     samples: u64,
-    /// By the index of the output's term.
+    /// The votes by the index of the output's term.
     votes: BTreeMap<u16, Votes>,
     /// The sum of the degrees of the antecedent.
     degrees: Sum,
-    /// The sum of these degrees times the value, as a share of the output's range.
+    /// The sum of these degrees times the output value, as a fraction of the output's range.
     values: Sum,
 }
 
@@ -118,10 +120,11 @@ struct Votes {
 }
 
 impl Learner {
-    /// A learner for the variables of a model with one output.
+    /// Creates a learner for the variables of a model with one output.
     ///
     /// # Errors
-    /// The model does not have one output or has rule blocks, a variable has no terms, or the settings name something the model does not have.
+    /// The model does not have exactly one output, or has rule blocks; a variable has no terms; or the settings name an
+    /// input that the model does not have.
     pub fn new(model: &Model, settings: Settings) -> Result<Learner, LearnError> {
         let [output] = model.outputs.as_slice() else {
             return Err(LearnError::Outputs {
@@ -161,10 +164,11 @@ impl Learner {
         })
     }
 
-    /// Adds a sample: a value for each input of the model, then the output, and a weight, one of [`WEIGHTS`].
+    /// Adds a sample: a value for each input of the model, followed by the output value; and a weight inside
+    /// [`WEIGHTS`].
     ///
     /// # Errors
-    /// The sample is invalid. The learner does not change.
+    /// The sample is invalid. It is not added.
     pub fn add(&mut self, values: &[f64], weight: f64) -> Result<(), Refusal> {
         let Some((output, inputs)) = values
             .split_last()
@@ -199,7 +203,7 @@ impl Learner {
             self.consequents.highest(consequent, *output),
             self.settings.resolution,
         ) {
-            // In a gap between terms, the nearest one.
+            // In a gap between terms, the nearest term.
             (_, Resolution::Mean) => (self.consequents.nearest(consequent, *output), 1.0),
             (Some(vote), _) => vote,
             (None, _) => {
@@ -227,12 +231,12 @@ impl Learner {
         Ok(())
     }
 
-    /// The number of samples so far.
+    /// Returns the number of samples so far.
     pub fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Derives the rules.
+    /// Derives the rules from the samples.
     pub fn finish(&self) -> Learned {
         resolve::resolve(self)
     }
@@ -255,7 +259,7 @@ fn check(variable: &Variable, value: f64) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// `a IS x AND b IS y` for a term of each input.
+/// Returns the condition `a IS x AND b IS y` for a term of each input.
 fn antecedent(learner: &Learner, terms: &[u16]) -> Option<Condition> {
     let inputs = learner.model.inputs.iter();
     let parts: Vec<Condition> = inputs

@@ -1,4 +1,4 @@
-//! Makes consequents monotone in the terms of inputs.
+//! Making consequents monotone in the terms of inputs.
 
 use alloc::{boxed::Box, collections::BTreeMap, string::String, vec, vec::Vec};
 
@@ -9,17 +9,18 @@ use super::{
 };
 use crate::model::Variable;
 
-/// The most rounds over the inputs. Means settle long before.
+/// The maximum number of passes over the inputs. The means converge long before.
 const MOST_ROUNDS: usize = 1000;
-/// The weight of a rule without samples, as a share of the largest weight of a sample: it follows its neighbours.
+/// The weight of a rule without samples, as a fraction of the largest weight of a sample: it adapts to its neighbours.
 const NO_SAMPLES: f64 = 1e-6;
 
-/// Moves consequents as far as the directions ask, and returns how many.
+/// Changes consequents so that they satisfy the required directions, and returns the number of changed ones.
 ///
-/// Along an input, neighbouring antecedents that contradict the direction are pooled: each has the mean value of all, weighted
-/// by its samples (pool adjacent violators; for several inputs in turn, until nothing changes). The value becomes a term. What
-/// is then still out of order, by rounding to terms or across antecedents without a rule, gets the middle between the highest
-/// term below and the lowest one above.
+/// Along an input, neighbouring antecedents that violate the direction are pooled: each gets the mean value of all,
+/// weighted by their samples (the pool-adjacent-violators algorithm, applied to the inputs in turn until nothing
+/// changes). The values are then rounded to terms. If the order is still violated, because of the rounding or across
+/// antecedents without a rule, a term is replaced by the middle between the highest term below it and the lowest term
+/// above it.
 pub(super) fn enforce(
     learner: &Learner,
     output: &Variable,
@@ -119,24 +120,24 @@ struct Value {
     weight: f64,
 }
 
-/// The terms of an input, in the order of their peaks.
+/// An input, whose terms are ordered by their peaks.
 struct Axis {
     /// The rank of each term.
     ranks: Vec<usize>,
-    /// The steps in the table from one rank to the next.
+    /// The distance in the table from one rank to the next.
     stride: usize,
-    /// 1 where the output must not fall with the input, -1 where it must not rise, 0 where it is free.
+    /// 1 if the output must not fall as the input increases, -1 if it must not rise, 0 if it is unconstrained.
     sign: f64,
 }
 
 impl Axis {
-    /// The first cell of each line along the axis.
+    /// Iterates over the first cell of each line along the axis.
     fn starts(&self, cells: usize) -> impl Iterator<Item = usize> {
         let (stride, count) = (self.stride, self.ranks.len());
         (0..cells).filter(move |cell| cell / stride % count == 0)
     }
 
-    /// The cells of a line in the order in which the output must not fall.
+    /// Iterates over the cells of a line in the order in which the output must not fall.
     fn line(&self, first: usize) -> impl DoubleEndedIterator<Item = usize> {
         let (stride, count, is_falling) = (self.stride, self.ranks.len(), self.sign < 0.0);
         (0..count).map(move |i| first + stride * if is_falling { count - 1 - i } else { i })
@@ -170,7 +171,7 @@ fn axes(learner: &Learner) -> Vec<Axis> {
     axes
 }
 
-/// The indices of the terms by their peaks, the first of equal ones first.
+/// Returns the indices of the terms ordered by their peaks; among equal peaks the first term comes first.
 fn ascending(peaks: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..peaks.len()).collect();
     order.sort_by(|a, b| peaks[*a].total_cmp(&peaks[*b]));
@@ -187,7 +188,7 @@ fn inverse(order: &[usize]) -> Vec<usize> {
 
 /// Pools adjacent violators on a line, and returns the largest change.
 fn pool(axis: &Axis, first: usize, values: &mut [Option<Value>]) -> f64 {
-    /// Neighbours of one value.
+    /// Neighbours that share one value.
     struct Pool {
         mean: f64,
         weight: f64,
@@ -230,7 +231,8 @@ fn pool(axis: &Axis, first: usize, values: &mut [Option<Value>]) -> f64 {
     changed
 }
 
-/// For each cell the highest rank of those that must not be above it, or the lowest of those that must not be below it.
+/// Returns, for each cell, the highest rank of the cells that must not be above it, or the lowest rank of those that
+/// must not be below it.
 fn envelope(axes: &[Axis], ranks: &[Option<usize>], highest: bool) -> Vec<Option<usize>> {
     let mut reached = ranks.to_vec();
     for axis in axes.iter().filter(|axis| axis.sign != 0.0) {

@@ -1,4 +1,4 @@
-//! From the votes of each antecedent to its rule.
+//! Deriving a rule from the votes for each antecedent.
 
 use alloc::{boxed::Box, collections::BTreeMap, format, string::String, vec, vec::Vec};
 
@@ -8,14 +8,14 @@ use crate::{
     rule::Consequent,
 };
 
-/// The most antecedents that are completed or made monotone.
+/// The maximum number of antecedents that are completed or made monotone.
 const MOST_COMPLETED: u64 = 1_000_000;
 
 /// The consequent of an antecedent.
 pub(super) struct Decision {
     /// The value of the output.
     pub(super) value: f64,
-    /// The index of the output's term; `None` where the value decides.
+    /// The index of the output's term; `None` if it follows from the value.
     pub(super) term: Option<u16>,
     pub(super) confidence: Option<f64>,
     pub(super) note: Option<String>,
@@ -84,7 +84,7 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
 
 fn decide(learner: &Learner, output: &Variable, cell: &Cell) -> Decision {
     let consequents = &learner.consequents;
-    // Of equal ones, the one with more samples, then the first.
+    // Among equal ones, the one with more samples wins, then the first.
     let winner = |weigh: fn(&Votes) -> f64| {
         let mut votes = cell.votes.iter();
         let first = votes.next();
@@ -123,7 +123,7 @@ fn decide(learner: &Learner, output: &Variable, cell: &Cell) -> Decision {
     }
 }
 
-/// The confidence of a consequent, in [0, 1].
+/// Returns the confidence of a consequent, in [0, 1].
 pub(super) fn degree(learner: &Learner, cell: &Cell, votes: Option<&Votes>) -> f64 {
     let Some(votes) = votes else {
         return 0.0;
@@ -179,7 +179,7 @@ fn rule(
     })
 }
 
-/// Every antecedent; the last input runs fastest.
+/// Iterates over all antecedents; the term of the last input changes fastest.
 fn every_antecedent(shape: &[u16]) -> impl Iterator<Item = Vec<u16>> + '_ {
     let count = shape.iter().map(|n| u64::from(*n)).product();
     (0..count).map(move |i| {
@@ -193,7 +193,8 @@ fn every_antecedent(shape: &[u16]) -> impl Iterator<Item = Vec<u16>> + '_ {
     })
 }
 
-/// Gives every antecedent without a decision that of the nearest one, and returns their number.
+/// Gives each antecedent without a decision the decision of the nearest antecedent, and returns the number of completed
+/// antecedents.
 fn complete(shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) -> u64 {
     let known: Vec<(Box<[u16]>, f64, Option<u16>)> = decisions
         .iter()

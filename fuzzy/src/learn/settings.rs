@@ -1,12 +1,12 @@
-//! The settings of a learner, and its errors.
+//! The settings and errors of a learner.
 
 use alloc::{format, string::String, vec::Vec};
 use core::ops::RangeInclusive;
 
-/// The weights that rows can have. Errors times weights, and their sums, would overflow or underflow beyond them.
+/// The valid weights of rows. With other weights, weighted errors and their sums would overflow or underflow.
 pub const WEIGHTS: RangeInclusive<f64> = 1e-50..=1e50;
 
-/// The message for a weight outside [`WEIGHTS`]. `wanted` is "a number", or what else is accepted.
+/// Returns the message for a weight outside [`WEIGHTS`]. `wanted` describes the accepted values, such as "a number".
 #[doc(hidden)]
 #[must_use]
 pub fn bad_weight(weight: f64, wanted: &str) -> String {
@@ -14,7 +14,7 @@ pub fn bad_weight(weight: f64, wanted: &str) -> String {
     format!("the weight is {weight:?}, but must be {wanted} from {least:e} to {most:e}")
 }
 
-/// How the consequent is chosen where samples of one antecedent disagree.
+/// The method that selects the consequent if the samples of an antecedent disagree.
 ///
 /// # Example: one clear sample against two
 /// ```
@@ -42,28 +42,28 @@ pub fn bad_weight(weight: f64, wanted: &str) -> String {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Resolution {
-    /// The consequent of the vote with the highest degree (Wang and Mendel). One outlier can decide. The confidence of a rule
-    /// is that degree.
+    /// The consequent of the vote with the highest degree (Wang and Mendel). A single outlier can decide. The
+    /// confidence of the rule is that degree.
     #[default]
     Strongest,
-    /// The consequent with the highest sum of degrees. The confidence is its share of the sum of all degrees.
+    /// The consequent with the highest sum of degrees. The confidence is its fraction of the sum of all degrees.
     Heaviest,
-    /// The term with the highest membership of the mean output, or the term with the nearest peak where all memberships are 0.
-    /// The mean weights each sample of the antecedent with the product of its input memberships. The confidence is the share
-    /// of the votes for that term.
+    /// The term with the highest membership of the mean output, or the term with the nearest peak if all memberships
+    /// are 0. The mean weights each sample of the antecedent by the product of its input memberships. The confidence is
+    /// the fraction of the votes for that term.
     Mean,
 }
 
-/// How the output changes when an input rises.
+/// The required direction of the output as an input increases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// It does not fall.
+    /// The output does not fall.
     Rising,
-    /// It does not rise.
+    /// The output does not rise.
     Falling,
 }
 
-/// How rules are learned.
+/// The settings of a learner.
 ///
 /// # Example: a rule for an antecedent without samples
 /// ```
@@ -88,22 +88,23 @@ pub enum Direction {
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Settings {
-    /// How the consequent is chosen where samples disagree.
+    /// The method that selects the consequent if samples disagree.
     pub resolution: Resolution,
-    /// The fewest samples of a rule.
+    /// The minimum number of samples of a rule.
     pub min_support: u64,
-    /// The lowest confidence of a rule.
+    /// The minimum confidence of a rule.
     pub min_degree: f64,
-    /// Whether an antecedent without a rule gets that of the nearest one: by the number of steps between terms, and the
-    /// highest output of equally near ones. The note of the rule says so.
+    /// Whether an antecedent without a rule gets the consequent of the nearest antecedent. The distance is the number
+    /// of steps between terms; among equally near antecedents the one with the highest output is used. A note of the
+    /// rule states this.
     pub complete: bool,
-    /// Inputs in which the consequents are made monotone, by pooling neighbouring antecedents that contradict it. The rules of
-    /// the model itself stay, and inference may bend monotone rules: `check::counterexamples`
-    /// tells whether the output is monotone.
+    /// The inputs in which the consequents are made monotone, by pooling neighbouring antecedents that violate the
+    /// direction. Rules that the model already contains are not changed, and inference may yield an output that is not
+    /// monotone in spite of monotone rules; `check::counterexamples` verifies the output.
     pub monotone: Vec<(String, Direction)>,
 }
 
-/// Why a model and settings cannot be learned with.
+/// The error for a model and settings that cannot be used for learning.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LearnError {
@@ -114,24 +115,24 @@ pub enum LearnError {
     },
     /// The rule set has rule blocks.
     Blocks,
-    /// The outputs that the learned one reads cannot be computed.
+    /// The outputs that the learned output reads cannot be computed.
     Chain {
-        /// Why.
+        /// The message of the cause.
         message: String,
     },
-    /// A term of the output is a function of inputs, which no value of the output belongs to.
+    /// A term of the output is a function of inputs. Values of the output cannot be assigned to such a term.
     ReadsInputs {
-        /// Its name.
+        /// The name of the term.
         term: String,
     },
-    /// A variable without terms.
+    /// A variable has no terms.
     NoTerms {
-        /// The variable.
+        /// The name of the variable.
         variable: String,
     },
-    /// A setting names something that is not an input.
+    /// A setting names a variable that is not an input.
     NoInput {
-        /// The name.
+        /// The unknown name.
         name: String,
     },
 }
@@ -165,7 +166,7 @@ impl core::fmt::Display for LearnError {
 impl core::error::Error for LearnError {}
 
 impl LearnError {
-    /// What to do about it.
+    /// Returns a suggestion how to fix the error.
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {
@@ -181,25 +182,25 @@ impl LearnError {
     }
 }
 
-/// Why a sample is invalid.
+/// The error for an invalid sample.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// The number of values is not that of the variables.
+    /// The number of values differs from the number of variables.
     WrongNumber {
-        /// The number of inputs and the output.
+        /// The number of inputs plus one for the output.
         expected: usize,
         /// The number of values.
         got: usize,
     },
-    /// A value that is NaN or infinite.
+    /// A value is NaN or infinite.
     NotFinite {
-        /// The variable.
+        /// The name of the variable.
         variable: String,
     },
-    /// A value outside the range of its variable.
+    /// A value is outside the range of its variable.
     OutOfRange {
-        /// The variable.
+        /// The name of the variable.
         variable: String,
         /// The value.
         value: f64,
@@ -208,19 +209,19 @@ pub enum Refusal {
         /// The upper end of the range.
         high: f64,
     },
-    /// A value at which every term is 0.
+    /// All terms of the variable are 0 at the value.
     NoTerm {
-        /// The variable.
+        /// The name of the variable.
         variable: String,
         /// The value.
         value: f64,
     },
-    /// An output that the learned one reads has no value.
+    /// An output that the learned output reads has no value.
     NoValue {
-        /// The output.
+        /// The name of the output.
         variable: String,
     },
-    /// A weight that is not one of [`WEIGHTS`].
+    /// The weight is outside [`WEIGHTS`].
     Weight {
         /// The weight.
         weight: f64,
@@ -259,7 +260,7 @@ impl core::fmt::Display for Refusal {
 
 impl core::error::Error for Refusal {}
 
-/// A number without rows of zeros.
+/// Formats a number; very small and very large ones in scientific notation.
 fn short(x: f64) -> String {
     match x == 0.0 || (1e-5..1e15).contains(&libm::fabs(x)) {
         true => format!("{x}"),

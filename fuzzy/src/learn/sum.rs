@@ -1,24 +1,24 @@
-//! Sums that do not depend on the order of what is added.
+//! Sums that do not depend on the order of the summands.
 
-/// The 64-bit limbs of a sum: steps of 2^-256, up to 2^256. This covers every weight of
-/// [`WEIGHTS`](super::WEIGHTS), times memberships, of more rows than fit in memory.
+/// The number of 64-bit limbs of a sum, which represent multiples of 2^-256 up to 2^256. This suffices for every weight
+/// in [`WEIGHTS`](super::WEIGHTS) times memberships, and for more rows than fit in memory.
 const LIMBS: usize = 8;
 
-/// The exponent of the least step.
+/// The exponent of the smallest step.
 const LEAST_EXPONENT: i32 = -256;
 
-/// A sum of numbers of at least 0 in fixed point, the least limb first.
+/// A fixed-point sum of non-negative numbers; the least significant limb comes first.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Sum([u64; LIMBS]);
 
 impl Sum {
-    /// Adds a number; what is finer than the least step is cut off.
+    /// Adds a number; digits below the smallest step are truncated.
     pub(super) fn add(&mut self, x: f64) {
         const DIGITS: i32 = 52;
         const BIAS: i32 = 1023;
         let bits = x.to_bits();
         let exponent = (bits >> DIGITS) as i32;
-        // Less than or equal to 0, not finite, or finer than the least step.
+        // At most 0, not finite, or smaller than the smallest step.
         if !(1..0x7ff).contains(&exponent) {
             return;
         }
@@ -40,12 +40,12 @@ impl Sum {
         }
     }
 
-    /// The sum, rounded to a number.
+    /// Returns the sum, rounded to a floating-point number.
     pub(super) fn value(self) -> f64 {
         let Some(top) = self.0.iter().rposition(|limb| *limb != 0) else {
             return 0.0;
         };
-        // The two highest limbs have at least 65 digits, more than a number has.
+        // The two highest limbs have at least 65 significant bits, more than a floating-point number has.
         let low = top.saturating_sub(1);
         let limbs = self.0.iter().take(top + 1).skip(low).rev();
         let digits = limbs.fold(0_u128, |sum, limb| (sum << 64) | u128::from(*limb));

@@ -47,8 +47,8 @@ const TABLE_1: [[f64; 3]; 4] = [
 #[test]
 fn the_papers_printed_rows_make_three_rules() {
     let learned = learn(Settings::default(), &TABLE_1);
-    // By hand: products of the memberships of the terms in which the values lie highest. Rows 2 and 383 share their
-    // antecedent: 0.70469 * 1 * 1 beats 0.64687 * 0.53689 * 0.84061.
+    // Computed by hand: products of the memberships of the terms with the highest membership of each value. Rows 2 and
+    // 383 have the same antecedent: 0.70469 * 1 * 1 is more than 0.64687 * 0.53689 * 0.84061.
     let expected = [
         (
             "IF margin IS very_low AND spread IS high THEN risk IS high",
@@ -89,15 +89,16 @@ fn the_papers_rules_are_recovered_from_their_own_map() {
     let engine = Engine::new(&model).unwrap();
     let mut blank = model.clone();
     blank.rules.clear();
-    // At the peaks and half way between them. A finer sample shows the learner the centroid's blends between two
-    // rules, which are votes of their own: 75 % at margin 0.08 is `high` in full, and no rule says `high`.
+    // Samples at the peaks and half way between them. With finer samples the learner would see the centroid's
+    // transitions between two rules, which vote too: 75 % at margin 0.08 belongs fully to `high`, although no rule
+    // concludes `high`.
     for step in [5, 10] {
         let mut learner = Learner::new(&blank, Settings::default()).unwrap();
         for i in (0..=50).step_by(step) {
             for j in (0..=50).step_by(step) {
                 let point = [f64::from(i) / 100.0, f64::from(j) / 100.0];
                 let outcome = engine.evaluate(&point).unwrap()[0];
-                // Where the dominating antecedent has no rule the map is a gap.
+                // Where the dominant antecedent has no rule, the map has a gap.
                 if let (Some(risk), true) = (outcome.value(), outcome.coverage > 0.5 + 1e-9) {
                     learner.add(&[point[0], point[1], risk], 1.0).unwrap();
                 }
@@ -113,7 +114,7 @@ fn the_papers_rules_are_recovered_from_their_own_map() {
 
 #[test]
 fn disagreement_is_resolved_as_asked_and_the_beaten_are_kept() {
-    // One strong vote for very_low against three weaker ones for medium.
+    // One strong vote for very_low, and three weaker ones for medium.
     let rows = [
         [0.3, 0.2, 0.0],
         [0.27, 0.2, 45.0],
@@ -170,7 +171,7 @@ fn rules_can_be_completed_and_made_monotone() {
     let rows = [
         [0.0, 0.2, 100.0],
         [0.1, 0.2, 25.0],
-        // Against the physics: less margin, yet less risk than above.
+        // Against the physics: less margin, but less risk than above.
         [0.1, 0.1, 75.0],
         [0.3, 0.0, 0.0],
     ];
@@ -214,7 +215,7 @@ fn rules_can_be_completed_and_made_monotone() {
     }
 }
 
-/// Terms in any order, and antecedents without a rule between others.
+/// Covers terms in any order, and antecedents without a rule between others.
 #[test]
 fn rules_are_monotone_over_gaps_and_in_the_order_of_the_terms() {
     let model = crate::yaml::parse(
@@ -235,7 +236,8 @@ rules: []
         ..Settings::default()
     };
     let mut learner = Learner::new(&model, settings).unwrap();
-    // Nothing at mild and warm; the single fast sample in the cold stands against many slow ones.
+    // There are no samples at mild and warm; the single sample of a high speed at low heat contradicts many of a low
+    // speed.
     learner.add(&[0.0, 100.0], 1.0).unwrap();
     for _ in 0..9 {
         learner.add(&[20.0, 0.0], 1.0).unwrap();
@@ -332,7 +334,7 @@ fn bad_samples_are_refused_with_the_reason() {
     assert_eq!(learner.finish().model.rules, []);
 }
 
-/// Sums that overflowed gave every rule one consequent.
+/// Regression test: sums overflowed and gave all rules the same consequent.
 #[test]
 fn equal_weights_give_the_rules_of_rows_without_weights() {
     let rows = [
@@ -455,7 +457,7 @@ const RESOLUTIONS: [Resolution; 3] = [
     Resolution::Mean,
 ];
 
-/// A fan whose speed rises with the heat, with these terms and this defuzzifier.
+/// Returns a fan whose speed increases with the heat, with the given terms and defuzzifier.
 fn fan(terms: &str, defuzzifier: &str) -> Model {
     let text = format!(
         "{{fuzzy: 1, name: fan, inputs: {{heat: {{range: [0, 40], partition: {{cold: 10, mild: 20, hot: 30}}}}}}, \
@@ -533,7 +535,7 @@ fn a_value_between_two_numbers_belongs_to_both_by_its_distance() {
         (0.0, 1, 1.0),
         (10.0, 1, 1.0),
         (26.0, 1, 0.6),
-        // Of equal ones the first.
+        // Among equal ones, the first.
         (30.0, 1, 0.5),
         (34.0, 2, 0.6),
         (70.0, 2, 0.6),
@@ -543,7 +545,7 @@ fn a_value_between_two_numbers_belongs_to_both_by_its_distance() {
         assert_eq!(found, term, "{value}");
         approx::assert_abs_diff_eq!(of, degree, epsilon = 1e-12);
     }
-    // The confidence of the strongest vote: 0.6 of it.
+    // The confidence is the degree of the strongest vote, 0.6.
     let mut learner = Learner::new(&model, Settings::default()).unwrap();
     learner.add(&[10.0, 26.0], 1.0).unwrap();
     let rule = &learner.finish().model.rules[0];
@@ -573,7 +575,7 @@ fn rules_for_numbers_are_made_monotone() {
         [
             "IF heat IS cold THEN speed IS slow",
             "IF heat IS mild THEN speed IS slow",
-            // As its nearest rule.
+            // Same conclusion as the nearest rule.
             "IF heat IS hot THEN speed IS slow"
         ]
     );

@@ -1,4 +1,4 @@
-//! Rules for the last output of a chain: the outputs that it reads are inputs to learn over.
+//! Learning rules for the last output of a chain: the outputs that it reads are inputs of the learner.
 
 use alloc::{collections::BTreeSet, string::String, vec::Vec};
 
@@ -8,10 +8,10 @@ use crate::{
     model::{Model, Rule, Variable},
 };
 
-/// The last output of a chain on its own. The outputs that it reads are inputs, whose values are computed from those of the
-/// chain by the rules that it has. A model without a chain is its own.
+/// The last output of a chain as a model of its own. The outputs that it reads are inputs of this model; their values
+/// are computed from the inputs of the chain by its existing rules. A model without a chain is used unchanged.
 ///
-/// # Example: a fan that follows a comfort, which no sample has
+/// # Example: a fan that depends on a comfort for which samples have no value
 /// ```
 /// use fuzzy::learn::{Learner, Settings, Unchained};
 ///
@@ -39,20 +39,22 @@ use crate::{
 pub struct Unchained {
     whole: Model,
     target: usize,
-    /// The other outputs and their rules.
+    /// The other outputs with their rules.
     before: Option<Engine>,
-    /// What each input of the model is: the index of an input of the chain, or, counted on, of an output of `before`.
+    /// For each input of the model: the index of an input of the chain or, offset by the number of inputs, of an output
+    /// of `before`.
     picks: Vec<usize>,
     model: Model,
 }
 
 impl Unchained {
-    /// Takes the measured output of a model, [`Model::measured_output`], out of its chain. It is learned over the variables that
-    /// its rules read. Where it has no rules, these are the outputs that no other output reads, and the inputs that they do not
-    /// depend on.
+    /// Separates the measured output of a model, [`Model::measured_output`], from its chain. The inputs of the learner
+    /// are the variables that its rules read. If it has no rules, they are the outputs that no other output reads, and
+    /// the inputs that those outputs do not depend on.
     ///
     /// # Errors
-    /// No output of several is the measured one, or the rules of the others cannot be used.
+    /// The model has several outputs and none of them is the measured one, or the rules of the other outputs cannot be
+    /// used.
     pub fn new(model: &Model) -> Result<Unchained, LearnError> {
         let outputs = LearnError::Outputs {
             outputs: model.last_outputs().len(),
@@ -95,12 +97,12 @@ impl Unchained {
         Ok(unchained)
     }
 
-    /// The model to learn with: the measured output, its rules, and what it is learned over.
+    /// Returns the model for the learner: the measured output, its rules, and the inputs of the learner.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// A sample for [`model`](Self::model) from a value for each of
+    /// Converts a sample to one for [`model`](Self::model). `sample` has a value for each of
     /// [`Model::measured_variables`] of the chain.
     ///
     /// # Errors
@@ -132,7 +134,7 @@ impl Unchained {
         values.chain([Ok(*target)]).collect()
     }
 
-    /// The chain with the rules of a learned model in place of those of the measured output.
+    /// Returns the chain with the rules of the measured output replaced by those of a learned model.
     #[must_use]
     pub fn joined(&self, learned: &Model) -> Model {
         if self.before.is_none() {
@@ -147,7 +149,7 @@ impl Unchained {
     }
 }
 
-/// The rules with the consequents of these outputs alone.
+/// Returns the rules, restricted to consequents about the selected outputs.
 fn of_outputs(rules: &[Rule], is_kept: impl Fn(&String) -> bool) -> Vec<Rule> {
     let mut rules = rules.to_vec();
     for rule in &mut rules {
@@ -164,7 +166,7 @@ fn variables(model: &Model) -> impl Iterator<Item = &Variable> {
     model.inputs.iter().chain(outputs)
 }
 
-/// The names of what an output with these rules is learned over.
+/// Returns the names of the learner's inputs for an output with these rules.
 fn read_by(own: &[Rule], before: &Model) -> BTreeSet<String> {
     let mut read = BTreeSet::new();
     for rule in own {

@@ -4,9 +4,9 @@ use alloc::{string::String, sync::Arc, vec::Vec};
 
 use crate::Engine;
 
-/// Equidistant points over some inputs of an engine, with the other inputs fixed.
+/// Equidistant points over some inputs of an engine; the other inputs are fixed.
 ///
-/// The index of a cell runs fastest along the last axis.
+/// The index of a cell changes fastest along the last axis.
 ///
 /// # Example: a slice of a model with three inputs
 /// ```
@@ -38,7 +38,7 @@ pub struct Grid {
 /// One input of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// The input's name.
+    /// The name of the input.
     pub name: Arc<str>,
     /// The index of the input.
     pub input: usize,
@@ -53,15 +53,15 @@ pub struct Axis {
 /// A fixed input of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fixed {
-    /// The input's name.
+    /// The name of the input.
     pub name: Arc<str>,
     /// The index of the input.
     pub input: usize,
-    /// Its value.
+    /// The value of the input.
     pub value: f64,
 }
 
-/// Why a grid cannot be made.
+/// The error for an invalid grid.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum GridError {
@@ -70,14 +70,14 @@ pub enum GridError {
         /// The number of points.
         points: usize,
     },
-    /// No axis has this name: it is no input, or it is fixed.
+    /// There is no axis with this name: it is not an input, or it is fixed.
     NoAxis {
-        /// The name.
+        /// The requested name.
         name: String,
     },
     /// A fixed value is not finite.
     NotFinite {
-        /// The input.
+        /// The name of the input.
         name: String,
         /// The value.
         value: f64,
@@ -100,11 +100,11 @@ impl core::fmt::Display for GridError {
 
 impl core::error::Error for GridError {}
 
-/// The most cells of a decision map: 240 MB.
+/// The maximum number of cells of a decision map; they take 240 MB.
 pub(super) const MOST_CELLS: usize = 10_000_000;
 
 impl Axis {
-    /// The coordinate of a point: `low + i (high - low) / (points - 1)`, and exactly `high` for the last.
+    /// Returns the coordinate of a point: `low + i (high - low) / (points - 1)`, and exactly `high` for the last one.
     pub fn coordinate(&self, i: usize) -> f64 {
         if i + 1 >= self.points {
             self.high
@@ -113,8 +113,8 @@ impl Axis {
         }
     }
 
-    /// The index of the point below `x`, and the share in [0, 1] of the way from there to the next point. `x` is clamped to
-    /// the axis.
+    /// Returns the index of the point below `x`, and the fraction in [0, 1] of the distance from there to the next
+    /// point. `x` is clamped to the axis.
     fn locate(&self, x: f64) -> (usize, f64) {
         let last = self.points.saturating_sub(2);
         let steps = (x - self.low) / (self.high - self.low) * (self.points - 1) as f64;
@@ -128,10 +128,10 @@ impl Axis {
 }
 
 impl Grid {
-    /// A grid over every input's range, with the same number of points on each axis.
+    /// Creates a grid over the range of every input, with the same number of points on each axis.
     ///
     /// # Errors
-    /// Fewer than 2 points.
+    /// `points` is less than 2.
     pub fn new(engine: &Engine, points: usize) -> Result<Self, GridError> {
         let axes = engine
             .ranges()
@@ -154,7 +154,7 @@ impl Grid {
     /// Sets the number of points of one axis.
     ///
     /// # Errors
-    /// No such axis, or fewer than 2 points.
+    /// There is no such axis, or `points` is less than 2.
     pub fn points(mut self, name: &str, points: usize) -> Result<Self, GridError> {
         let axis = self.axes.iter_mut().find(|axis| &*axis.name == name);
         let axis = axis.ok_or_else(|| GridError::NoAxis { name: name.into() })?;
@@ -165,7 +165,7 @@ impl Grid {
     /// Fixes an input, which removes its axis.
     ///
     /// # Errors
-    /// No such axis, or the value is not finite.
+    /// There is no such axis, or the value is not finite.
     pub fn fix(mut self, name: &str, value: f64) -> Result<Self, GridError> {
         if !value.is_finite() {
             return Err(GridError::NotFinite {
@@ -196,22 +196,23 @@ impl Grid {
         Ok(self)
     }
 
-    /// The axes, in the order of the engine's inputs.
+    /// Returns the axes, in the order of the engine's inputs.
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// The fixed inputs.
+    /// Returns the fixed inputs.
     pub fn fixed(&self) -> &[Fixed] {
         &self.fixed
     }
 
-    /// The number of cells; `usize::MAX` where there are more. A decision map takes at most 10,000,000.
+    /// Returns the number of cells; `usize::MAX` if it is too large for `usize`. A decision map has at most 10,000,000
+    /// cells.
     pub fn cells(&self) -> usize {
         self.cells
     }
 
-    /// The index of a cell on each axis.
+    /// Returns the index of a cell on each axis.
     pub fn indices(&self, cell: usize) -> Vec<usize> {
         let mut rest = cell;
         let mut indices: Vec<usize> = self
@@ -228,7 +229,7 @@ impl Grid {
         indices
     }
 
-    /// The cell with this index on each axis; `None` where it is not on the grid.
+    /// Returns the cell with the given index on each axis; `None` if it is outside the grid.
     pub fn cell(&self, indices: &[usize]) -> Option<usize> {
         if indices.len() != self.axes.len() {
             return None;
@@ -241,15 +242,15 @@ impl Grid {
             })
     }
 
-    /// The coordinate of a cell on each axis.
+    /// Returns the coordinate of a cell on each axis.
     pub fn point(&self, cell: usize) -> Vec<f64> {
         let indices = self.indices(cell);
         let axes = self.axes.iter().zip(indices);
         axes.map(|(axis, i)| axis.coordinate(i)).collect()
     }
 
-    /// Interpolates the values of cells N-linearly at a point with a coordinate for each axis. Coordinates are clamped to the
-    /// grid. `None` where a cell has no value, a coordinate is NaN, or the number of coordinates is wrong.
+    /// Interpolates the values of cells N-linearly at a point with one coordinate per axis. Coordinates are clamped to
+    /// the grid. `None` if a cell has no value, a coordinate is NaN, or the number of coordinates is wrong.
     pub fn interpolate(&self, value: impl Fn(usize) -> Option<f64>, point: &[f64]) -> Option<f64> {
         if point.len() != self.axes.len() || point.iter().any(|x| x.is_nan()) {
             return None;
@@ -257,7 +258,7 @@ impl Grid {
         self.corner_sum(&value, point, 0, 0)
     }
 
-    /// Interpolates along one axis between the interpolations along the further axes.
+    /// Interpolates along one axis between the interpolations along the remaining axes.
     fn corner_sum(
         &self,
         value: &impl Fn(usize) -> Option<f64>,

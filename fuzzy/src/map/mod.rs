@@ -17,9 +17,9 @@ use grid::MOST_CELLS;
 pub use grid::{Axis, Fixed, Grid, GridError};
 pub use peaks::{changing, peaks};
 
-/// One output of an engine on every cell of a grid.
+/// One output of an engine in every cell of a grid.
 ///
-/// # Example: the cells that rules cover
+/// # Example: the fraction of cells that rules cover
 /// ```
 /// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
 /// use fuzzy::{Engine, map::{DecisionMap, Grid}, rule};
@@ -44,21 +44,21 @@ pub struct DecisionMap {
     cells: Vec<Cell>,
 }
 
-/// What an output is in a cell. All of a map is one piece of memory: an allocator that gives several large ones back to the
-/// system, and gets them again for the next map, takes longer than the evaluation.
+/// The result for an output in a cell. A map is a single allocation: an allocator may return several large allocations
+/// to the system and request them again for the next map, which takes longer than the evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
-    /// NaN where there is no value.
+    /// The value; NaN if there is none.
     value: f64,
     coverage: f64,
-    /// The rule's index plus one; 0 where no rule fired.
+    /// The index of the rule plus one; 0 if no rule fired.
     dominant: u32,
 }
 
-/// The number of cells in a batch, which fits the cache.
+/// The number of cells per batch, chosen to fit the cache.
 const CELLS_A_TASK: usize = 512;
 
-/// Evaluates batches of cells.
+/// The state that evaluates batches of cells.
 struct Worker<'a> {
     engine: &'a Engine,
     grid: &'a Grid,
@@ -66,7 +66,7 @@ struct Worker<'a> {
     memory: Memory,
     /// The coordinates along each axis.
     coordinates: Vec<Vec<f64>>,
-    /// One column of coordinates for each input.
+    /// One column of coordinates per input.
     columns: Vec<Vec<f64>>,
 }
 
@@ -92,7 +92,7 @@ impl<'a> Worker<'a> {
         }
     }
 
-    /// Evaluates the cells that begin at index `first`.
+    /// Evaluates the cells that start at index `first`.
     fn fill(&mut self, first: usize, cells: &mut [Cell]) {
         let count = cells.len();
         let mut stride = self.grid.cells();
@@ -125,8 +125,8 @@ impl<'a> Worker<'a> {
     }
 }
 
-/// Writes the coordinates on an axis of the cells that begin at index `first`. Neighbours on the axis are `stride` cells
-/// apart.
+/// Writes the coordinates on one axis for the cells that start at index `first`. Neighbours on that axis are `stride`
+/// cells apart.
 fn spread(coordinates: &[f64], first: usize, stride: usize, mut cells: &mut [f64]) {
     let mut left = stride - first % stride;
     let around = coordinates.iter().cycle();
@@ -142,10 +142,10 @@ fn spread(coordinates: &[f64], first: usize, stride: usize, mut cells: &mut [f64
 }
 
 impl DecisionMap {
-    /// Evaluates one output on every cell of a grid.
+    /// Evaluates one output in every cell of a grid.
     ///
-    /// A cell where no rule fires has no dominant rule. Its value is the default value of the output, if there is one; it has
-    /// none where the model makes that an error.
+    /// A cell for which no rule fires has no dominant rule. Its value is the default value of the output, if there is
+    /// one. It has no value if the model treats this as an error.
     ///
     /// # Errors
     /// The grid belongs to another engine or has too many cells, or there is no such output.
@@ -199,34 +199,34 @@ impl DecisionMap {
         })
     }
 
-    /// The grid.
+    /// Returns the grid on which the output was evaluated.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// The output's name.
+    /// Returns the name of the output.
     pub fn output(&self) -> &str {
         &self.output
     }
 
-    /// The value of a cell; `None` where it has none, or where it is not on the grid.
+    /// Returns the value of a cell; `None` if it has no value or is outside the grid.
     pub fn value(&self, cell: usize) -> Option<f64> {
         let value = self.cells.get(cell)?.value;
         (!value.is_nan()).then_some(value)
     }
 
-    /// The largest firing strength of a rule of this output in a cell, in [0, 1].
+    /// Returns the largest firing strength of a rule of this output in a cell, in [0, 1].
     pub fn coverage(&self, cell: usize) -> f64 {
         self.cells.get(cell).map_or(0.0, |cell| cell.coverage)
     }
 
-    /// The rule of the largest firing strength in a cell, as its index in the model.
+    /// Returns the index in the model of the rule with the largest firing strength in a cell.
     pub fn dominant(&self, cell: usize) -> Option<usize> {
         let rule = self.cells.get(cell)?.dominant.checked_sub(1)?;
         Some(rule as usize)
     }
 
-    /// The N-linear interpolation between cells; `None` where one of those cells has no value.
+    /// Interpolates N-linearly between cells; `None` if one of these cells has no value.
     pub fn interpolate(&self, point: &[f64]) -> Option<f64> {
         self.grid.interpolate(|cell| self.value(cell), point)
     }

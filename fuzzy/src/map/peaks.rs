@@ -1,10 +1,11 @@
-//! Where the terms of a variable are highest, and where they change.
+//! The values at which the terms of a variable are highest, and the interval in which they change.
 
 use alloc::{vec, vec::Vec};
 
 use crate::model::{MembershipFunction, Variable};
 
-/// The peaks of a variable's terms and the ends of its range, rising. A flat top has two peaks.
+/// Returns the peaks of a variable's terms and the ends of its range, in ascending order. A plateau has two peaks, its
+/// ends.
 ///
 /// # Example: temperatures of a room
 /// ```
@@ -22,11 +23,11 @@ pub fn peaks(variable: &Variable) -> Vec<f64> {
     let mut peaks = vec![low, high];
     peaks.extend(tops.flat_map(|(first, last)| [first, last]));
     peaks.sort_by(f64::total_cmp);
-    // Nobody means a thousandth of a range; the ends stay.
+    // Peaks closer than a thousandth of the range are not intended; the ends always stay.
     let apart = 1e-3 * (high - low);
     peaks.dedup_by(|next, last| {
         let is_near = *next - *last < apart;
-        // At a limit of steps the term above it holds.
+        // At a limit of steps, the term above it counts.
         if is_near && *next == last.next_up() {
             *last = *next;
         }
@@ -38,7 +39,7 @@ pub fn peaks(variable: &Variable) -> Vec<f64> {
     peaks
 }
 
-/// The part of a variable's range in which its terms change, from and to; all of it where they change nowhere.
+/// Returns the interval in which the terms of a variable change; the whole range if they never change.
 ///
 /// # Example: temperatures of a room
 /// ```
@@ -65,7 +66,7 @@ pub fn changing(variable: &Variable) -> (f64, f64) {
     }
 }
 
-/// Where a shape is highest within a range, from and to.
+/// Returns the interval within a range in which a shape is highest.
 fn top(shape: &MembershipFunction, low: f64, high: f64) -> (f64, f64) {
     const STEPS: u32 = 2000;
     let corners = shape.corners().filter(|corners| corners.len() > 1);

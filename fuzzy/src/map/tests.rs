@@ -3,7 +3,7 @@ use alloc::string::ToString;
 use super::*;
 use crate::model::Model;
 
-/// The rules of the published method, unweighted: margin and spread to risk.
+/// Returns the unweighted rules of the published method: margin and spread determine risk.
 fn published() -> Model {
     let text = include_str!("../../../rules/flagred-paper.yaml");
     crate::yaml::parse(text).unwrap().model
@@ -42,7 +42,7 @@ fn the_gap_is_the_corner_that_the_paper_marks() {
     for cell in 0..map.grid().cells() {
         let point = map.grid().point(cell);
         let (margin, spread) = (point[0], point[1]);
-        // On the border itself both antecedents fire at 0.5.
+        // On the border itself, both antecedents fire at 0.5.
         if (margin - 0.15).abs() < 1e-9 || (spread - 0.05).abs() < 1e-9 {
             continue;
         }
@@ -77,7 +77,7 @@ fn cells_points_and_slices() {
     assert!(Grid::new(&engine, 1).is_err());
 }
 
-/// The bound counts what is left to evaluate: an axis that is fixed takes no cells.
+/// The limit applies to the cells that are evaluated: fixing an axis reduces their number.
 #[test]
 fn a_map_of_too_many_cells_is_refused_with_their_number() {
     let engine = Engine::new(&published()).unwrap();
@@ -101,14 +101,14 @@ fn a_map_of_too_many_cells_is_refused_with_their_number() {
 fn between_cells_and_beyond_them() {
     let engine = Engine::new(&published()).unwrap();
     let grid = Grid::new(&engine, 3).unwrap();
-    // x + 10 y is linear, so it must come back exactly.
+    // x + 10 y is linear, so the interpolation must be exact.
     let plane = |cell: usize| Some(grid.point(cell)[0] + 10.0 * grid.point(cell)[1]);
     let read = |point: &[f64]| grid.interpolate(plane, point);
     assert!((read(&[0.1, 0.3]).unwrap() - 3.1).abs() < 1e-12);
     assert!((read(&[-1.0, 9.0]).unwrap() - 5.0).abs() < 1e-12);
     assert_eq!(read(&[0.1]), None);
     assert_eq!(read(&[f64::NAN, 0.0]), None);
-    // A cell without a value counts only where it weighs something.
+    // A cell without a value only matters if its weight is not 0.
     let holed = |cell: usize| (cell != 0).then_some(1.0);
     assert_eq!(grid.interpolate(holed, &[0.1, 0.1]), None);
     assert_eq!(grid.interpolate(holed, &[0.0, 0.25]), Some(1.0));

@@ -2,11 +2,11 @@
 
 use alloc::string::String;
 
-/// A finding of the analysis that an author accepts, and why. It changes nothing of what the rules mean.
+/// A finding of the analysis that an author accepts, with the reason. It does not affect evaluation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Allowed {
-    /// The code of the finding: `jump`.
+    /// The code of the finding, such as `jump`.
     pub finding: String,
     /// The author's reason.
     pub because: String,

@@ -1,4 +1,4 @@
-//! Rule blocks: rules with operators and an activation method of their own.
+//! Rule blocks: rules with their own operators and activation method.
 
 use alloc::string::String;
 
@@ -7,7 +7,7 @@ use crate::table::{Activation, Conjunction, Disjunction, Implication};
 
 /// A rule block: rules that share operators and an activation method.
 ///
-/// # Example: two blocks, the second one a list of which the first rule that fires counts
+/// # Example: two blocks; in the second one only the first rule that fires counts
 /// ```
 /// use fuzzy::{Engine, Model};
 ///
@@ -32,24 +32,24 @@ use crate::table::{Activation, Conjunction, Disjunction, Implication};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Block {
-    /// Its name.
+    /// The name of the block.
     pub name: String,
-    /// Its purpose, in the author's words.
+    /// The purpose of the block, as free text.
     pub description: Option<String>,
-    /// Whether its rules are evaluated.
+    /// Whether the rules of the block are evaluated.
     pub enabled: bool,
-    /// AND.
+    /// The conjunction for AND.
     pub and: Conjunction,
-    /// OR.
+    /// The disjunction for OR.
     pub or: Disjunction,
-    /// How a firing strength cuts or scales a consequent.
+    /// The implication, which cuts or scales a consequent by the firing strength.
     pub implication: Implication,
-    /// Which of its rules fire.
+    /// The activation method, which selects the rules of the block that fire.
     pub activation: Activation,
 }
 
 impl Block {
-    /// An enabled block without rules, with Mamdani's operators.
+    /// Creates an enabled block without rules, with Mamdani's operators.
     pub fn new(name: impl Into<String>) -> Self {
         Block {
             name: name.into(),
@@ -64,12 +64,12 @@ impl Block {
 }
 
 impl Model {
-    /// Whether a rule is evaluated: its block is enabled, or it has none.
+    /// Returns whether a rule is evaluated: its block is enabled, or it has no block.
     pub fn is_enabled(&self, rule: &Rule) -> bool {
         self.block_of(rule).is_none_or(|block| block.enabled)
     }
 
-    /// The operators of a rule: those of its block, and the aggregation of the rule set.
+    /// Returns the operators of a rule: those of its block, and the aggregation of the rule set.
     pub fn operators_of(&self, rule: &Rule) -> Operators {
         match self.block_of(rule) {
             None => self.operators,
@@ -82,7 +82,7 @@ impl Model {
         }
     }
 
-    /// The operators of an output: the implication of the rules that conclude it, and its aggregation.
+    /// Returns the operators of an output: the implication of the rules that conclude it, and its aggregation.
     pub fn operators_of_output(&self, output: &Output) -> Operators {
         let mut rules = self.rules.iter();
         let concludes = |rule: &&Rule| self.is_enabled(rule) && concludes(rule, output);
@@ -94,7 +94,7 @@ impl Model {
         }
     }
 
-    /// The activation method of a rule.
+    /// Returns the activation method of a rule.
     pub fn activation_of(&self, rule: &Rule) -> Activation {
         let block = self.block_of(rule);
         block.map_or(self.activation, |block| block.activation)
@@ -105,7 +105,7 @@ impl Model {
     }
 }
 
-/// Whether a rule has a conclusion about an output.
+/// Returns whether a rule has a consequent about an output.
 pub(crate) fn concludes(rule: &Rule, output: &Output) -> bool {
     let mut consequents = rule.rule.consequents.iter();
     consequents.any(|consequent| consequent.output.text == output.variable.name)

@@ -1,4 +1,4 @@
-//! Models made in code, for those who write no YAML.
+//! Building models in code instead of YAML.
 
 use alloc::{boxed::Box, string::String, vec::Vec};
 
@@ -9,9 +9,9 @@ use super::{
 use crate::rule::{self, Condition, Consequent, Proposition};
 
 impl Model {
-    /// A model to be filled in code.
+    /// Starts a model that is built in code.
     ///
-    /// # Example: a tip from the service alone
+    /// # Example: a tip that depends only on the service
     /// ```
     /// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
     /// use fuzzy::rule::{Condition, Rule};
@@ -57,14 +57,14 @@ impl Model {
     }
 }
 
-/// Collects the parts of a [`Model`]; made by [`Model::builder`].
+/// A builder for a [`Model`], created by [`Model::builder`].
 #[derive(Debug, Clone)]
 pub struct ModelBuilder {
     model: Model,
 }
 
 impl ModelBuilder {
-    /// What the rule set is for.
+    /// Sets the description, which states the purpose of the rule set.
     #[must_use]
     pub fn description(mut self, text: impl Into<String>) -> Self {
         self.model.description = Some(text.into());
@@ -85,35 +85,36 @@ impl ModelBuilder {
         self
     }
 
-    /// Sets the operators; Mamdani's where this is not called.
+    /// Sets the operators. Without this call they are Mamdani's.
     #[must_use]
     pub fn operators(mut self, operators: Operators) -> Self {
         self.model.operators = operators;
         self
     }
 
-    /// Sets which rules fire; all where this is not called. Blocks have methods of their own.
+    /// Sets the activation method, which selects the rules that fire. Without this call all rules fire. Blocks have
+    /// their own methods.
     #[must_use]
     pub fn activation(mut self, activation: Activation) -> Self {
         self.model.activation = activation;
         self
     }
 
-    /// Sets the least firing strength.
+    /// Sets the least firing strength: rules below it do not fire.
     #[must_use]
     pub fn least_strength(mut self, least: f64) -> Self {
         self.model.least_strength = least;
         self
     }
 
-    /// Adds a rule block. The rules added after it are its rules.
+    /// Adds a rule block. Rules added after this call belong to it.
     #[must_use]
     pub fn block(mut self, block: Block) -> Self {
         self.model.blocks.push(block);
         self
     }
 
-    /// Adds a rule, to the latest block where there is one.
+    /// Adds a rule to the latest block, or to the model if it has no blocks.
     #[must_use]
     pub fn rule(mut self, rule: rule::Rule) -> Self {
         let block = self.model.blocks.len().saturating_sub(1);
@@ -122,7 +123,7 @@ impl ModelBuilder {
         self
     }
 
-    /// The model. Whether its parts fit is found when an engine is made from it.
+    /// Returns the model. It is not validated here but when an engine is compiled from it.
     pub fn build(self) -> Model {
         self.model
     }
@@ -142,7 +143,7 @@ impl From<rule::Rule> for Rule {
 }
 
 impl Variable {
-    /// A variable without terms over `[low, high]`.
+    /// Creates a variable over `[low, high]` without terms.
     pub fn new(name: impl Into<String>, low: f64, high: f64) -> Self {
         Variable {
             name: name.into(),
@@ -161,7 +162,7 @@ impl Variable {
         self
     }
 
-    /// Adds terms evenly spaced over the range: triangles with shoulders at the ends, whose degrees sum to 1.
+    /// Adds terms evenly spaced over the range: triangles, with shoulders at the ends. Their degrees sum to 1.
     ///
     /// # Example
     /// ```
@@ -178,7 +179,7 @@ impl Variable {
         self.partition_at(names.into_iter().zip(peaks))
     }
 
-    /// Adds terms with these peaks, from left to right: triangles with shoulders at the ends, whose degrees sum to 1.
+    /// Adds terms with these peaks, from left to right: triangles, with shoulders at the ends. Their degrees sum to 1.
     ///
     /// # Example
     /// ```
@@ -211,20 +212,22 @@ impl Variable {
 }
 
 impl Term {
-    /// The degree of membership of `x`: the height times that of the membership function, in [0, 1].
+    /// Returns the degree of membership of `x`, in [0, 1]: the height of the term times the degree of its membership
+    /// function.
     pub fn membership(&self, x: f64) -> f64 {
         self.height * self.membership_function.membership(x)
     }
 }
 
 impl Output {
-    /// Whether its terms are singletons and its defuzzifier takes fuzzy sets: the aggregated set is a few places.
+    /// Returns whether the aggregated set consists of single points: all terms are singletons, and the defuzzifier
+    /// takes fuzzy sets.
     pub(crate) fn is_discrete(&self) -> bool {
         let mut terms = self.variable.terms.iter();
         !self.defuzzifier.is_weighted() && terms.all(|term| term.membership_function.at().is_some())
     }
 
-    /// An output with the exact centroid, undefined where no rule fires.
+    /// Creates an output with the exact centroid as defuzzifier, undefined where no rule fires.
     pub fn new(variable: Variable) -> Self {
         Output {
             variable,
@@ -236,14 +239,14 @@ impl Output {
         }
     }
 
-    /// Sets how the consequents of this output are combined.
+    /// Sets the aggregation, which combines the consequents of this output.
     #[must_use]
     pub fn aggregation(mut self, aggregation: Aggregation) -> Self {
         self.aggregation = Some(aggregation);
         self
     }
 
-    /// Clamps values outside the range to it.
+    /// Clamps values of this output to its range.
     #[must_use]
     pub fn clamp(mut self) -> Self {
         self.clamp = true;
@@ -257,14 +260,14 @@ impl Output {
         self
     }
 
-    /// Integrates by sampling, to reproduce another program.
+    /// Integrates by sampling, to reproduce the results of another program.
     #[must_use]
     pub fn samples(mut self, sampling: Sampling) -> Self {
         self.samples = Some(sampling);
         self
     }
 
-    /// Sets what the output is where no rule fires.
+    /// Sets the value of this output where no rule fires.
     #[must_use]
     pub fn when_no_rule_fires(mut self, what: NoRuleFires) -> Self {
         self.when_no_rule_fires = what;
@@ -273,7 +276,7 @@ impl Output {
 }
 
 impl rule::Rule {
-    /// `IF condition THEN output IS term`, of weight 1.
+    /// Creates `IF condition THEN output IS term` with weight 1.
     ///
     /// # Example
     /// ```
@@ -290,13 +293,13 @@ impl rule::Rule {
         }
     }
 
-    /// Adds `AND output IS term` behind THEN.
+    /// Appends `AND output IS term` to the conclusion.
     #[must_use]
     pub fn then(self, output: &str, term: &str) -> Self {
         self.then_hedged(output, &[], term)
     }
 
-    /// Adds `AND output IS hedge* term` behind THEN.
+    /// Appends `AND output IS hedge* term` to the conclusion.
     #[must_use]
     pub fn then_hedged(mut self, output: &str, hedges: &[rule::Hedge], term: &str) -> Self {
         self.consequents
@@ -304,7 +307,7 @@ impl rule::Rule {
         self
     }
 
-    /// `WITH weight`.
+    /// Sets the weight, as `WITH weight` does.
     #[must_use]
     pub fn with(mut self, weight: f64) -> Self {
         self.weight = weight;
@@ -313,7 +316,7 @@ impl rule::Rule {
 }
 
 impl Consequent {
-    /// `output IS hedge* term`.
+    /// Creates `output IS hedge* term`.
     pub fn is_hedged(output: &str, hedges: &[rule::Hedge], term: &str) -> Self {
         Consequent {
             output: output.into(),
@@ -324,12 +327,12 @@ impl Consequent {
 }
 
 impl Condition {
-    /// `variable IS term`.
+    /// Creates `variable IS term`.
     pub fn is(variable: &str, term: &str) -> Self {
         Condition::is_hedged(variable, &[], term)
     }
 
-    /// `variable IS hedge* term`.
+    /// Creates `variable IS hedge* term`.
     pub fn is_hedged(variable: &str, hedges: &[rule::Hedge], term: &str) -> Self {
         Condition::Is(Proposition {
             variable: variable.into(),
@@ -338,7 +341,7 @@ impl Condition {
         })
     }
 
-    /// `self AND other`.
+    /// Returns `self AND other`.
     #[must_use]
     pub fn and(self, other: Condition) -> Self {
         match self {
@@ -350,7 +353,7 @@ impl Condition {
         }
     }
 
-    /// `self OR other`.
+    /// Returns `self OR other`.
     #[must_use]
     pub fn or(self, other: Condition) -> Self {
         match self {
@@ -362,7 +365,7 @@ impl Condition {
         }
     }
 
-    /// `NOT self`.
+    /// Returns `NOT self`.
     #[must_use]
     pub fn negated(self) -> Self {
         Condition::Not(Box::new(self))

@@ -1,9 +1,9 @@
-//! Chains: outputs that the rules of other outputs read.
+//! Chains: outputs that are read by the rules of other outputs.
 //!
-//! An output reads another one where a rule that concludes it names the other one in its condition, or where a linear
-//! function or a formula of it names the other one. A model in which outputs read others is evaluated in stages. The
-//! first stage has the outputs that read none, each later stage has one output more. A stage is a model of its own whose
-//! inputs are those of the whole model and the outputs that it reads.
+//! An output reads another output if one of its rules names that output in its condition, or if one of its linear
+//! functions or formulas does. A model in which outputs read others is evaluated in stages. The first stage has the
+//! outputs that read no other output; each later stage adds one output. A stage is a model of its own: its inputs are
+//! those of the whole model and the outputs that it reads.
 
 use alloc::{
     borrow::Cow,
@@ -18,23 +18,23 @@ use core::ops::Range;
 use super::{Activation, Model, Rule, Variable, concludes, document::Spans};
 use crate::diagnostic::Diagnostic;
 
-/// That an output reads another one.
+/// A reference from one output to another output that it reads.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Read {
     /// The index of the output that is read.
     pub(crate) output: usize,
-    /// The index of the first rule that reads it; `None` where only a linear function or a formula does.
+    /// The index of the first rule that reads it; `None` if only a linear function or a formula does.
     pub(crate) rule: Option<usize>,
-    /// Where it is named.
+    /// The span of its name in the text.
     pub(crate) span: Range<usize>,
 }
 
-/// A part of a model that is evaluated at once.
+/// A part of a model that is evaluated in one pass.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Stage<'m> {
-    /// Its inputs are those of the whole model, then `reads`.
+    /// The model of this stage. Its inputs are those of the whole model, followed by `reads`.
     pub(crate) model: Cow<'m, Model>,
-    /// The indices in the whole model of the outputs that it reads, ascending.
+    /// The indices, in the whole model, of the outputs that it reads; ascending.
     pub(crate) reads: Vec<usize>,
     /// The index in the whole model of each of its outputs.
     pub(crate) outputs: Vec<usize>,
@@ -43,9 +43,10 @@ pub(crate) struct Stage<'m> {
 }
 
 impl Model {
-    /// The other outputs that an output reads: in the conditions of its rules, or in its linear functions and formulas.
+    /// Returns the other outputs that an output reads, in the conditions of its rules or in its linear functions and
+    /// formulas.
     ///
-    /// # Example: a comfort that the speed of a fan is decided by
+    /// # Example: the speed of a fan depends on comfort, which is an output too
     /// ```
     /// let model: fuzzy::Model = "
     /// fuzzy: 1
@@ -75,7 +76,8 @@ impl Model {
         names.map(|output| output.variable.name.as_str()).collect()
     }
 
-    /// The indices of the outputs that no other output reads: the ends of chains, and outputs of no chain.
+    /// Returns the indices of the outputs that no other output reads: the ends of chains and the outputs outside
+    /// chains.
     pub fn last_outputs(&self) -> Vec<usize> {
         let read: BTreeSet<usize> = reads_of_all(self, &Spans::default())
             .iter()
@@ -87,8 +89,8 @@ impl Model {
             .collect()
     }
 
-    /// The index of the output that rows of data have values of: the one that no other output reads; of several the one that has
-    /// no rules yet. `None` where these are more than one.
+    /// Returns the index of the output whose values are measured in data: the only output that no other output reads,
+    /// or, if there are several, the only one of them without rules. `None` if there is no such output.
     pub fn measured_output(&self) -> Option<usize> {
         let last = self.last_outputs();
         let is_bare = |index: &&usize| {
@@ -104,7 +106,7 @@ impl Model {
         }
     }
 
-    /// The variables that rows of data have values of: the inputs, then the measured output.
+    /// Returns the variables whose values are measured in data: the inputs, then the measured output.
     pub fn measured_variables(&self) -> impl Iterator<Item = &Variable> {
         let output = self.measured_output();
         let output = output.and_then(|output| self.outputs.get(output));
@@ -112,10 +114,10 @@ impl Model {
         inputs.chain(output.map(|output| &output.variable))
     }
 
-    /// The inputs that an output depends on: those that its rules, linear functions and formulas read, and those of the
-    /// outputs that it reads. All others change neither its value nor its coverage.
+    /// Returns the inputs that an output depends on: those that its rules, linear functions and formulas read, and
+    /// those of the outputs that it reads. All other inputs change neither its value nor its coverage.
     ///
-    /// # Example: an alarm of its own beside the speed of a fan
+    /// # Example: an alarm that is independent of the speed of a fan
     /// ```
     /// let model: fuzzy::Model = "
     /// fuzzy: 1
@@ -153,15 +155,16 @@ impl Model {
     }
 }
 
-/// Where an output reads a variable.
+/// The position at which an output reads a variable.
 enum Place<'m> {
-    /// In the condition of a rule: its index, and the span of the name.
+    /// In the condition of a rule: the index of the rule and the span of the name.
     Condition(usize, &'m Range<usize>),
-    /// In the linear function or the formula of a term: its index, and that of the name.
+    /// In the linear function or formula of a term: the index of the term, and the index of the name in it.
     Term(usize, usize),
 }
 
-/// Calls `visit` for all that outputs read, with the index of the output, the name of the variable it reads, and the place.
+/// Calls `visit` for every variable that an output reads, with the index of the output, the name of the variable and
+/// the position.
 fn visit_reads<'m>(model: &'m Model, mut visit: impl FnMut(usize, &'m str, Place<'m>)) {
     let index = |name: &str| model.outputs.iter().position(|o| o.variable.name == name);
     let together = concluded_together(model);
@@ -180,7 +183,7 @@ fn visit_reads<'m>(model: &'m Model, mut visit: impl FnMut(usize, &'m str, Place
         });
     }
     for (by, output) in model.outputs.iter().enumerate() {
-        // Of a fuzzy set, a formula names its own variable.
+        // In a fuzzy set, a formula names the variable of the output itself.
         if !output.defuzzifier.takes_numbers() {
             continue;
         }
@@ -192,7 +195,7 @@ fn visit_reads<'m>(model: &'m Model, mut visit: impl FnMut(usize, &'m str, Place
     }
 }
 
-/// What each output reads of other outputs, each once.
+/// Returns, for each output, the other outputs that it reads, each once.
 pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
     let index = |name: &str| model.outputs.iter().position(|o| o.variable.name == name);
     let mut reads: Vec<Vec<Read>> = vec![Vec::new(); model.outputs.len()];
@@ -216,8 +219,8 @@ pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
     reads
 }
 
-/// The outputs that the rules of each block with an activation method conclude. Which of its rules fire depends on all of
-/// them, so that each of these outputs reads what any of the rules reads.
+/// Returns, for each block with an activation method, the outputs that its rules conclude. Which of its rules fire
+/// depends on all of them, so each of these outputs reads every variable that any of the rules reads.
 fn concluded_together(model: &Model) -> BTreeMap<usize, Vec<usize>> {
     let mut together: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for rule in model.rules.iter().filter(|rule| is_selected(model, rule)) {
@@ -233,13 +236,13 @@ fn concluded_together(model: &Model) -> BTreeMap<usize, Vec<usize>> {
     together
 }
 
-/// Whether an activation method decides with what strength a rule fires.
+/// Returns whether an activation method determines the strength with which a rule fires.
 fn is_selected(model: &Model, rule: &Rule) -> bool {
     model.is_enabled(rule) && model.activation_of(rule) != Activation::General
 }
 
-/// The outputs in an order in which each one comes after those it reads; else the circles that make this impossible, each as
-/// the outputs on it, of which each one reads the next and the last one reads the first.
+/// Returns the outputs in an order in which each one follows those it reads. If there are cycles, returns these as the
+/// error: each is a list of outputs of which each one reads the next and the last one reads the first.
 pub(crate) fn order(reads: &[Vec<Read>]) -> Result<Vec<usize>, Vec<Vec<usize>>> {
     let (mut order, mut circles) = (Vec::new(), Vec::new());
     let mut placed = vec![false; reads.len()];
@@ -254,7 +257,7 @@ pub(crate) fn order(reads: &[Vec<Read>]) -> Result<Vec<usize>, Vec<Vec<usize>>> 
             order.push(ready);
             continue;
         }
-        // Each one that is left reads another one that is left: following them ends in a circle.
+        // Each remaining output reads another remaining one, so following them leads into a cycle.
         let mut path = vec![first];
         while let Some(next) = path.last().and_then(|last| open(*last, &placed)) {
             if let Some(start) = path.iter().position(|output| *output == next) {
@@ -275,7 +278,7 @@ pub(crate) fn order(reads: &[Vec<Read>]) -> Result<Vec<usize>, Vec<Vec<usize>>> 
     }
 }
 
-/// An error for each circle of outputs that read one another, with all of it.
+/// Returns an error for each cycle of outputs that read one another; the message lists the whole cycle.
 pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let reads = reads_of_all(model, spans);
     let name = |output: usize| model.outputs.get(output).map(|o| &o.variable.name);
@@ -285,7 +288,7 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         let rule = read.rule.map(|rule| {
             let mut place = format!(" in rule {}", rule + 1);
             let rule = model.rules.get(rule);
-            // Its activation method asks all rules of the block.
+            // The activation method evaluates all rules of the block.
             if rule.is_some_and(|rule| !concludes(rule, &model.outputs[by])) {
                 place += " of its block";
             }
@@ -319,8 +322,8 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     circles.collect()
 }
 
-/// The stages of a model in the order of their evaluation: the first one, and those after it. A model without a chain is one
-/// stage. Outputs on a circle, which a valid model does not have, are left out.
+/// Returns the stages of a model in the order of evaluation: the first one, and the later ones. A model without chains
+/// has one stage. Outputs on a cycle are omitted; a valid model has no cycles.
 pub(crate) fn stages(model: &Model) -> (Stage<'_>, Vec<Stage<'_>>) {
     let reads = reads_of_all(model, &Spans::default());
     if reads.iter().all(Vec::is_empty) {
@@ -355,7 +358,7 @@ fn stage(model: &Model, reads: Vec<usize>, outputs: Vec<usize>) -> Stage<'_> {
     let inputs: Vec<Variable> = model.inputs.iter().cloned().chain(handed_over).collect();
     let own = of(&outputs);
     let (mut numbers, mut rules) = (Vec::new(), Vec::new());
-    // Of these blocks all rules are needed to find those that fire.
+    // In these blocks, all rules are needed to find those that fire.
     let whole: BTreeSet<usize> = model
         .rules
         .iter()
@@ -398,7 +401,7 @@ fn stage(model: &Model, reads: Vec<usize>, outputs: Vec<usize>) -> Stage<'_> {
 mod tests {
     use super::*;
 
-    /// Reads by index, as `order` takes them.
+    /// Builds references from indices, in the form that `order` takes.
     fn reads(of_each: &[&[usize]]) -> Vec<Vec<Read>> {
         let read = |output: &usize| Read {
             output: *output,
@@ -452,7 +455,7 @@ outputs:
     #[test]
     fn every_circle_is_found_once() {
         assert_eq!(order(&reads(&[&[0]])), Err(vec![vec![0]]));
-        // 0 reads a circle but is on none; 3 and 4 are a second circle.
+        // Output 0 reads a cycle but is not on one; 3 and 4 are a second cycle.
         let two = reads(&[&[1], &[2], &[1], &[4], &[3]]);
         assert_eq!(order(&two), Err(vec![vec![1, 2], vec![3, 4]]));
     }

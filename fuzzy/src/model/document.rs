@@ -1,4 +1,4 @@
-//! A model that was read from a text, and where its parts stand in it.
+//! A model that was parsed from a text, with the positions of its parts.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -6,9 +6,9 @@ use core::ops::Range;
 use super::Model;
 use crate::{diagnostic::Findings, rule::Name};
 
-/// A model as it was read, and where its parts stand in the text.
+/// A parsed model, with the positions of its parts in the text.
 ///
-/// # Example: where a rule stands
+/// # Example: the position of a rule
 /// ```
 /// let text = "fuzzy: 1
 /// name: fan
@@ -24,16 +24,16 @@ use crate::{diagnostic::Findings, rule::Name};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Document {
-    /// What the author wrote.
+    /// The model.
     pub model: Model,
-    /// Where its parts stand.
+    /// The positions of its parts.
     pub spans: Spans,
-    /// What does not keep the model from being read.
+    /// Warnings: problems that do not prevent the model from being read.
     pub warnings: Findings,
 }
 
 impl Document {
-    /// A model that was read from a text of another format.
+    /// Creates a document from a model that was read from a text of another format.
     #[must_use]
     pub fn new(model: Model, spans: Spans, warnings: Findings) -> Self {
         Document {
@@ -44,7 +44,8 @@ impl Document {
     }
 }
 
-/// Where the parts of a model stand in its text, in the order of the model. Empty for a model made in code.
+/// The positions (byte ranges) of the parts of a model in its text, in the order of the model. Empty for a model built
+/// in code.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Spans {
@@ -68,75 +69,76 @@ pub struct Spans {
     pub allow: Vec<Range<usize>>,
     /// The key `provenance`.
     pub provenance: Range<usize>,
-    /// Some rule could not be read, and is not in the model; a finding says why.
+    /// Whether a rule could not be parsed and is missing from the model; a finding reports the error.
     pub(crate) rules_unread: bool,
 }
 
-/// Where the parts of a rule block stand.
+/// The positions of the parts of a rule block.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct BlockSpans {
-    /// Its name.
+    /// The name.
     pub name: Range<usize>,
-    /// Its activation method.
+    /// The activation method.
     pub activation: Range<usize>,
 }
 
-/// Where the parts of a variable stand.
+/// The positions of the parts of a variable.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct VariableSpans {
-    /// Its name.
+    /// The name.
     pub name: Range<usize>,
-    /// The ends of its range.
+    /// The limits of the range.
     pub range: Range<usize>,
-    /// The value of `partition`: a list of names, or a mapping of names to peaks. Empty where terms are spelt out.
+    /// The value of `partition`: a list of names, or a mapping of names to peaks. Empty if the terms are written in
+    /// another way.
     pub partition: Range<usize>,
-    /// The value of `steps`: a mapping of names to limits. Empty where terms are given otherwise.
+    /// The value of `steps`: a mapping of names to limits. Empty if the terms are written in another way.
     pub steps: Range<usize>,
-    /// Its terms.
+    /// The terms.
     pub terms: Vec<TermSpans>,
-    /// Of an output, the number of samples.
+    /// The number of samples; outputs only.
     pub samples: Range<usize>,
-    /// Of an output, the value where no rule fires.
+    /// The value for inputs at which no rule fires; outputs only.
     pub default: Range<usize>,
-    /// The range, or the terms, could not be read; a finding says why.
+    /// Whether the range, or the terms, could not be parsed; a finding reports the error.
     pub(crate) range_unread: bool,
     pub(crate) terms_unread: bool,
 }
 
-/// Where the parts of a term stand.
+/// The positions of the parts of a term.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct TermSpans {
-    /// Its name.
+    /// The name.
     pub name: Range<usize>,
-    /// The parameters of its membership function: empty in a partition and in `steps`.
+    /// The parameters of the membership function; empty in `partition` and `steps`.
     pub parameters: Vec<Range<usize>>,
-    /// The numbers of its membership function, one by one: x and degree of each point of a piecewise one, the peak in a partition
-    /// that gives it, the limit in `steps`, the coefficients of a linear function and then its constant (`0..0` where it is left out). Empty for a
-    /// formula and in an even partition.
+    /// The numbers of the membership function. A piecewise function has the x and the degree of each point, a partition
+    /// with peaks has the peak, `steps` has the limit, and a linear function has its coefficients and then its constant
+    /// (`0..0` if it is omitted). Empty for a formula and in an even partition.
     pub numbers: Vec<Range<usize>>,
-    /// The variables that a formula or a linear function names, at each place.
+    /// Every occurrence of a variable in a formula or a linear function.
     pub names: Vec<Name>,
-    /// Its height.
+    /// The height.
     pub height: Range<usize>,
-    /// The membership function could not be read; a finding says why.
+    /// Whether the membership function could not be parsed; a finding reports the error.
     pub(crate) unread: bool,
 }
 
-/// Where the parts of a rule stand. The names in it have their own spans.
+/// The positions of the parts of a rule. The names in the rule have their own spans.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct RuleSpans {
-    /// All of it.
+    /// The whole rule.
     pub whole: Range<usize>,
-    /// Its confidence.
+    /// The confidence.
     pub confidence: Range<usize>,
-    /// The number behind WITH; without one, the empty place behind the conclusion.
+    /// The number after WITH, or the empty range after the conclusion if there is none.
     pub weight: Range<usize>,
-    /// The degrees of the consequents that it beat.
+    /// The degrees of the consequents that were rejected in favour of this one.
     pub against: Vec<Range<usize>>,
-    /// The terms of the consequents that it beat.
+    /// The terms of the consequents that were rejected in favour of this one.
     pub against_terms: Vec<Range<usize>>,
 }

@@ -1,4 +1,4 @@
-//! What an author wrote: variables, terms, operators and rules, as plain data.
+//! The data model of a rule set: variables, terms, operators and rules as plain data.
 
 use alloc::{string::String, vec::Vec};
 
@@ -30,7 +30,7 @@ pub(crate) use steps::between_limits;
 
 /// A rule set: inputs, outputs, operators and rules.
 ///
-/// # Example: plain data, from a text and back
+/// # Example: parse a rule set, change it and print it
 /// ```
 /// let text = "fuzzy: 1
 /// name: fan
@@ -46,31 +46,32 @@ pub(crate) use steps::between_limits;
 pub struct Model {
     /// The name of the rule set.
     pub name: String,
-    /// Its purpose, in the author's words.
+    /// The purpose of the rule set, as free text.
     pub description: Option<String>,
     /// The inputs, in the order in which the engine takes their values.
     pub inputs: Vec<Variable>,
-    /// The outputs, in the order in which the engine gives their values.
+    /// The outputs, in the order in which the engine returns their values.
     pub outputs: Vec<Output>,
-    /// The operators of all rules; of rules in blocks only the aggregation.
+    /// The operators of all rules. If there are blocks, only the aggregation is used.
     pub operators: Operators,
-    /// Which rules fire, where there are no blocks.
+    /// The activation method, which selects the rules that fire. Not used if there are blocks.
     pub activation: Activation,
-    /// A firing strength below it counts as 0: such a rule does not fire. From [`LEAST_STRENGTH`], its default, up to 1.
+    /// The least firing strength: a rule whose firing strength is below it does not fire. At least [`LEAST_STRENGTH`],
+    /// which is the default, and at most 1.
     pub least_strength: f64,
-    /// The rule blocks; empty where all rules share `operators` and `activation`.
+    /// The rule blocks; empty if all rules share `operators` and `activation`.
     pub blocks: Vec<Block>,
-    /// The rules; with blocks, in the order of the blocks.
+    /// The rules; if there are blocks, in the order of the blocks.
     pub rules: Vec<Rule>,
     /// The findings of the analysis that the author accepts.
     pub allow: Vec<Allowed>,
-    /// The commands that made it, the last one last.
+    /// The commands that produced the rule set, in the order in which they ran.
     pub provenance: Vec<Step>,
 }
 
-/// A linguistic variable: a range of numbers and the terms that name its parts.
+/// A linguistic variable: a range of numbers and the terms that name parts of it.
 ///
-/// # Example: terms side by side
+/// # Example: two overlapping terms
 /// ```
 /// use fuzzy::model::{MembershipFunction, Variable};
 ///
@@ -83,68 +84,68 @@ pub struct Model {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variable {
-    /// Its name in rules.
+    /// The name used in rules.
     pub name: String,
-    /// What it means, in the author's words.
+    /// The meaning of the variable, as free text.
     pub description: Option<String>,
-    /// The unit of its values, for people: `"%"`, `"m/s"`.
+    /// The unit of the values, for display: `"%"`, `"m/s"`.
     pub unit: Option<String>,
-    /// The lower end of its range.
+    /// The lower end of the range.
     pub low: f64,
-    /// The upper end of its range.
+    /// The upper end of the range.
     pub high: f64,
-    /// Its terms.
+    /// The terms.
     pub terms: Vec<Term>,
 }
 
 /// A term: the name of a fuzzy set over a variable's range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Term {
-    /// Its name in rules.
+    /// The name used in rules.
     pub name: String,
     /// The membership function.
     pub membership_function: MembershipFunction,
-    /// The height of the membership function, in (0, 1]; 1 where the author wrote none.
+    /// The height of the membership function, in (0, 1]; 1 by default.
     pub height: f64,
 }
 
-/// An output variable, and how its fuzzy result becomes a number.
+/// An output variable, with the method that reduces its fuzzy result to a number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Output {
-    /// Name, range and terms.
+    /// The name, range and terms.
     pub variable: Variable,
-    /// How the aggregated set becomes a number.
+    /// The defuzzifier, which reduces the aggregated set to a number.
     pub defuzzifier: Defuzzifier,
-    /// Integrate by sampling, to reproduce other programs; `None` is exact.
+    /// Integration by sampling, to reproduce the results of other programs; `None` integrates exactly.
     pub samples: Option<Sampling>,
-    /// What the output is where no rule fires.
+    /// The value of the output where no rule fires.
     pub when_no_rule_fires: NoRuleFires,
-    /// How the consequents of this output are combined; `None` as the rule set says.
+    /// The aggregation, which combines the consequents of this output; `None` uses that of the rule set.
     pub aggregation: Option<Aggregation>,
-    /// Whether a value outside the range is clamped to it. Only Takagi-Sugeno outputs can have one.
+    /// Whether a value outside the range is clamped to it. Only Takagi-Sugeno outputs can leave their range.
     pub clamp: bool,
 }
 
-/// What an output is where no rule fires.
+/// The value of an output where no rule fires.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NoRuleFires {
-    /// The output is undefined there, and says so.
+    /// The output is undefined.
     Undefined,
-    /// Evaluation is an error there.
+    /// Evaluation returns an error.
     Error,
-    /// A value the author chose.
+    /// The output has this value.
     Value(f64),
-    /// The value of the evaluation before, in a `Sequence`. Before there is one, and for a single
-    /// evaluation: the value given here, or undefined.
+    /// The output keeps the value of the previous evaluation in a `Sequence`. As long as there is no previous value,
+    /// and in single evaluations, the output has the value given here, or is undefined.
     Previous(Option<f64>),
 }
 
-/// How an aggregated fuzzy set becomes a number.
+/// A defuzzifier: the method that reduces an aggregated fuzzy set to a number.
 ///
-/// Of maxima, degrees that differ by at most 1e-12, relatively, are equally high: two plateaus or peaks of almost one degree both
-/// count, a stretch between two kinks is a plateau if its degrees are so close to the highest, and a firing strength so close to
-/// the highest degree of a term does not cut it off. The mean is that of all values on plateaus, or of the peaks where there is
-/// no plateau.
+/// The three maxima methods treat degrees as equal if they differ by a relative difference of at most 1e-12. Two
+/// plateaus or peaks of nearly equal degree therefore both count; the section between two kinks is a plateau if its
+/// degrees are that close to the maximum; and a firing strength that close to the maximum degree of a term does not cut
+/// the term off. The mean is taken over all values on plateaus, or over the peaks if there is no plateau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Defuzzifier {
     /// The centre of gravity of the aggregated set.
@@ -161,7 +162,8 @@ pub enum Defuzzifier {
     WeightedAverage,
     /// Takagi-Sugeno: `sum(w z)` over the rules.
     WeightedSum,
-    /// Tsukamoto: `sum(w z) / sum(w)` over the rules, with `z` the place where the monotone term of the rule has the degree `w`.
+    /// Tsukamoto: `sum(w z) / sum(w)` over the rules, where `z` is the value at which the rule's monotone term has the
+    /// degree `w`.
     Tsukamoto,
 }
 
@@ -178,7 +180,8 @@ impl Defuzzifier {
         Defuzzifier::Tsukamoto,
     ];
 
-    /// Whether its terms are numbers and functions, as Takagi-Sugeno consequents are, rather than fuzzy sets.
+    /// Returns whether the terms of the output are numbers and functions (Takagi-Sugeno consequents) rather than fuzzy
+    /// sets.
     pub(crate) fn takes_numbers(self) -> bool {
         match self {
             Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => true,
@@ -191,7 +194,7 @@ impl Defuzzifier {
         }
     }
 
-    /// Whether it weights numbers, one for each rule: Takagi-Sugeno or Tsukamoto.
+    /// Returns whether the defuzzifier weights one number per rule: Takagi-Sugeno or Tsukamoto.
     pub(crate) fn is_weighted(self) -> bool {
         match self {
             Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum | Defuzzifier::Tsukamoto => {
@@ -206,61 +209,62 @@ impl Defuzzifier {
     }
 }
 
-/// Sampled integration, for parity with other programs only.
+/// Sampled integration, only for agreement with other programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sampling {
     /// The number of samples over the output's range.
     pub samples: usize,
-    /// Where they lie.
+    /// The positions of the samples.
     pub rule: SamplingRule,
 }
 
-/// Where the samples of a sampled integration lie.
+/// The positions of the samples of a sampled integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SamplingRule {
-    /// `low + (i + 0.5) (high - low) / N`, i = 0..N.
+    /// `low + (i + 0.5) (high - low) / N` for i = 0..N.
     Midpoint,
-    /// `low + i (high - low) / (N - 1)`, i = 0..N, equal weights at inner points, half at the ends.
+    /// `low + i (high - low) / (N - 1)` for i = 0..N, with equal weights at inner points and half the weight at the
+    /// ends.
     Trapezoid,
 }
 
-/// The operators that the rules of a model or of a block share.
+/// The operators shared by the rules of a model or of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Operators {
-    /// AND.
+    /// The conjunction for AND.
     pub and: Conjunction,
-    /// OR.
+    /// The disjunction for OR.
     pub or: Disjunction,
-    /// How a firing strength cuts or scales a consequent.
+    /// The implication, which cuts or scales a consequent by the firing strength.
     pub implication: Implication,
-    /// How the consequents of one output are combined.
+    /// The aggregation, which combines the consequents of one output.
     pub aggregation: Aggregation,
 }
 
 /// A rule with its provenance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
-    /// The rule itself, with its weight.
+    /// The parsed rule, with its weight.
     pub rule: rule::Rule,
-    /// The index of its block; 0 where the model has none.
+    /// The index of its block; 0 if the model has no blocks.
     pub block: usize,
-    /// The confidence of its source, in [0, 1]: provenance, not a weight.
+    /// The confidence that its source assigned, in [0, 1]. It is not a weight and does not affect evaluation.
     pub confidence: Option<f64>,
-    /// How many samples support it.
+    /// The number of samples that support it.
     pub support: Option<u64>,
-    /// The consequents that lost against this one when it was learned.
+    /// The consequents that were rejected in favour of this one when the rule was learned.
     pub against: Vec<Beaten>,
-    /// The author's note.
+    /// A note of the author.
     pub note: Option<String>,
 }
 
-/// A consequent that lost against the one in the rule, when the rule was learned.
+/// A consequent that was rejected in favour of the rule's consequent when the rule was learned.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Beaten {
-    /// The term that lost.
+    /// The term of the rejected consequent.
     pub term: String,
-    /// Its degree.
+    /// The degree of the rejected consequent.
     pub degree: f64,
-    /// How many samples support it.
+    /// The number of samples that support it.
     pub support: u64,
 }

@@ -4,7 +4,8 @@ use alloc::{string::String, vec::Vec};
 
 use super::{MembershipFunction, Term, Variable};
 
-/// Triangles between the peaks of their neighbours, shoulders at the ends: the degrees sum to 1 everywhere.
+/// Returns triangles that end at the peaks of their neighbours, with shoulders at both ends; the degrees sum to 1
+/// everywhere.
 pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
     let peak = |i: usize| peaks.get(i).map(|(_, peak)| *peak);
     let term = |(i, &(name, at)): (usize, &(&str, f64))| {
@@ -29,8 +30,8 @@ pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
 }
 
 impl Variable {
-    /// The peaks of its terms where they are a partition, as [`Variable::partition_at`] makes one: at least two terms of height
-    /// 1, whose peaks rise and lie in the range. `None` for other terms.
+    /// Returns the peaks of its terms if they form a partition as made by [`Variable::partition_at`]: at least two
+    /// terms of height 1, with increasing peaks inside the range. `None` for other terms.
     pub fn partition_peaks(&self) -> Option<Vec<f64>> {
         let peak = |term: &Term| match term.membership_function {
             MembershipFunction::Triangle { peak, .. } => Some(peak),
@@ -51,7 +52,7 @@ impl Variable {
     }
 }
 
-/// The peaks of `count` terms evenly spaced from `low` to `high`.
+/// Returns the peaks of `count` terms that are evenly spaced from `low` to `high`.
 pub(crate) fn even_peaks(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> {
     let last = count.saturating_sub(1).max(1) as f64;
     (0..count).map(move |i| {

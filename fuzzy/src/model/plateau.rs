@@ -1,9 +1,9 @@
-//! Where a membership function is highest.
+//! The values at which a membership function is highest.
 
 use super::{MembershipFunction, Variable};
 
 impl Variable {
-    /// The first and the last value of the range at which a shape is highest.
+    /// Returns the first and the last value of the range at which a membership function is highest.
     pub(crate) fn plateau(&self, shape: &MembershipFunction) -> (f64, f64) {
         use MembershipFunction as Of;
         let (low, high) = (self.low, self.high);
@@ -23,7 +23,7 @@ impl Variable {
         (within(first), within(last))
     }
 
-    /// To half a thousandth of the range.
+    /// Finds the plateau by sampling, to within 1/2000 of the range.
     fn sampled_plateau(&self, shape: &MembershipFunction) -> (f64, f64) {
         const STEPS: u32 = 2000;
         let at = |i: u32| self.low + (self.high - self.low) * f64::from(i) / f64::from(STEPS);

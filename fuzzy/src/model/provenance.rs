@@ -1,52 +1,52 @@
-//! Where rules and numbers come from: the commands that made them.
+//! The provenance of rules and numbers: the commands that produced them.
 
 use alloc::{string::String, vec::Vec};
 
-/// A command that made a rule set of another one. It changes nothing of what the rules mean.
+/// A command that derived a rule set from another one. It does not affect evaluation.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Step {
-    /// What made it: a command, or in words.
+    /// The command, or a description of the step.
     pub command: String,
-    /// The files with the data.
+    /// The data files.
     pub data: Vec<DataFile>,
-    /// How many rows of them were used.
+    /// The number of rows that were used.
     pub rows: Option<u64>,
-    /// The seed of what was random.
+    /// The random seed.
     pub seed: Option<u64>,
-    /// The loss that was made small.
+    /// The loss that was minimised.
     pub loss: Option<LossChange>,
-    /// The number of rules, before and after.
+    /// The number of rules before and after the step.
     pub rules: Option<[u64; 2]>,
-    /// The numbers that moved, each in words: `heat.warm peak from 20 to 22.5`.
+    /// The numbers that changed, as text: `heat.warm peak from 20 to 22.5`.
     pub moved: Vec<String>,
-    /// What else there is to say.
+    /// Further remarks.
     pub note: Option<String>,
-    /// A hash of the rule set that the command made; another one now says that it was edited since.
+    /// A hash of the resulting rule set. If the current hash differs, the rule set was edited afterwards.
     pub result: Option<String>,
 }
 
-/// A file with data.
+/// A data file.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DataFile {
-    /// Its name, without folders.
+    /// The file name without folders.
     pub file: String,
-    /// The SHA-256 of its bytes, in hexadecimal digits; `None` where they are gone, as those of standard input.
+    /// The SHA-256 of the contents, in hexadecimal; `None` if the contents are not available, as for standard input.
     pub sha256: Option<String>,
 }
 
-/// A loss before and after.
+/// The value of a loss before and after a step.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LossChange {
-    /// What it is, as `RMS error`.
+    /// The name of the loss, such as `RMS error`.
     pub name: String,
-    /// Before.
+    /// The loss before the step.
     pub before: f64,
-    /// After.
+    /// The loss after the step.
     pub after: f64,
 }

@@ -4,8 +4,8 @@ use alloc::{string::String, vec::Vec};
 
 use super::{MembershipFunction, Term, Variable};
 
-/// Rectangles from limit to limit over a range. A limit belongs to the term above it: the term below ends at the next smaller
-/// number.
+/// Returns rectangles that reach from limit to limit over a range. A limit belongs to the term above it: the term below
+/// it ends at the next smaller number.
 pub(crate) fn between_limits(low: f64, high: f64, below: &[(&str, f64)], last: &str) -> Vec<Term> {
     let mut left = low;
     let mut term = |name: &str, right: f64, next: f64| {
@@ -26,8 +26,8 @@ pub(crate) fn between_limits(low: f64, high: f64, below: &[(&str, f64)], last: &
 }
 
 impl Variable {
-    /// Adds terms that divide the range at limits, from left to right: each is 1 from the limit before it up to, but not
-    /// including, its own limit, and `last` from the last limit on.
+    /// Adds terms that divide the range at limits, from left to right. Each term is 1 from the previous limit up to,
+    /// but not including, its own limit; `last` is 1 from the last limit to the end of the range.
     ///
     /// # Example: a value at a limit belongs to the term above it
     /// ```
@@ -52,15 +52,16 @@ impl Variable {
         self
     }
 
-    /// The limits of its terms where they divide the range as [`Variable::steps`] does: at least two rectangles of height 1, from
-    /// the lower end of the range to the upper, each ending at the number before the next one begins. `None` for other terms.
+    /// Returns the limits of its terms if they divide the range as [`Variable::steps`] does: at least two rectangles of
+    /// height 1 from the lower end of the range to the upper one, each ending at the number before the next one begins.
+    /// `None` for other terms.
     pub fn step_limits(&self) -> Option<Vec<f64>> {
         let (last, below) = self.terms.split_last()?;
         let right = |term: &Term| match term.membership_function {
             MembershipFunction::Rectangle { right, .. } => Some(right.next_up()),
             _ => None,
         };
-        // The number above the one below 0 is -0.
+        // The number after the predecessor of 0 is -0.
         let limits: Vec<f64> = below
             .iter()
             .map(|term| right(term).map(|limit| limit + 0.0))

@@ -1,4 +1,4 @@
-//! The first mistake of a rule, in words, with what to write instead.
+//! The messages for the first syntax error in a rule, with suggestions.
 
 use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 
@@ -10,43 +10,43 @@ use super::{
 };
 use crate::diagnostic::{Diagnostic, either, is_curly_quote, meant, nearest, suggest};
 
-/// What is wrong, and the text that was left when it was met.
+/// A syntax error, with the remaining text at the position where it was detected.
 pub(super) struct Mistake<'a> {
     pub(super) rest: &'a str,
     pub(super) kind: Wrong<'a>,
 }
 
 pub(super) enum Wrong<'a> {
-    /// One of these words should have stood here: `after` says after what.
+    /// One of these keywords was expected; the second field describes what precedes it.
     Keyword(&'static [&'static str], &'static str),
-    /// `AND`, `OR` or `THEN` should have stood here.
+    /// `AND`, `OR` or `THEN` was expected.
     Joint,
-    /// No IS behind the name of an input or an output; the text from that name on.
+    /// `IS` is missing after the name of an input or an output. The second field is the text from that name on.
     NoIs(&'static str, &'a str),
-    /// A name of this kind should have stood here.
+    /// A name of this kind was expected.
     Name(&'static str),
     /// A hedge before the input.
     HedgeBeforeInput,
-    /// A hedge behind THEN that does not belong there.
+    /// A hedge that is not allowed in a conclusion.
     HedgeInConsequent,
-    /// A term, and a second word behind it.
+    /// A second word after a term; the field is the second word.
     TwoWords(&'a str),
-    /// A quote without its partner.
+    /// An unclosed quote.
     OpenQuote,
-    /// A bracket without its partner.
+    /// An unclosed bracket.
     OpenBracket,
-    /// Something between quotes that is not there.
+    /// An empty name in quotes.
     EmptyName,
-    /// No number behind WITH.
+    /// A number is missing after `WITH`.
     Number,
     /// A weight outside [0, 1].
     Weight(f64),
-    /// Nested deeper than [`DEEPEST_NESTING`].
+    /// Nesting deeper than [`DEEPEST_NESTING`].
     TooDeep,
 }
 
 impl<'a> ParseError<&'a str> for Mistake<'a> {
-    // nom's own parsers are only tried, never required: what they would say is always replaced.
+    // nom's own parsers are always optional here, so their errors are always replaced.
     fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
         Mistake {
             rest,
@@ -62,7 +62,7 @@ impl<'a> ParseError<&'a str> for Mistake<'a> {
 const JOINTS: [&str; 3] = ["AND", "OR", "THEN"];
 
 impl Mistake<'_> {
-    /// The mistake in words.
+    /// Returns the diagnostic of the syntax error.
     pub(super) fn explain(self, text: &str) -> Diagnostic {
         let rest = self.rest.trim_start();
         let start = text.len() - rest.len();
@@ -158,7 +158,8 @@ impl Mistake<'_> {
     }
 }
 
-/// `vrey hot`: the first word is a misspelt hedge, or both are one name.
+/// Returns the diagnostic for two consecutive words such as `vrey hot`: the first word is a misspelt hedge, or both are
+/// one name.
 fn two_words(span: core::ops::Range<usize>, first: &str, second: &str) -> Diagnostic {
     let is = |word: &str, known: &[&str]| known.iter().any(|one| word.eq_ignore_ascii_case(one));
     let phrase = if is(second, &["BUT", "PLUS", "WHILE"]) {
@@ -196,7 +197,8 @@ fn two_words(span: core::ops::Range<usize>, first: &str, second: &str) -> Diagno
     Diagnostic::error("rule-syntax", span, message).help(help)
 }
 
-/// What to write where no IS stands behind the name of an input or an output; `start` is the place of the name.
+/// Returns a suggestion if `IS` is missing after the name of an input or an output; `start` is the position of the
+/// name.
 fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> Option<String> {
     let found = found_here(rest);
     if found.is_empty()
@@ -211,7 +213,7 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
         {
             return Some("for a rule that always fires write `input IS any`".into());
         }
-        // `x IS low OR high`: the name is a term, and what it is a term of stands before it.
+        // In `x IS low OR high`, the name is a term, and the name of its variable precedes it.
         let before = text.get(..start).unwrap_or("");
         let mut words = before.split_whitespace().rev();
         let joint = words.next().unwrap_or("");
@@ -264,7 +266,7 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
     }
     if is_plain_name(found) && keyword(behind, "IS").is_none() {
         let next = found_here(behind.trim_start());
-        // `fan BECOMES fast`, `temperature WAS hot`
+        // For example `fan BECOMES fast`, `temperature WAS hot`.
         let is_verb = is_plain_name(next) && !Rule::is_keyword(next);
         return Some(match nearest(found, ["IS"]) {
             Some(word) => format!("did you mean `{word}`?"),
@@ -287,7 +289,7 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
     sign(rest)
 }
 
-/// Verbs that speak of a change.
+/// Verbs that describe a change.
 const CHANGES: [&str; 8] = [
     "RISES",
     "FALLS",
@@ -299,8 +301,8 @@ const CHANGES: [&str; 8] = [
     "FALLING",
 ];
 
-/// What to write for a phrase of another language behind the name of a variable: `IN (mild, hot)`, `NOT IS hot`, and
-/// `IS more or less hot`, where `less` was taken for a name.
+/// Returns a suggestion for a phrase of natural language after the name of a variable: `IN (mild, hot)`, `NOT IS hot`,
+/// and `IS more or less hot`, in which `less` was parsed as a name.
 fn spoken(name: &str, rest: &str, before: &str) -> Option<String> {
     let found = found_here(rest);
     let behind = rest.get(found.len()..).unwrap_or("").trim_start();
@@ -345,7 +347,7 @@ fn spoken(name: &str, rest: &str, before: &str) -> Option<String> {
     (is_more_or && name.eq_ignore_ascii_case("less")).then(|| format!("write `somewhat {found}`"))
 }
 
-/// What to write where a name should stand and a word of the rule language or the end does.
+/// Returns a suggestion if a name was expected, but there is a keyword or the end of the rule.
 fn name_is_missing(what: &str, found: &str) -> Option<String> {
     let is = |word: &str| found.eq_ignore_ascii_case(word);
     let input = what.contains("input");
@@ -380,7 +382,7 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
     })
 }
 
-/// What to write for a weight such as `50%` or `weight 0.5`.
+/// Returns a suggestion for a weight such as `50%` or `weight 0.5`.
 fn weight_advice(rest: &str) -> String {
     let mut words = rest.split_whitespace();
     let first = words.next().unwrap_or("");
@@ -400,7 +402,7 @@ fn weight_advice(rest: &str) -> String {
     }
 }
 
-/// What to write where a rule does not begin with IF.
+/// Returns a suggestion for a rule that does not start with IF.
 fn at_start(rest: &str) -> String {
     if ["WHEN", "WHENEVER"]
         .iter()
@@ -419,7 +421,7 @@ fn at_start(rest: &str) -> String {
     }
 }
 
-/// What to write where a condition is not followed by AND, OR or THEN.
+/// Returns a suggestion for a condition that is not followed by AND, OR or THEN.
 fn joint(rest: &str) -> Option<String> {
     let found = found_here(rest);
     match found {
@@ -446,7 +448,7 @@ fn joint(rest: &str) -> Option<String> {
     Some(format!("write `{joint}` before `{found}`"))
 }
 
-/// What to write behind a conclusion, or behind its weight.
+/// Returns a suggestion for text after a conclusion or after its weight.
 fn behind_conclusion(rest: &str, weighted: bool) -> Option<String> {
     let found = found_here(rest);
     let is = |word: &str| found.eq_ignore_ascii_case(word);
@@ -489,7 +491,7 @@ fn behind_conclusion(rest: &str, weighted: bool) -> Option<String> {
     }
 }
 
-/// What the signs of other languages are called here.
+/// Returns a suggestion for an operator of another language.
 fn sign(rest: &str) -> Option<String> {
     let found = found_here(rest);
     let text = match found {
@@ -507,7 +509,7 @@ fn sign(rest: &str) -> Option<String> {
     Some(text.into())
 }
 
-/// What an author would call the thing that stands here: a word, a quoted name, a sign.
+/// Returns the token at this position as an author would quote it: a word, a quoted name, or an operator.
 fn found_here(rest: &str) -> &str {
     const LONGEST: usize = 40;
     let end = |in_it: fn(char) -> bool| {

@@ -1,6 +1,8 @@
-//! The rule language: its syntax tree, parser and printer. `IF heat IS high AND humidity IS very high THEN speed IS fast WITH 0.8`.
+//! The rule language: its syntax tree, parser and printer.
 //!
-//! Precedence is NOT, then AND, then OR; parentheses group.
+//! An example is `IF heat IS high AND humidity IS very high THEN speed IS fast WITH 0.8`.
+//!
+//! The precedence, from high to low, is NOT, AND, OR; parentheses group.
 
 use alloc::{boxed::Box, string::String, vec::Vec};
 use core::{ops::Range, str::FromStr};
@@ -17,12 +19,13 @@ pub use crate::table::Hedge;
 pub(crate) use parse::parse_with_weight;
 pub use parse::{DEEPEST_NESTING, parse};
 
-/// A name with its byte span in the source text. Names with equal text are equal, whatever their spans.
+/// A name with its byte range in the source text. Names are equal if their texts are equal, regardless of their
+/// positions.
 #[derive(Debug, Clone, Eq)]
 pub struct Name {
-    /// The name itself, without quotes.
+    /// The name, without quotes.
     pub text: String,
-    /// Its span in the text it was parsed from; `0..0` for names made in code.
+    /// The byte range in the text it was parsed from; `0..0` for names created in code.
     pub span: Range<usize>,
 }
 
@@ -41,7 +44,7 @@ impl From<&str> for Name {
     }
 }
 
-/// One rule: antecedent, consequents and weight.
+/// A rule: antecedent, consequents and weight.
 ///
 /// # Example: the parts of a rule
 /// ```
@@ -59,20 +62,20 @@ pub struct Rule {
     pub condition: Condition,
     /// The consequents, at least one; several are joined by AND.
     pub consequents: Vec<Consequent>,
-    /// `WITH w`: multiplies the firing strength; 1 where the author wrote none.
+    /// The weight, by which the firing strength is multiplied, as in `WITH w`; 1 by default.
     pub weight: f64,
 }
 
-/// The antecedent of a rule, as a tree.
+/// The antecedent of a rule, as a syntax tree.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
     /// `variable IS hedge* term`.
     Is(Proposition),
     /// `NOT condition`: one minus the degree of the condition.
     Not(Box<Condition>),
-    /// All of them, joined by the conjunction; at least two.
+    /// The conjunction of at least two conditions.
     And(Vec<Condition>),
-    /// Any of them, joined by the disjunction; at least two.
+    /// The disjunction of at least two conditions.
     Or(Vec<Condition>),
 }
 
@@ -81,27 +84,28 @@ pub enum Condition {
 pub struct Proposition {
     /// The input.
     pub variable: Name,
-    /// The hedges in the order written; the one nearest the term applies first.
+    /// The hedges in the order of the text; the one nearest to the term is applied first.
     pub hedges: Vec<Hedge>,
-    /// The term; `None` after the hedge `any`, which needs none.
+    /// The term; `None` after the hedge `any`, which needs no term.
     pub term: Option<Name>,
 }
 
-/// `output IS hedge* term` behind THEN.
+/// A consequent after THEN: `output IS hedge* term`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Consequent {
     /// The output.
     pub output: Name,
-    /// The hedges in the order written; the one nearest the term applies first. They change the firing strength: with the
-    /// degree `d` of the antecedent, the weight `w` and the hedge `h`, the term is activated with `h(w d)`. `NOT` and `any`
-    /// are none of them.
+    /// The hedges in the order of the text; the one nearest to the term is applied first. They change the firing
+    /// strength: with the degree `d` of the antecedent, the weight `w` and the hedge `h`, the term is activated with
+    /// `h(w d)`. `NOT` and `any` are not allowed.
     pub hedges: Vec<Hedge>,
     /// The term of that output.
     pub term: Name,
 }
 
 impl Rule {
-    /// Whether a word, in any case, is a keyword of the rule language; a name equal to a keyword is written in quotes.
+    /// Returns whether a word, in upper or lower case, is a keyword of the rule language. A name that equals a keyword
+    /// must be quoted.
     #[must_use]
     pub fn is_keyword(word: &str) -> bool {
         let keywords = ["IF", "IS", "AND", "OR", "THEN", "WITH"];
@@ -114,7 +118,7 @@ impl Rule {
 }
 
 impl Consequent {
-    /// Its firing strength, from the degree of the antecedent times the weight.
+    /// Returns the firing strength, given the degree of the antecedent times the weight.
     pub(crate) fn hedged(&self, strength: f64) -> f64 {
         let hedges = self.hedges.iter().rev();
         hedges.fold(strength, |strength, hedge| hedge.of(strength))
@@ -122,7 +126,7 @@ impl Consequent {
 }
 
 impl Rule {
-    /// Calls `change` on every name in it, from left to right.
+    /// Calls `change` for every name in the rule, from left to right.
     pub(crate) fn names_mut(&mut self, change: &mut impl FnMut(&mut Name)) {
         self.condition.names_mut(change);
         for consequent in &mut self.consequents {
@@ -146,7 +150,7 @@ impl Condition {
         }
     }
 
-    /// Calls `visit` on every proposition, from left to right.
+    /// Calls `visit` for every proposition, from left to right.
     pub fn visit<'a>(&'a self, visit: &mut impl FnMut(&'a Proposition)) {
         match self {
             Condition::Is(proposition) => visit(proposition),
@@ -163,13 +167,13 @@ impl Condition {
 impl FromStr for Rule {
     type Err = Box<Diagnostic>;
 
-    /// [`parse`].
+    /// Parses a rule: see [`parse`].
     fn from_str(text: &str) -> Result<Self, Box<Diagnostic>> {
         parse(text)
     }
 }
 
-/// Whether a name can stand in a rule without quotes.
+/// Returns whether a name needs no quotes in a rule.
 pub(crate) fn is_plain_name(name: &str) -> bool {
     !name.is_empty()
         && name

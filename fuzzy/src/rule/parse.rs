@@ -8,11 +8,12 @@
 //! consequent  = name IS { hedge } name
 //! ```
 //!
-//! Keywords are read in any case. `#` starts a comment that ends with its line. A name is letters, digits, `_`, `.`,
-//! `-` and `%`; any other, and one that is a keyword, stands in single or double quotes, `\` before a quote or a `\` in it.
+//! Keywords are case-insensitive. `#` starts a comment, which ends at the end of the line. A name consists of letters,
+//! digits, `_`, `.`, `-` and `%`. Any other name, and a name that equals a keyword, is written in single or double
+//! quotes, in which `\` precedes a quote or a `\`.
 //!
-//! Whatever keyword has been read commits the parser, so the first mistake met is the furthest one, and every error
-//! knows what could have stood in its place.
+//! After reading a keyword the parser does not backtrack. The first syntax error is therefore the furthest one, and
+//! every error lists what was expected at its position.
 
 use alloc::{boxed::Box, string::String, vec::Vec};
 use core::ops::Range;
@@ -31,13 +32,13 @@ use super::{
 };
 use crate::diagnostic::{Diagnostic, nearest};
 
-/// Brackets and NOTs deeper than this are an error: a tree is walked by recursion.
+/// The maximum nesting depth of brackets and NOTs; deeper nesting is an error because a tree is processed recursively.
 pub const DEEPEST_NESTING: usize = 64;
 
-/// Reads one rule.
+/// Parses a rule.
 ///
 /// # Errors
-/// The first mistake, with its byte span in `text`, what could have stood there, and what to do.
+/// The first syntax error, with its byte range in `text`, the expected words, and a suggestion.
 ///
 /// # Example
 /// ```
@@ -54,13 +55,14 @@ pub fn parse(text: &str) -> Result<Rule, Box<Diagnostic>> {
     parse_with_weight(text).map(|(rule, _)| rule)
 }
 
-/// Reads one rule, with the span of its weight: the number behind WITH, or the empty place behind the conclusion.
+/// Parses a rule, and also returns the position of its weight: the number after WITH, or the empty range after the
+/// conclusion.
 pub(crate) fn parse_with_weight(text: &str) -> Result<(Rule, Range<usize>), Box<Diagnostic>> {
     let source = Source { text };
     match source.rule(text) {
         Ok((_, found)) => Ok(found),
         Err(Err::Error(mistake) | Err::Failure(mistake)) => Err(Box::new(mistake.explain(text))),
-        // Only nom's streaming parsers ask for more, and none is used.
+        // Only nom's streaming parsers report incomplete input, and they are not used here.
         Err(Err::Incomplete(_)) => Err(Box::new(Diagnostic::error(
             "rule-syntax",
             text.len()..text.len(),
@@ -75,7 +77,7 @@ fn wrong<'a, T>(rest: &'a str, kind: Wrong<'a>) -> Step<'a, T> {
     Err(Err::Failure(Mistake { rest, kind }))
 }
 
-/// Space, line breaks and comments.
+/// Skips white space, line breaks and comments.
 fn space(rest: &str) -> Step<'_, ()> {
     let blank = take_while1(char::is_whitespace);
     let comment = preceded(char('#'), take_till(|c| c == '\n'));
@@ -87,19 +89,19 @@ pub(super) fn is_name_letter(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '%')
 }
 
-/// The word here, empty where there is none.
+/// Returns the word at this position; empty if there is none.
 pub(super) fn word(rest: &str) -> Step<'_, &str> {
     let (rest, ()) = space(rest)?;
     take_while(is_name_letter).parse(rest)
 }
 
-/// Takes the keyword if it is the next word: keywords end where words end.
+/// Parses a keyword if it is the next word; a keyword ends at the end of the word.
 pub(super) fn keyword<'a>(rest: &'a str, expected: &str) -> Option<&'a str> {
     let (after, word) = word(rest).ok()?;
     word.eq_ignore_ascii_case(expected).then_some(after)
 }
 
-/// Takes the hedge if the next word is one.
+/// Parses a hedge if the next word is one.
 fn hedge(rest: &str) -> Option<(&str, Hedge)> {
     Hedge::ALL
         .into_iter()
@@ -201,7 +203,7 @@ impl<'a> Source<'a> {
             hedges.push(hedge);
             rest = after;
         }
-        // `any` needs no term: whatever follows it that is no name ends the proposition.
+        // `any` needs no term: anything after it that is not a name ends the proposition.
         let (after_space, ()) = space(rest)?;
         let names_follow = starts_name(after_space);
         let (rest, term) = if hedges.last() == Some(&Hedge::Any) && !names_follow {
@@ -264,7 +266,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// `part { word part }`
+/// Parses `part { word part }`.
 fn joined<'a>(
     mut rest: &'a str,
     word: &str,
@@ -281,7 +283,7 @@ fn joined<'a>(
     }
 }
 
-/// The only part, or all parts joined.
+/// Returns the only part, or all parts joined.
 fn one_or(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> Condition {
     match (parts.pop(), parts.is_empty()) {
         (Some(only), true) => only,
@@ -292,8 +294,8 @@ fn one_or(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> C
     }
 }
 
-/// Whether the word behind a term could only be a part of it: no keyword, none misspelt, and not the input of a further
-/// proposition.
+/// Returns whether the word after a term can only be a part of its name: it is not a keyword, not a misspelt one, and
+/// not the input of another proposition.
 fn is_second_word(after: &str, next: &str) -> bool {
     is_plain_name(next)
         && nearest(next, ["AND", "OR", "THEN"]).is_none()
@@ -304,7 +306,7 @@ fn starts_name(rest: &str) -> bool {
     rest.starts_with(['"', '\'']) || word(rest).is_ok_and(|(_, word)| is_plain_name(word))
 }
 
-/// A name in quotes; a backslash takes the next quote or backslash as it is.
+/// Parses a name in quotes; a quote or backslash after a backslash is taken literally.
 pub(super) fn quoted(rest: &str, quote: char) -> Step<'_, String> {
     let mut name = String::new();
     let mut letters = rest.char_indices().skip(1);
@@ -332,7 +334,7 @@ fn weight(rest: &str) -> Step<'_, f64> {
     let in_number = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '+' | '-' | '%');
     let (after, number) = take_while(in_number).parse(rest)?;
     match number.parse::<f64>() {
-        // Words that Rust takes for numbers (`inf`, `nan`) are none here.
+        // Rust parses `inf` and `nan` as numbers, but they are not allowed here.
         Ok(weight) if number.contains(is_digit) => {
             if (0.0..=1.0).contains(&weight) {
                 Ok((after, weight))

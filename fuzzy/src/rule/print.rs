@@ -1,10 +1,10 @@
-//! Rules as text: what is printed reads back as the same tree.
+//! Printing rules; parsing the printed text gives the same syntax tree.
 
 use core::fmt::{self, Display, Formatter, Write};
 
 use super::{Condition, Consequent, Name, Proposition, Rule, is_plain_name};
 
-/// The rule as it is written; parsing it again gives the same rule.
+/// Prints the rule; parsing the text gives the same rule.
 impl Display for Rule {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         write!(f, "IF {} THEN ", self.condition)?;
@@ -65,7 +65,7 @@ impl Display for Consequent {
     }
 }
 
-/// The name, in quotes where it needs them.
+/// Prints the name, in quotes if necessary.
 impl Display for Name {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         if is_plain_name(&self.text) {

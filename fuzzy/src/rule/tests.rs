@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// `x IS low`
+/// Returns the condition `x IS low`.
 fn is(variable: &str, hedges: &[Hedge], term: &str) -> Condition {
     Condition::Is(Proposition {
         variable: variable.into(),
@@ -323,7 +323,7 @@ fn any_proposition() -> impl Strategy<Value = Proposition> {
         })
 }
 
-/// Any rule that can be written down.
+/// Generates rules that can be written as text.
 pub(crate) fn any_rule() -> impl Strategy<Value = Rule> {
     let condition = any_proposition()
         .prop_map(Condition::Is)

@@ -1,17 +1,19 @@
-//! The exponential function of curved shapes: the same bits on every machine, and without branches, so that the compiler can
-//! compute several at once.
+//! The exponential function of curved shapes. Its results are bitwise equal on every machine. It does not branch, so
+//! that the compiler can compute several values together.
 
-/// `e^-x` of `x >= 0`, within 0.83 units in the last place; 0 above 708, where it is less than 3.4e-308, and of NaN.
+/// Returns `e^-x` for `x >= 0`, with an error below 0.83 units in the last place. Returns 0 for NaN and above 708,
+/// where the exact value is less than 3.4e-308.
 ///
-/// With `k` the integer nearest to `x / ln 2` and `r = k ln 2 - x`, it is `2^-k e^r`. `|r| <= ln 2 / 2`, so a polynomial
-/// gives `e^r`. `k ln 2` is the sum of a number of few digits, so that its product with `k` is exact, and a small one.
+/// With `k` the integer nearest to `x / ln 2` and `r = k ln 2 - x`, the result is `2^-k e^r`. Since `|r| <= ln 2 / 2`,
+/// a polynomial approximates `e^r`. `ln 2` is split into a number with few digits, whose product with `k` is exact, and
+/// a small remainder.
 #[inline(always)]
 pub(crate) fn exp_of_minus(x: f64) -> f64 {
-    /// Added to a number below 2^51 it rounds it to an integer, which the lowest bits of the sum hold.
+    /// Adding this to a number below 2^51 rounds it to an integer, which is in the lowest bits of the sum.
     const ROUNDS: f64 = 6_755_399_441_055_744.0;
     const HIGH: f64 = 0.693_147_180_369_123_8;
     const LOW: f64 = 1.908_214_929_270_587_7e-10;
-    /// Of `(e^r - 1 - r) / r^2`, by interpolation at Chebyshev points: a relative error of 1e-18.
+    /// The coefficients of `(e^r - 1 - r) / r^2`, by interpolation at Chebyshev points, with a relative error of 1e-18.
     const C: [f64; 11] = [
         0.5,
         0.166_666_666_666_666_69,
@@ -33,12 +35,12 @@ pub(crate) fn exp_of_minus(x: f64) -> f64 {
     let r = high + low;
     let r2 = r * r;
     let r4 = r2 * r2;
-    // Short chains of operations, rather than Horner's long one.
+    // Several short chains of operations are faster than Horner's single long one.
     let first = (C[0] + C[1] * r) + r2 * (C[2] + C[3] * r);
     let second = (C[4] + C[5] * r) + r2 * (C[6] + C[7] * r);
     let third = (C[8] + C[9] * r) + r2 * C[10];
     let polynomial = first + r4 * (second + r4 * third);
-    // `high` is exact, and the rest is small beside it.
+    // `high` is exact, and the remaining terms are small in comparison.
     let power = 1.0 + (high + (low + r2 * polynomial));
     let scale = f64::from_bits(1023u64.wrapping_sub(rounded.to_bits()) << 52);
     if is_normal { power * scale } else { 0.0 }
@@ -57,15 +59,15 @@ mod tests {
         assert_eq!(exp_of_minus(f64::NAN), 0.0);
         assert_eq!(exp_of_minus(708.0), 0.0);
         assert!(exp_of_minus(707.9) > 3e-308);
-        // The same bits everywhere: these were computed on x86-64.
+        // These bits were computed on x86-64 and must be the same on every machine.
         assert_eq!(exp_of_minus(1.0).to_bits(), 0x3fd7_8b56_362c_ef38);
         assert_eq!(exp_of_minus(0.5).to_bits(), 0x3fe3_68b2_fc6f_960a);
         assert_eq!(exp_of_minus(100.0).to_bits(), 0x36ea_8c1f_14e2_af5d);
     }
 
     proptest! {
-        /// Each is within a unit in the last place of the true value, so they differ by at most one representable number, or
-        /// by two where they err to different sides.
+        /// Both functions are within one unit in the last place of the true value, so their results differ by at most
+        /// one representable number, or by two if they err in opposite directions.
         #[test]
         fn libm_agrees(x in prop_oneof![0.0..1.0, 0.0..40.0, 0.0..707.9]) {
             let x: f64 = x;

@@ -1,54 +1,55 @@
-//! How shapes with a fixed number of parameters are spelt: one table for reading, writing and checking them.
+//! The spelling of shapes with a fixed number of parameters: one table for parsing, writing and validating them.
 
 use alloc::vec::Vec;
 
 use super::MembershipFunction;
 
-/// A shape as rule sets spell it.
+/// The spelling of a shape in rule sets.
 pub(crate) struct Form {
-    /// Its key.
+    /// The key of the shape.
     pub(crate) name: &'static str,
-    /// Its parameters, in the order of a list.
+    /// The parameters, in the order of a list.
     pub(crate) parameters: &'static [(&'static str, Role)],
-    /// What it is, for the schema.
+    /// A description for the schema.
     #[cfg_attr(
         not(feature = "serde"),
         allow(dead_code, reason = "only the schema tells it")
     )]
     pub(crate) about: &'static str,
-    /// The shape of so many values.
+    /// Builds the shape from values; `None` if their number is wrong.
     pub(crate) build: fn(&[f64]) -> Option<MembershipFunction>,
 }
 
-/// What a parameter of a membership function may be; all are finite numbers.
+/// The valid values of a parameter of a membership function; all must be finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// A position on the axis, not left of the one before.
+    /// A position on the axis, not left of the previous one.
     Ascending,
-    /// Over 0: a width, a deviation.
+    /// Above 0: a width, a deviation.
     Positive,
-    /// Any.
+    /// Any finite number.
     Number,
 }
 
 impl Form {
-    /// Whether the parameters may stand in a list. Only positions may: programs differ in the order of all others,
-    /// `gaussian: [1, 5]` means mean 1 to one and mean 5 to another.
+    /// Returns whether the parameters may be written as a list. This is allowed only if all are positions, because
+    /// programs order other parameters differently: `gaussian: [1, 5]` means mean 1 in one program and mean 5 in
+    /// another.
     pub(crate) fn as_list(&self) -> bool {
         self.parameters
             .iter()
             .all(|(_, role)| *role == Role::Ascending)
     }
 
-    /// The names of the parameters.
+    /// Returns the names of the parameters.
     pub(crate) fn names(&self) -> Vec<&'static str> {
         self.parameters.iter().map(|(name, _)| *name).collect()
     }
 }
 
-/// A shape taken apart.
+/// The parts of a shape.
 pub(crate) enum Parts<'a> {
-    /// A form and the values of its parameters.
+    /// A shape with a fixed number of parameters, with their values.
     Fixed(&'static Form, Vec<f64>),
     /// The points of a piecewise shape.
     Points(&'a [(f64, f64)]),
@@ -58,7 +59,7 @@ pub(crate) enum Parts<'a> {
     Linear(&'a [(alloc::string::String, f64)], f64),
 }
 
-/// Parameters, and zeros behind them.
+/// Pads parameters with zeros.
 pub(super) fn padded(parameters: &[f64]) -> [f64; 4] {
     let mut padded = [0.0; 4];
     for (place, parameter) in padded.iter_mut().zip(parameters) {
@@ -67,14 +68,14 @@ pub(super) fn padded(parameters: &[f64]) -> [f64; 4] {
     padded
 }
 
-/// Makes the table of forms, and takes shapes apart by it, so that a shape without a line does not compile.
+/// Defines the table of forms, and the functions that use it, so that a shape without a row does not compile.
 macro_rules! forms {
     ($($shape:ident $name:literal $formula:ident [$($parameter:ident: $role:ident),+] $about:literal;)+) => {
         impl MembershipFunction {
             /// The forms of all shapes with a fixed number of parameters.
             pub(crate) const FORMS: &[Form] = &[$(form::forms!(@form $shape $name [$($parameter: $role),+] $about)),+];
 
-            /// The form and the values, or what a shape without a fixed number of parameters has.
+            /// Returns the parts of this shape.
             pub(crate) fn parts(&self) -> Parts<'_> {
                 match *self {
                     $(MembershipFunction::$shape { $($parameter),+ } => Parts::Fixed(
@@ -87,8 +88,8 @@ macro_rules! forms {
                 }
             }
 
-            /// The formula and its parameters; of a piecewise shape the points are apart, of a formula its code, and `Linear` is no membership
-            /// function: 0 everywhere.
+            /// Returns the formula and its parameters. The points of a piecewise shape and the code of a formula are
+            /// not included. `Linear` is not a membership function and is 0 everywhere.
             pub(crate) fn kind(&self) -> (Kind, [f64; 4]) {
                 match *self {
                     $(MembershipFunction::$shape { $($parameter),+ } => (Kind::$formula, form::padded(&[$($parameter),+])),)+

@@ -1,4 +1,4 @@
-//! The formulas of membership functions, each with a number: all that a table in firmware knows of a shape.
+//! The formulas of membership functions, each identified by a number, as used by tables in firmware.
 
 use libm::{cos, fabs, pow, sqrt};
 
@@ -11,8 +11,8 @@ use super::{
     straight::{along, falling, indicator, into_unit, rising, trapezoid},
 };
 
-/// The formula of a membership function. Its parameters are in the order of the fields of the `MembershipFunction` of that
-/// name.
+/// The formula of a membership function. Its parameters are in the order of the fields of the `MembershipFunction`
+/// variant of the same name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct Kind(pub u32);
@@ -43,7 +43,7 @@ impl Kind {
     pub const SEMI_ELLIPSE: Kind = Kind(21);
     pub const FUNCTION: Kind = Kind(22);
 
-    /// The degree at `x`: one of [`Kind::memberships`].
+    /// Returns the degree at `x`: see [`Kind::memberships`].
     pub(crate) fn membership(self, parameters: &[f64; 4], points: &[[f64; 2]], x: f64) -> f64 {
         let mut degrees = [0.0];
         self.memberships(parameters, points, &[x], &mut degrees);
@@ -51,8 +51,9 @@ impl Kind {
         degree
     }
 
-    /// Writes the degrees at several values with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise
-    /// shape, or the code of a formula. The commonest shapes take no branch, so that vectors hold several values.
+    /// Computes the degrees at several values, in [0, 1] and never NaN. `points` are the points of a piecewise shape,
+    /// or the code of a formula. The most common shapes do not branch, so that vector instructions can process several
+    /// values.
     #[inline(always)]
     pub(crate) fn memberships<const L: usize>(
         self,
@@ -81,7 +82,7 @@ impl Kind {
         }
     }
 
-    /// The degree of a shape that takes branches.
+    /// Returns the degree of a shape whose computation branches.
     #[inline(never)]
     fn other(self, parameters: &[f64; 4], points: &[[f64; 2]], x: f64) -> f64 {
         let [a, b, c, d] = *parameters;

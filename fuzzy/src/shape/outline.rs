@@ -1,5 +1,5 @@
-//! How membership functions run: the corners of straight ones, the positions at which an exact integral over curved ones is
-//! cut.
+//! The outlines of membership functions: the corners of straight ones, and the positions at which an exact integral
+//! over curved ones is split.
 
 use alloc::{vec, vec::Vec};
 
@@ -11,12 +11,13 @@ use super::{
     straight::into_unit,
 };
 
-/// How a shape runs, as far as an exact integral must know.
+/// The outline of a shape, as far as an exact integral needs it.
 enum Outline {
-    /// Straight between corners `(x, degree)`, x never falling, the first and last degree held beyond them.
+    /// Straight lines between corners `(x, degree)`, with non-decreasing x; beyond them it keeps the first and the last
+    /// degree.
     Straight(Vec<(f64, f64)>),
-    /// Smooth between these positions, which are in no order and so close to each other that no flank is missed. Positions
-    /// that are not finite do not count.
+    /// Smooth between these positions, which are unordered, and close enough to each other that no flank is missed.
+    /// Positions that are not finite are ignored.
     Smooth(Vec<f64>),
 }
 
@@ -70,7 +71,7 @@ impl MembershipFunction {
                 slope,
             } => {
                 let reach = |level: f64| pow((1.0 - level) / level, 0.5 / slope);
-                // Closer to the middle as well where |t|^(2 slope) has an edge there.
+                // The positions must also be close to the middle if |t|^(2 slope) has an edge there.
                 let edge = if slope < 0.75 { 40 } else { 0 };
                 let near = (1..edge).map(|halvings| width * libm::exp2(-f64::from(halvings)));
                 Smooth(
@@ -98,7 +99,7 @@ impl MembershipFunction {
                 right_inflection,
                 right_slope,
             } => {
-                // Where the two sigmoids are equal their difference has a kink.
+                // The difference of the two sigmoids has a kink where they are equal.
                 let equal = (left_slope * left_inflection - right_slope * right_inflection)
                     / (left_slope - right_slope);
                 Smooth(
@@ -143,15 +144,15 @@ impl MembershipFunction {
                 Smooth(vec![left, 0.5 * (left + right), right])
             }
             MembershipFunction::Constant { value } => Straight(vec![(0.0, into_unit(value))]),
-            // Who integrates a formula cuts the range evenly.
+            // The integration of a formula splits the range evenly.
             MembershipFunction::Function { .. } | MembershipFunction::Linear { .. } => {
                 Smooth(vec![])
             }
         }
     }
 
-    /// The corners of a shape made of straight lines, `(x, degree)` with x never falling and the first
-    /// and last degree held beyond them; `None` for a curved shape.
+    /// Returns the corners `(x, degree)` of a shape made of straight lines, with non-decreasing x; beyond them it keeps
+    /// the first and the last degree. `None` for a curved shape.
     pub fn corners(&self) -> Option<Vec<(f64, f64)>> {
         match self.outline() {
             Outline::Straight(corners) => Some(corners),
@@ -159,7 +160,7 @@ impl MembershipFunction {
         }
     }
 
-    /// The positions at which to cut an integral over the membership function.
+    /// Returns the positions at which to split an integral over the membership function.
     pub(crate) fn cuts(&self) -> Vec<f64> {
         let mut cuts = match self.outline() {
             Outline::Straight(corners) => corners.iter().map(|corner| corner.0).collect(),

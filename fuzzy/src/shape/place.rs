@@ -1,4 +1,4 @@
-//! Where a monotone membership function has a degree, for Tsukamoto's consequents.
+//! The inverse of monotone membership functions, for Tsukamoto consequents.
 
 #[cfg(feature = "alloc")]
 use alloc::vec::Vec;
@@ -10,8 +10,9 @@ use super::Kind;
 use super::MembershipFunction;
 
 impl Kind {
-    /// The place where a monotone membership function has this degree in [0, 1]: the inverse of its formula, on a plateau the
-    /// end of the slope. A sigmoid comes to 0 and 1 at infinity, a concave to 0. Of a shape that is not monotone it is NaN.
+    /// Returns the value at which a monotone membership function has a degree in [0, 1], that is, the inverse of its
+    /// formula. On a plateau, this is the end of the slope. A sigmoid reaches 0 and 1, and a concave shape reaches 0,
+    /// only at infinity. NaN for shapes that are not monotone.
     pub(crate) fn place(self, parameters: &[f64; 4], points: &[[f64; 2]], degree: f64) -> f64 {
         let [a, b, ..] = *parameters;
         let along = |foot: f64, top: f64, part: f64| foot + (top - foot) * part;
@@ -22,7 +23,7 @@ impl Kind {
             Kind::Z_SHAPE => smooth(b, a, degree),
             Kind::SIGMOID if b != 0.0 => a + log(degree / (1.0 - degree)) / b,
             Kind::CONCAVE => 2.0 * b - a - (b - a) / degree,
-            // From sqrt(t (2 - t)), without cancellation.
+            // The inverse of sqrt(t (2 - t)), without cancellation.
             Kind::ARC => along(a, b, degree * degree / (1.0 + sqrt(1.0 - degree * degree))),
             Kind::PIECEWISE => piecewise(points, degree),
             _ => f64::NAN,
@@ -32,7 +33,7 @@ impl Kind {
 
 #[cfg(feature = "alloc")]
 impl MembershipFunction {
-    /// The place where a monotone membership function has this degree: [`Kind::place`].
+    /// Returns the value at which a monotone membership function has a degree: see [`Kind::place`].
     pub(crate) fn place(&self, degree: f64) -> f64 {
         let (kind, parameters) = self.kind();
         match self {
@@ -44,7 +45,8 @@ impl MembershipFunction {
         }
     }
 
-    /// Whether it only rises or only falls over all values and is no constant, so that each degree has one place.
+    /// Returns whether it only rises or only falls over all values and is not constant, so that each degree has a
+    /// unique value.
     pub(crate) fn is_monotone(&self) -> bool {
         match self {
             MembershipFunction::Piecewise { points } => {
@@ -57,7 +59,7 @@ impl MembershipFunction {
     }
 }
 
-/// On two parabolas from 0 at `foot` to 1 at `top`, which may be left of it.
+/// Returns the value at which two parabolas, from 0 at `foot` to 1 at `top`, have a degree. `top` may be below `foot`.
 fn smooth(foot: f64, top: f64, degree: f64) -> f64 {
     let width = top - foot;
     if degree <= 0.5 {
@@ -67,8 +69,9 @@ fn smooth(foot: f64, top: f64, degree: f64) -> f64 {
     }
 }
 
-/// On straight lines between points whose degrees only rise, or only fall: going up, the first place that has the degree. A
-/// degree below all of them is where the slope begins, one above all of them where it ends.
+/// Returns the value at which a piecewise linear function has a degree. The degrees of its points must only rise or
+/// only fall. If several values have the degree, the result is the first one in the direction in which the degrees
+/// rise. A degree below all of them gives the start of the slope, a degree above all of them its end.
 fn piecewise(points: &[[f64; 2]], degree: f64) -> f64 {
     match (points.first(), points.last()) {
         (Some([_, first]), Some([_, last])) if first > last => {

@@ -1,4 +1,5 @@
-//! The slopes of membership functions: their derivatives, in closed form, so that a maximum of a sum is found to the last digits.
+//! The derivatives of membership functions, in closed form, so that the maximum of a sum is accurate to the last
+//! digits.
 
 use core::f64::consts::PI;
 
@@ -10,12 +11,12 @@ use super::{
     smooth::{gaussian, sigmoid},
 };
 
-/// The slope of a formula is a difference over such a share of a stretch.
+/// The fraction of an interval over which the slope of a formula is computed as a difference.
 const SHARE: f64 = 0.125;
 
 impl MembershipFunction {
-    /// The derivative of the degree at `x`, where the shape has one; at a kink, that of either side. `width` is that of a stretch
-    /// without a kink around `x`, over a part of which the slope of a formula is a difference.
+    /// Returns the derivative of the degree at `x`; at a kink, that of either side. `width` is the width of an interval
+    /// around `x` without kinks. The slope of a formula is computed as a difference over a fraction of it.
     pub(crate) fn slope(&self, x: f64, width: f64) -> f64 {
         match *self {
             MembershipFunction::Triangle { left, peak, right } => {
@@ -56,7 +57,7 @@ impl MembershipFunction {
             } => {
                 let power = pow(fabs((x - center) / width), 2.0 * slope);
                 let sum = 1.0 + power;
-                // The limit at the middle and far away.
+                // Otherwise the limit, which applies at the middle and far away from it.
                 let share = power / sum / sum;
                 if share > 0.0 && sum < f64::INFINITY {
                     -2.0 * slope * share / (x - center)
@@ -74,7 +75,8 @@ impl MembershipFunction {
                 right_slope,
             } => {
                 let slope = sigmoid_slope(x, a, left_slope) - sigmoid_slope(x, b, right_slope);
-                // A sigmoid grows with `slope (x - inflection)`, whose difference has digits where both sigmoids are 1.
+                // A sigmoid increases with `slope (x - inflection)`. The difference of these terms is accurate even if
+                // both sigmoids round to 1.
                 let left_is_higher = left_slope * (x - a) >= right_slope * (x - b);
                 if left_is_higher { slope } else { -slope }
             }
@@ -107,7 +109,8 @@ impl MembershipFunction {
                 if x < center { falls } else { -falls }
             }
             MembershipFunction::Concave { inflection, end } => {
-                // (end - inflection) / r, with r from 2 (end - inflection) at the inflection to end - inflection at the end.
+                // The degree is (end - inflection) / r, where r decreases from 2 (end - inflection) at the inflection
+                // to end - inflection at the end.
                 let (size, r) = (end - inflection, 2.0 * end - inflection - x);
                 let is_flank = if size >= 0.0 { x < end } else { x > end };
                 if is_flank { size / r / r } else { 0.0 }
@@ -141,7 +144,7 @@ impl MembershipFunction {
     }
 }
 
-/// Of the line through two points, between them.
+/// Returns the slope of the line between two points; 0 outside of them.
 fn straight(x: f64, a: (f64, f64), b: (f64, f64)) -> f64 {
     if a.0 < x && x < b.0 {
         (b.1 - a.1) / (b.0 - a.0)
@@ -154,7 +157,7 @@ fn trapezoid(x: f64, [left, left_top, right_top, right]: [f64; 4]) -> f64 {
     straight(x, (left, 0.0), (left_top, 1.0)) + straight(x, (right_top, 1.0), (right, 0.0))
 }
 
-/// Of the product of two degrees with their slopes.
+/// Returns the slope of the product of two degrees, each passed with its slope.
 fn product(a: (f64, f64), b: (f64, f64)) -> f64 {
     a.1 * b.0 + a.0 * b.1
 }
@@ -163,12 +166,12 @@ fn gaussian_slope(x: f64, mean: f64, sd: f64) -> f64 {
     -(x - mean) / sd / sd * gaussian(x, mean, sd)
 }
 
-/// `k s (1 - s)`, where `1 - s` is the sigmoid of the other direction.
+/// Returns `k s (1 - s)`, where `1 - s` is the sigmoid with the opposite slope.
 fn sigmoid_slope(x: f64, inflection: f64, slope: f64) -> f64 {
     slope * sigmoid(x, inflection, slope) * sigmoid(x, inflection, -slope)
 }
 
-/// Of two parabolas up from `foot` to `top`.
+/// Returns the slope of two parabolas that rise from `foot` to `top`.
 fn smooth(x: f64, foot: f64, top: f64) -> f64 {
     let t = (x - foot) / (top - foot);
     if 0.0 < t && t < 1.0 {
@@ -182,7 +185,7 @@ fn smooth(x: f64, foot: f64, top: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Against differences, over places that are no kinks.
+    /// Compares the slopes to differences at values that are not kinks.
     #[test]
     fn slopes_are_those_of_differences() {
         let shapes = [

@@ -1,4 +1,4 @@
-//! What curved shapes share: formulas, and where a flank passes levels of degree.
+//! Shared code of curved shapes: formulas, and the values at which a flank reaches certain degrees.
 
 use core::hint::select_unpredictable;
 
@@ -19,14 +19,14 @@ pub(super) fn gaussian(x: f64, mean: f64, sd: f64) -> f64 {
 
 #[inline(always)]
 pub(super) fn sigmoid(x: f64, inflection: f64, slope: f64) -> f64 {
-    // Of the falling side, so that no exponential is above 1.
+    // Computed from the falling side, so that no exponential is above 1.
     let t = slope * (x - inflection);
     let e = exp_of_minus(libm::fabs(t));
     let degree = select_unpredictable(t >= 0.0, 1.0, e) / (1.0 + e);
     select_unpredictable(slope == 0.0, 0.5, degree)
 }
 
-/// 0 up to `foot`, `2 t^2` to the middle, `1 - 2 (1 - t)^2` to `top`, with `t = (x - foot) / (top - foot)`.
+/// 0 up to `foot`, `2 t^2` up to the middle and `1 - 2 (1 - t)^2` up to `top`, with `t = (x - foot) / (top - foot)`.
 #[inline(always)]
 pub(super) fn s_shape(x: f64, foot: f64, top: f64) -> f64 {
     smooth_step(rising(x, foot, top))
@@ -43,13 +43,14 @@ fn smooth_step(t: f64) -> f64 {
     select_unpredictable(t <= 0.5, below, above)
 }
 
-/// Where a curve passes these degrees it is cut, so that no stretch hides a narrow term.
+/// The degrees at which a curve is split, so that no interval hides a narrow term.
 #[cfg(feature = "alloc")]
 const LEVELS: [f64; 11] = [
     1e-14, 1e-9, 1e-6, 1e-3, 0.03, 0.2, 0.5, 0.8, 0.97, 0.999, 0.999_999,
 ];
 
-/// The middle of a shape, and where its flank passes each level: `width * reach(level)` from the middle.
+/// Returns the middle of a shape, and the values at which its flank reaches each level, at a distance of
+/// `width * reach(level)` from the middle.
 #[cfg(feature = "alloc")]
 pub(super) fn flank(middle: f64, width: f64, reach: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut places = vec![middle];
@@ -57,13 +58,14 @@ pub(super) fn flank(middle: f64, width: f64, reach: impl Fn(f64) -> f64) -> Vec<
     places
 }
 
-/// One flank of a gaussian; `sd` is negative for the left one. It passes a level at `sqrt(-2 ln level)` deviations.
+/// Returns the positions on one flank of a Gaussian; `sd` is negative for the left flank. The flank reaches a level at
+/// a distance of `sqrt(-2 ln level)` deviations.
 #[cfg(feature = "alloc")]
 pub(super) fn gaussian_flank(mean: f64, sd: f64) -> Vec<f64> {
     flank(mean, sd, |level| sqrt(-2.0 * log(level)))
 }
 
-/// Both ends of a sigmoid; one without a slope is the same everywhere.
+/// Returns the positions on both sides of a sigmoid; none if its slope is 0, because it is then constant.
 #[cfg(feature = "alloc")]
 pub(super) fn sigmoid_flanks(inflection: f64, slope: f64) -> Vec<f64> {
     if slope == 0.0 {

@@ -1,8 +1,8 @@
-//! What shapes made of straight lines share.
+//! Shared code of shapes made of straight lines.
 
 use core::hint::select_unpredictable;
 
-/// Into [0, 1]; NaN, which only parameters that make no shape can give, becomes 0.
+/// Clamps a degree to [0, 1]. NaN, which only invalid parameters can cause, is replaced by 0.
 #[inline(always)]
 pub(super) fn into_unit(degree: f64) -> f64 {
     let degree = if degree > 0.0 { degree } else { 0.0 };
@@ -13,19 +13,19 @@ pub(super) fn indicator(inside: bool) -> f64 {
     if inside { 1.0 } else { 0.0 }
 }
 
-/// 0 up to `foot`, straight up to 1 at `top`; `foot = top` is a step that is 1 at `top`.
+/// 0 up to `foot`, then a straight line to 1 at `top`; `foot = top` is a step that is 1 at `top`.
 #[inline(always)]
 pub(super) fn rising(x: f64, foot: f64, top: f64) -> f64 {
     part(x - foot, top - foot)
 }
 
-/// 1 up to `top`, straight down to 0 at `foot`; `foot = top` is a step that is 1 at `top`.
+/// 1 up to `top`, then a straight line to 0 at `foot`; `foot = top` is a step that is 1 at `top`.
 #[inline(always)]
 pub(super) fn falling(x: f64, top: f64, foot: f64) -> f64 {
     part(foot - x, foot - top)
 }
 
-/// [`rising`] below `left_top`, [`falling`] above.
+/// [`rising`] below `left_top`, [`falling`] above it.
 #[inline(always)]
 pub(super) fn trapezoid(x: f64, left: f64, left_top: f64, right_top: f64, right: f64) -> f64 {
     let rises = x < left_top;
@@ -34,7 +34,8 @@ pub(super) fn trapezoid(x: f64, left: f64, left_top: f64, right_top: f64, right:
     part(length, run)
 }
 
-/// `length / run` into [0, 1], without a branch. At a step, where `run` is 0, it is infinite, and 1 where `length` is 0.
+/// Returns `length / run`, clamped to [0, 1] without a branch. At a step, where `run` is 0, the quotient is infinite,
+/// or NaN if `length` is 0; the result is then 1.
 #[inline(always)]
 fn part(length: f64, run: f64) -> f64 {
     let part = length / run;
@@ -42,7 +43,7 @@ fn part(length: f64, run: f64) -> f64 {
     if part > 0.0 { part } else { 0.0 }
 }
 
-/// Straight between the points, measured from the lower one so that small degrees are exact.
+/// Interpolates between the points. Differences are relative to the lower point, so that small degrees are accurate.
 pub(super) fn along(points: impl Iterator<Item = (f64, f64)>, x: f64) -> f64 {
     let (mut at_step, mut before) = (f64::NEG_INFINITY, None);
     for (px, py) in points {
@@ -65,7 +66,7 @@ pub(super) fn along(points: impl Iterator<Item = (f64, f64)>, x: f64) -> f64 {
     }
 }
 
-/// The degree at `x` on the line through `a` and `b`.
+/// Returns the degree at `x` on the line through `a` and `b`.
 fn between(a: (f64, f64), b: (f64, f64), x: f64) -> f64 {
     let (low, high) = if a.1 <= b.1 { (a, b) } else { (b, a) };
     low.1 + (high.1 - low.1) * ((x - low.0) / (high.0 - low.0))

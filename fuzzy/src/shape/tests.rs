@@ -1,4 +1,4 @@
-//! Tables of degrees, held against the formulas by hand, and what is said of parameters that make no shape.
+//! Tables of degrees computed by hand, and the messages for invalid parameters.
 
 use super::{MembershipFunction, straight::along};
 use alloc::{string::ToString, vec};
@@ -7,7 +7,7 @@ const INFINITY: f64 = f64::INFINITY;
 const NEG_INFINITY: f64 = f64::NEG_INFINITY;
 const NAN: f64 = f64::NAN;
 
-/// Every row: x and the exact degree.
+/// Compares the degrees at the given values; each row is x and the exact degree.
 fn table(shape: MembershipFunction, rows: &[(f64, f64)]) {
     shape.validate().unwrap();
     for &(x, degree) in rows {
@@ -47,7 +47,7 @@ fn triangle() {
             (INFINITY, 0.0),
         ],
     );
-    // A closed shoulder: 1 at its peak, 0 beyond.
+    // A vertical edge at the peak: 1 at the peak, 0 beyond it.
     table(
         shape(0.0, 0.0, 0.1),
         &[(-1e-300, 0.0), (0.0, 1.0), (0.05, 0.5), (0.1, 0.0)],
@@ -158,7 +158,7 @@ fn rectangle_singleton_piecewise_constant() {
             (INFINITY, 0.0),
         ],
     );
-    // Up, a step down in which the higher degree holds, a step up, a last degree that holds.
+    // A rise, a step down at which the higher degree counts, a step up, and a last degree that continues.
     table(
         MembershipFunction::Piecewise {
             points: vec![
@@ -222,7 +222,7 @@ fn gaussians() {
             (INFINITY, 0.0),
         ],
     );
-    // Crossing means: the product of both halves, one deviation from each mean in the middle.
+    // `left_mean` is above `right_mean`: the product of both halves; in the middle, one deviation from each mean.
     table(
         MembershipFunction::Gaussian2 {
             left_mean: 2.0,
@@ -242,7 +242,7 @@ fn gaussians() {
 
 #[test]
 fn parts_of_ellipses() {
-    // By Pythagoras: 3, 4 and 5.
+    // By the Pythagorean theorem, with sides 3, 4 and 5.
     table(
         MembershipFunction::SemiEllipse {
             left: -5.0,

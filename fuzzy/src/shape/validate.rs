@@ -1,14 +1,14 @@
-//! Which parameters make a shape.
+//! Validation of the parameters of a shape.
 
 use alloc::{format, string::String};
 
 use super::{MembershipFunction, Parts, Role};
 
-/// Why parameters make no membership function.
+/// The error for parameters that do not define a membership function.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MembershipError {
     message: String,
-    /// The index of the parameter, point or coefficient to blame.
+    /// The index of the invalid parameter, point or coefficient.
     pub(crate) parameter: Option<usize>,
 }
 
@@ -37,12 +37,12 @@ fn wrong(parameter: usize, message: String) -> Result<(), MembershipError> {
 }
 
 impl MembershipFunction {
-    /// Whether the parameters make a membership function: finite, in order, widths over 0.
+    /// Checks that the parameters define a membership function: finite, in order, and widths above 0.
     ///
     /// # Errors
-    /// The first parameter that cannot be, by its name.
+    /// The first invalid parameter, by its name.
     ///
-    /// # Example: the corners of a triangle stand in order
+    /// # Example: the corners of a triangle must be in ascending order
     /// ```
     /// use fuzzy::model::MembershipFunction;
     ///
@@ -85,7 +85,7 @@ impl MembershipFunction {
         self.misfit().map_or(Ok(()), |message| wrong(0, message))
     }
 
-    /// Why parameters that are right one by one still make no membership function.
+    /// Returns the message for parameters that are valid individually but not in combination.
     fn misfit(&self) -> Option<String> {
         match *self {
             MembershipFunction::Concave { inflection, end } if inflection == end => {
@@ -103,7 +103,7 @@ impl MembershipFunction {
 }
 
 fn finite(i: usize, name: &str, value: f64) -> Result<(), MembershipError> {
-    // Twice the value must be finite too: distances between parameters must not overflow.
+    // Twice the value must be finite too, so that distances between parameters do not overflow.
     if (2.0 * value).is_finite() {
         Ok(())
     } else if value.is_finite() {

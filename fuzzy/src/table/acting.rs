@@ -1,4 +1,4 @@
-//! What is done with the rules that fire: firing strengths join, and the strongest rule of each output is kept.
+//! The actions of rules that fire: firing strengths are combined, and the strongest rule of each output is recorded.
 
 use core::hint::select_unpredictable;
 
@@ -8,17 +8,17 @@ use super::results::number_of;
 use super::rules::Action;
 use crate::rows::join;
 
-/// The strongest rule of an output in each of `L` rows: the first in the model of several equally strong rules, in whatever
-/// order they fire.
+/// The strongest rule of an output in each of `L` rows. Of several equally strong rules it is the first in the model,
+/// regardless of the order in which they fire.
 #[derive(Debug, Clone, Copy)]
 pub struct Strongest<const L: usize = 1> {
     pub(super) strength: [f64; L],
-    /// Its [number](number_of), infinite where there is none.
+    /// Its [number](number_of); infinite if no rule has fired.
     pub(super) rule: [f64; L],
 }
 
 impl Strongest {
-    /// The rule of this index, with its firing strength.
+    /// Returns the rule of an index, with its firing strength.
     #[cfg(feature = "simd")]
     pub(crate) fn of(strength: f64, rule: u32) -> Self {
         Strongest {
@@ -29,13 +29,14 @@ impl Strongest {
 }
 
 impl<const L: usize> Strongest<L> {
-    /// No rule yet.
+    /// No rule has fired yet.
     pub const NONE: Self = Strongest {
         strength: [0.0; L],
         rule: [f64::INFINITY; L],
     };
 
-    /// Takes the firing strengths of a rule that stands behind all before it. As [`Strongest::or`], it takes no branch.
+    /// Updates the strongest rule with a rule that follows all previous ones in the model. Like [`Strongest::or`], it
+    /// does not branch.
     #[inline(always)]
     fn or_later(&mut self, row: usize, strength: f64, rule: f64) {
         let (top, first) = (self.strength[row], self.rule[row]);
@@ -43,7 +44,7 @@ impl<const L: usize> Strongest<L> {
         self.strength[row] = larger(strength, top);
     }
 
-    /// Takes no branch, which a processor could mispredict.
+    /// Updates the strongest rule, without a branch that a processor could mispredict.
     #[inline(always)]
     fn or(&mut self, row: usize, strength: f64, rule: f64) {
         let (top, first) = (self.strength[row], self.rule[row]);
@@ -53,21 +54,22 @@ impl<const L: usize> Strongest<L> {
     }
 }
 
-/// A firing strength, or 0 below the least one.
+/// Returns the firing strength, or 0 if it is below the least one.
 #[inline(always)]
 pub(super) fn fires(strength: f64, least: f64) -> f64 {
     if strength < least { 0.0 } else { strength }
 }
 
-/// What is done with the rules that fire.
+/// A consumer of the rules that fire.
 pub(super) trait Act<const L: usize> {
-    /// Takes rules with the degree of their antecedent in a row.
+    /// Performs the actions of rules in one row; `degree` is the degree of their antecedent.
     fn act(&mut self, actions: &[Action], row: usize, degree: f64);
 
-    /// Takes rules with their firing strength in each row, whatever their weights.
+    /// Performs the actions of a rule in all rows; `strength` returns its firing strength in a row. The weights of the
+    /// actions are not used.
     fn act_with(&mut self, actions: &[Action], strength: impl Fn(usize) -> f64);
 
-    /// Takes the rules of cells of a uniform table, which are of no use afterwards.
+    /// Performs the actions of cells of a uniform table. The contents of `reached` are unspecified afterwards.
     #[inline(always)]
     fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [Partial<L>]) {
         for cell in reached {
@@ -78,21 +80,21 @@ pub(super) trait Act<const L: usize> {
     }
 }
 
-/// The firing strengths and strongest rules that actions update. A vector of `one` that lay on two cache lines would take twice
-/// as long.
+/// The firing strengths and strongest rules that actions update.
 #[repr(C, align(64))]
 pub(super) struct Firing<'m, const L: usize> {
-    /// The strongest program where there is one output, in registers: each rule would wait for memory.
+    /// The strongest program if there is one output. It is kept in registers, because otherwise each rule would wait
+    /// for memory. It is separate from `strongest`, because a vector that spans two cache lines takes twice as long.
     one: Strongest<L>,
     least: f64,
     strengths: &'m mut [[f64; L]],
     strongest: &'m mut [Strongest<L>],
-    /// The [number](number_of) of the last rule in the model among the programs that have fired.
+    /// The [number](number_of) of the program that has fired and comes last in the model.
     latest: f64,
 }
 
 impl<'m, const L: usize> Firing<'m, L> {
-    /// Nothing has fired yet; the firing strengths are 0.
+    /// Starts before any rule has fired; all firing strengths are 0.
     #[inline(always)]
     pub(super) fn new(
         least: f64,
@@ -108,7 +110,7 @@ impl<'m, const L: usize> Firing<'m, L> {
         }
     }
 
-    /// All rules have fired.
+    /// Finishes after all rules have fired.
     #[inline(always)]
     pub(super) fn end(self) {
         if let [strongest] = self.strongest {
@@ -183,7 +185,7 @@ impl<const L: usize> Act<L> for Firing<'_, L> {
     }
 }
 
-/// Joins the firing strengths of a rule with those that are kept, and takes it as the strongest by `or` where it is.
+/// Combines the firing strengths of a rule with the stored ones by `join`, and updates the strongest rule by `or`.
 #[inline(always)]
 fn take<const L: usize>(
     kept: &mut [f64; L],
@@ -200,7 +202,7 @@ fn take<const L: usize>(
     }
 }
 
-/// Fires the rules of cells that have an action each, on one output, and returns the strongest.
+/// Fires the rules of cells that have one action each, all on one output, and returns the strongest rule.
 #[inline(always)]
 fn fire_cells<const L: usize>(
     cells: &Cells<'_>,

@@ -1,55 +1,57 @@
-//! Activation methods: which rules of a block fire, and how strongly.
+//! Activation methods, which select the rules of a block that fire and adjust their strengths.
 
 use super::Partial;
 
-/// Firing strengths below this are 0 where a rule set does not say otherwise: it is what rounding leaves of an exact 0, as in
-/// `x IS a AND x IS not a` under `bounded_difference`.
+/// The default of the least firing strength; smaller strengths count as 0. It absorbs the rounding error of strengths
+/// that are exactly 0, such as that of `x IS a AND x IS not a` with `bounded_difference`.
 pub const LEAST_STRENGTH: f64 = 1e-12;
 
-/// Which rules of a block fire, and how strongly, from the weighted degrees of their antecedents. As in fuzzylite 7.
+/// An activation method: selects the rules of a block that fire and adjusts their strengths, given the weighted degrees
+/// of their antecedents. The methods are those of fuzzylite 7.
 ///
-/// A strength below the least strength of the rule set never fires, and two strengths nearer than that are equal.
+/// A rule whose strength is below the least strength of the rule set never fires. Two strengths whose difference is
+/// below the least strength count as equal.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Activation {
-    /// All rules.
+    /// All rules fire.
     #[default]
     General,
-    /// The first rules, in the order of the rule set, whose strength is at least `at_least`.
+    /// The first rules, in the order of the rule set, with a strength of at least `at_least`.
     First {
-        /// How many.
+        /// The maximum number of rules that fire.
         rules: u32,
-        /// Their least strength.
+        /// The minimum strength of these rules.
         at_least: f64,
     },
-    /// The last rules whose strength is at least `at_least`.
+    /// The last rules, in the order of the rule set, with a strength of at least `at_least`.
     Last {
-        /// How many.
+        /// The maximum number of rules that fire.
         rules: u32,
-        /// Their least strength.
+        /// The minimum strength of these rules.
         at_least: f64,
     },
-    /// The strongest rules; of equal ones the first.
+    /// The strongest rules; among equally strong ones the first.
     Highest {
-        /// How many.
+        /// The maximum number of rules that fire.
         rules: u32,
     },
-    /// The weakest rules that fire; of equal ones the first.
+    /// The weakest rules that fire; among equally weak ones the first.
     Lowest {
-        /// How many.
+        /// The maximum number of rules that fire.
         rules: u32,
     },
-    /// All rules, with the strength divided by the sum of all strengths of the block.
+    /// All rules, with their strengths divided by the sum of all strengths of the block.
     Proportional,
-    /// The rules whose strength compares so with a number.
+    /// The rules whose strength passes a comparison with a number.
     Threshold {
-        /// How.
+        /// The comparison.
         comparison: Comparison,
-        /// The number.
+        /// The number to compare with.
         strength: f64,
     },
 }
 
-/// How a firing strength compares with a threshold.
+/// A comparison of a firing strength with a threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Comparison {
     /// `<`
@@ -58,7 +60,7 @@ pub enum Comparison {
     AtMost,
     /// `=`
     Equal,
-    /// Not equal.
+    /// `!=`
     NotEqual,
     /// `>=`
     AtLeast,
@@ -67,8 +69,8 @@ pub enum Comparison {
 }
 
 impl Activation {
-    /// Changes the strengths of all rules of a block, which stand in the order of the rules, to those with which they fire. A
-    /// rule that does not fire has a strength below `least`.
+    /// Replaces the strengths of all rules of a block, in the order of the rules, by the strengths with which they
+    /// fire. Rules that do not fire get a strength below `least`.
     pub(crate) fn activate(self, least: f64, rules: &mut [Partial]) {
         match self {
             Activation::General => {}
@@ -118,7 +120,7 @@ impl Activation {
     }
 }
 
-/// Keeps the first so many that fire with at least a strength.
+/// Selects the first `count` rules that fire with a strength of at least `at_least`.
 fn first<'a>(count: u32, at_least: f64, least: f64, rules: impl Iterator<Item = &'a mut Partial>) {
     let mut left = count;
     for rule in rules {
@@ -133,7 +135,7 @@ fn first<'a>(count: u32, at_least: f64, least: f64, rules: impl Iterator<Item = 
 }
 
 impl Comparison {
-    /// Whether it holds, where numbers nearer than `least` are equal.
+    /// Returns whether the comparison is true. Numbers whose difference is below `least` are equal.
     fn holds(self, strength: f64, threshold: f64, least: f64) -> bool {
         let equal = libm::fabs(strength - threshold) < least;
         match self {
@@ -152,7 +154,7 @@ mod tests {
     use super::*;
     use alloc::vec::Vec;
 
-    /// The strengths with which rules of these strengths fire.
+    /// Returns the strengths with which rules of the given strengths fire.
     fn after(activation: Activation, strengths: &[f64]) -> Vec<f64> {
         let rules = strengths.iter().zip(0..);
         let mut rules: Vec<Partial> = rules

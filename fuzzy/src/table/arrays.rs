@@ -1,4 +1,4 @@
-//! The list of a table's arrays, and access to them one at a time.
+//! The list of a table's arrays, and access to single arrays.
 
 use super::{
     Action, Axis, Base, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
@@ -6,11 +6,11 @@ use super::{
     Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Step, Strand,
 };
 
-/// Calls `$then!` with the given tokens and the arrays of a table, each as `name: Item,` with its documentation.
+/// Invokes `$then!` with the given tokens and the arrays of a table, each as `name: Item,` with its documentation.
 ///
-/// [`Table`], the engine's own copy, exports and the C interface are generated from this list. A new array is a line here, a
-/// line in the C header (a test compares the two), and its use. `Item` names a type of this module: plain data with the layout
-/// of C. Every bit pattern is a valid `Item`, except for `Hedge`.
+/// [`Table`], the engine's own copy, the exports and the C interface are generated from this list. Adding an array
+/// takes a line here, a line in the C header (a test compares the two), and the code that uses it. `Item` names a type
+/// of this module: plain data with the memory layout of C. Every bit pattern is a valid `Item`, except for `Hedge`.
 #[doc(hidden)] // Public for the exports and the C interface, which are in other packages.
 #[macro_export]
 macro_rules! table_arrays {
@@ -19,7 +19,7 @@ macro_rules! table_arrays {
             $($given)*
             /// The inputs.
             inputs: Input,
-            /// The bounds between the intervals of inputs and axes.
+            /// The limits between the intervals of inputs and axes.
             cuts: f64,
             /// The index in `lines` of the first line of each interval.
             starts: u32,
@@ -31,31 +31,33 @@ macro_rules! table_arrays {
             points: Point,
             /// The hedges of curves.
             hedges: Hedge,
-            /// The inputs of a uniform table, in its order.
+            /// The inputs of a uniform table, in the order of its axes.
             axes: Axis,
-            /// The inputs of a dense table, in its order.
+            /// The inputs of a dense table, in the order of its dimensions.
             dimensions: Dimension,
-            /// The index in `actions` of the first action of each cell of a dense table, and the end of the last cell's.
+            /// The index in `actions` of the first action of each cell of a dense table, followed by the end of the
+            /// last cell's actions.
             cells: u32,
             /// The nodes of a trie.
             nodes: Node,
             /// The edges of a trie.
             edges: Edge,
-            /// What rules do.
+            /// The actions of rules.
             actions: Action,
             /// The rules that are not plain ANDs.
             programs: Program,
             /// The steps of programs.
             steps: Step,
-            /// The rule blocks, where they have different operators or activation methods. Then all rules are programs.
+            /// The rule blocks, if they have different operators or activation methods. In that case all rules are
+            /// programs.
             blocks: Block,
             /// The outputs.
             outputs: Output,
             /// The closed forms of partitions.
             pairs: Pair,
-            /// The closed forms of straight terms that are cut.
+            /// The closed forms of sets of straight terms that are cut.
             layered_sets: LayeredSet,
-            /// Where the layers of layered sets begin.
+            /// The bases of the layers of layered sets.
             bases: Base,
             /// The layers of layered sets.
             layers: Layers,
@@ -69,13 +71,13 @@ macro_rules! table_arrays {
             sets: FuzzySet,
             /// The terms of sets, one for each firing strength.
             set_terms: SetTerm,
-            /// The parts of the ranges of sets.
+            /// The sections of the ranges of sets.
             sections: Section,
-            /// The terms on sections.
+            /// The strands: terms on sections.
             strands: Strand,
             /// The flanks of the terms of sets.
             flanks: Flank,
-            /// The tails of flanks.
+            /// The knots, which tabulate the tails of flanks.
             knots: Knot,
         }
     };
@@ -84,24 +86,24 @@ pub use table_arrays as arrays;
 
 macro_rules! define {
     ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
-        /// A compiled rule set. See the [module](super).
+        /// A compiled rule set. See the [module documentation](super).
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct Table<'a> {
-            /// AND.
+            /// The conjunction for AND.
             pub and: Conjunction,
-            /// OR.
+            /// The disjunction for OR.
             pub or: Disjunction,
-            /// How the rules that are plain ANDs are found.
+            /// The data structure that finds the firing rules among plain ANDs.
             pub conjunctions: Conjunctions,
-            /// A firing strength below it counts as 0.
+            /// The least firing strength: smaller ones count as 0.
             pub least_strength: f64,
             /// The sizes of the scratch memory.
             pub sizes: Sizes,
             $($(#[$doc])* pub $array: &'a [$item],)*
         }
 
-        /// The arrays of a table, one at a time. The engine evaluates through its own vectors: gathering all of them into a
-        /// [`Table`] would copy forty numbers for each evaluation.
+        /// Access to single arrays of a table. The engine evaluates through its own vectors; collecting all of them
+        /// into a [`Table`] would copy forty numbers per evaluation.
         pub(crate) trait Arrays {
             fn and(&self) -> Conjunction;
             fn or(&self) -> Disjunction;
@@ -113,7 +115,7 @@ macro_rules! define {
 }
 arrays!(define!);
 
-/// Implements [`Arrays`] for a structure that has fields of these names.
+/// Implements [`Arrays`] for a struct that has fields of these names.
 macro_rules! arrays_from_fields {
     ($owner:ty; $($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
         impl $crate::table::Arrays for $owner {

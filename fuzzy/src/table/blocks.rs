@@ -1,4 +1,4 @@
-//! Rule blocks with operators and an activation method of their own. Each rule is a program.
+//! Rule blocks with their own operators and activation method. Each rule of a block is a program.
 
 use super::acting::Act;
 use super::firing::run;
@@ -9,19 +9,19 @@ use super::{Activation, Arrays, Comparison, Conjunction, Disjunction, Partial, P
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Block {
-    /// The strength that the method compares with; 0 where it compares with none.
+    /// The strength that the method compares with; 0 if it does not compare.
     pub strength: f64,
     /// The activation method.
     pub method: Method,
-    /// How many rules the method keeps; 0 where it does not count.
+    /// The number of rules that the method selects; 0 if it does not count.
     pub rules: u32,
-    /// AND, an index in [`Conjunction::ALL`].
+    /// The conjunction for AND, as an index in [`Conjunction::ALL`].
     pub and_operator: u32,
-    /// OR, an index in [`Disjunction::ALL`].
+    /// The disjunction for OR, as an index in [`Disjunction::ALL`].
     pub or_operator: u32,
-    /// Its span of programs, in the order of its rules.
+    /// The index of its first program; the programs are in the order of the rules.
     pub first_program: u32,
-    /// The end of that span.
+    /// The end of its programs.
     pub end_program: u32,
 }
 
@@ -37,7 +37,7 @@ impl Method {
     const HIGHEST: Method = Method(3);
     const LOWEST: Method = Method(4);
     const PROPORTIONAL: Method = Method(5);
-    /// A threshold has 6 and the place of its comparison among these.
+    /// The code of a threshold is 6 plus the index of its comparison in this list.
     const THRESHOLD: u32 = 6;
     const COMPARISONS: [Comparison; 6] = [
         Comparison::Below,
@@ -50,7 +50,7 @@ impl Method {
 }
 
 impl Block {
-    /// A block of the programs of this span.
+    /// Creates a block of a range of programs.
     pub(crate) fn new(
         (and, or): (Conjunction, Disjunction),
         activation: Activation,
@@ -104,7 +104,7 @@ impl Block {
         }
     }
 
-    /// AND and OR; minimum and maximum for codes of a damaged table.
+    /// Returns the operators for AND and OR; minimum and maximum if a damaged table contains invalid codes.
     fn operators(&self) -> (Conjunction, Disjunction) {
         let and = Conjunction::ALL.get(self.and_operator as usize).copied();
         let or = Disjunction::ALL.get(self.or_operator as usize).copied();
@@ -112,7 +112,7 @@ impl Block {
     }
 }
 
-/// Gives a rule that fires with a strength to `firing`, once the hedges of its consequents have changed it.
+/// Applies the hedges of its consequents to the strength of a rule, and passes the rule to `firing`.
 #[inline(always)]
 fn act<A: Arrays>(table: &A, program: &Program, strength: f64, firing: &mut impl Act<1>) {
     let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
@@ -121,9 +121,9 @@ fn act<A: Arrays>(table: &A, program: &Program, strength: f64, firing: &mut impl
     firing.act_with(&table.actions()[actions], |_| strength);
 }
 
-/// Gives the rules of all blocks that fire to `firing`, with the strengths that the activation methods leave. `rules` has room
-/// for those of the largest block.
-// Apart from plain rules, so that these cost nothing more.
+/// Passes the rules of all blocks that fire to `firing`, with the strengths that result from the activation methods.
+/// `rules` has room for the rules of the largest block.
+// Separate from plain rules, so that these do not become slower.
 #[inline(never)]
 pub(super) fn fire_blocks<A: Arrays>(
     table: &A,
@@ -139,7 +139,7 @@ pub(super) fn fire_blocks<A: Arrays>(
         for at in programs {
             let program = &table.programs()[at as usize];
             let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
-            // Without steps it is more of the rule before it.
+            // A program without steps continues the previous rule.
             if !steps.is_empty() {
                 let (and, or) = (|a, b| and.of(a, b), |a, b| or.of(a, b));
                 let mut degree = [0.0];

@@ -1,37 +1,37 @@
-//! A rule set in which outputs read others, as plain arrays: the arrays of its stages one after the other.
+//! A rule set in which outputs read other outputs, as plain arrays: the arrays of its stages are concatenated.
 
 use super::{
     Conjunctions, Curve, Damaged, Hedge, Outcome, Point, Scratch, Sizes, State, Table,
     concluded_by, raised_by,
 };
 
-/// Outputs that are evaluated at once.
+/// A stage: outputs that are evaluated in one pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Stage {
-    /// How its rules are found: see [`Conjunctions::code`].
+    /// The code of the data structure that finds its rules: see [`Conjunctions::code`].
     pub conjunctions: u32,
-    /// Of a uniform table.
+    /// The number of actions per cell; uniform tables only.
     pub actions_a_cell: u32,
-    /// Of a uniform table.
+    /// The index of the first action of the first cell; uniform tables only.
     pub first_action: u32,
-    /// Of a uniform table; not 0 where an action sums.
+    /// Not 0 if an action sums firing strengths; uniform tables only.
     pub sums: u32,
-    /// The sizes of its scratch memory.
+    /// The sizes of the scratch memory of the stage.
     pub sizes: Sizes,
-    /// The number of outputs that it reads. Their indices stand in the places of the chain.
+    /// The number of outputs that it reads. Their indices are in [`Chain::places`].
     pub reads: u32,
-    /// The number of its outputs. Their indices in the model follow.
+    /// The number of its outputs. Their indices in the model follow in [`Chain::places`].
     pub outputs: u32,
-    /// The number of its rules. Their indices in the model follow.
+    /// The number of its rules. Their indices in the model follow in [`Chain::places`].
     pub rules: u32,
-    /// Where its part of each array ends. It begins where that of the stage before ends.
+    /// The end of its part of each array. The part begins at the end of the previous stage's part.
     pub ends: Ends,
 }
 
 macro_rules! define {
     ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
-        /// Where a stage ends in each array of the chain.
+        /// The end of a stage in each array of the chain.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
         #[repr(C)]
         pub struct Ends {
@@ -39,7 +39,7 @@ macro_rules! define {
         }
 
         impl<'a> Table<'a> {
-            /// The part of a stage.
+            /// Returns the table of a stage.
             fn part(&self, stage: &Stage, first: Ends) -> Option<Table<'a>> {
                 Some(Table {
                     and: self.and,
@@ -61,7 +61,7 @@ macro_rules! define {
 super::arrays!(define!);
 
 impl Conjunctions {
-    /// Its code as plain data: which one, then what a uniform table has.
+    /// Returns the code in plain data: the variant, followed by the fields of a uniform table.
     pub const fn code(self) -> [u32; 4] {
         match self {
             Conjunctions::Uniform {
@@ -74,7 +74,7 @@ impl Conjunctions {
         }
     }
 
-    /// From its code.
+    /// Returns the value of a code; `None` if the code is invalid.
     pub const fn from_code(code: [u32; 4]) -> Option<Conjunctions> {
         let [which, actions_a_cell, first_action, sums] = code;
         Some(match which {
@@ -90,10 +90,10 @@ impl Conjunctions {
     }
 }
 
-/// What a stage is in the whole rule set.
+/// The relation of a stage to the whole rule set.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place<'a> {
-    /// The outputs that it reads. Their values stand after those of the inputs.
+    /// The outputs that it reads. Their values follow those of the inputs.
     pub(crate) reads: &'a [u32],
     /// The index in the model of each of its outputs.
     pub(crate) outputs: &'a [u32],
@@ -101,38 +101,39 @@ pub(crate) struct Place<'a> {
     pub(crate) rules: &'a [u32],
 }
 
-/// The stages of a rule set in the order of their evaluation.
+/// The stages of a rule set in the order of evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chain<'a> {
-    /// The arrays of all stages, each one after those of the stage before. The curves end with the terms that propositions
-    /// about outputs name, in their order.
+    /// The concatenated arrays of all stages. The curves are followed by the terms that propositions about outputs
+    /// name, in the order of the propositions.
     pub table: Table<'a>,
     /// The stages.
     pub stages: &'a [Stage],
-    /// For each stage the outputs that it reads, its outputs, and its rules, by their indices in the model.
+    /// For each stage, the indices in the model of the outputs that it reads, of its outputs, and of its rules.
     pub places: &'a [u32],
 }
 
-/// The memory of an evaluation beside the scratch memory.
+/// The memory that an evaluation needs in addition to the scratch memory.
 #[derive(Debug)]
 pub struct Values<'m> {
     /// The values of the inputs, then of the outputs that a stage reads.
     pub inputs: &'m mut [f64],
-    /// One for each output of a stage.
+    /// The outcomes of a stage, one per output.
     pub own: &'m mut [Outcome],
 }
 
-/// Which rule is looked for.
+/// The criterion by which a rule is selected.
 #[derive(Debug, Clone, Copy)]
 pub enum Sought {
-    /// The one that raises an output of this value most: [`Table::raised_by`].
+    /// The rule that raises an output of this value most: see [`Table::raised_by`].
     Raises(f64),
-    /// The one that says most that a proposition about the output holds, by its number among the propositions about outputs.
+    /// The rule that contributes most to a proposition about the output. The number is the index among the propositions
+    /// about outputs.
     Concludes(usize),
 }
 
 impl<'a> Chain<'a> {
-    /// The stages with what they are in the rule set; damaged ones are left out.
+    /// Iterates over the stages with their relation to the rule set. It ends at the first damaged stage.
     fn parts(self) -> impl Iterator<Item = (Table<'a>, Place<'a>)> {
         let mut first = Ends::default();
         let mut places = self.places;
@@ -153,7 +154,7 @@ impl<'a> Chain<'a> {
         })
     }
 
-    /// The most outputs that a stage reads.
+    /// Returns the maximum number of outputs that a stage reads.
     pub const fn most_reads(&self) -> usize {
         let (mut most, mut i) = (0, 0);
         while i < self.stages.len() {
@@ -165,7 +166,7 @@ impl<'a> Chain<'a> {
         most as usize
     }
 
-    /// Verifies every index and size, as [`Table::check`], for a rule set with so many inputs.
+    /// Verifies every index and size, as [`Table::check`] does, for a rule set with a number of inputs.
     ///
     /// # Errors
     /// The first array with an index out of bounds.
@@ -217,8 +218,8 @@ impl<'a> Chain<'a> {
             .map_or(0, |last| last.ends.curves as usize)
     }
 
-    /// Evaluates one value for each input into one outcome for each output of the model, as [`Table::evaluate`]. The scratch
-    /// memory has the sizes of the table.
+    /// Evaluates one value per input into one outcome per output of the model, as [`Table::evaluate`] does. The scratch
+    /// memory must have the sizes of the table.
     pub fn evaluate(
         &self,
         scratch: &mut Scratch<'_>,
@@ -239,8 +240,8 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// Gives to `found` the place of the rule that is looked for, among those of all stages, and the degrees of the literals
-    /// of its stage. `outcomes` are those of the inputs.
+    /// Searches for a rule, and calls `found` with its index in evaluation order (which counts the rules of all stages)
+    /// and the degrees of the literals of its stage. `outcomes` must be the outcomes at `inputs`.
     pub fn rule_of<R>(
         &self,
         scratch: &mut Scratch<'_>,
@@ -278,13 +279,13 @@ impl<'a> Chain<'a> {
         None
     }
 
-    /// The index in the model of the rule of a place.
+    /// Returns the index in the model of the rule with an index in evaluation order.
     pub fn rule(&self, place: usize) -> Option<usize> {
         let rules = self.parts().flat_map(|(_, place)| place.rules);
         rules.map(|rule| *rule as usize).nth(place)
     }
 
-    /// The outputs that have no closed form and are read, or are `risk`.
+    /// Returns the outputs without a closed form that other outputs read, and `risk` if it has no closed form.
     pub fn open(self, risk: usize) -> impl Iterator<Item = usize> + use<'a> {
         let is_read = move |output: u32| {
             let mut reads = self.parts().flat_map(|(_, place)| place.reads);
@@ -320,7 +321,7 @@ impl<'a> Chain<'a> {
     }
 }
 
-/// The part of a scratch memory that a stage needs.
+/// Returns the part of the scratch memory that a stage needs; `None` if the memory is too small.
 fn fitted<'s>(scratch: &'s mut Scratch<'_>, table: &Table<'_>) -> Option<Scratch<'s>> {
     let sizes = table.sizes;
     Some(Scratch {
@@ -335,8 +336,8 @@ fn fitted<'s>(scratch: &'s mut Scratch<'_>, table: &Table<'_>) -> Option<Scratch
     })
 }
 
-/// Evaluates a stage: what it reads is handed over from the outcomes of all outputs, and its own ones are put there. `keep` may
-/// change them before others read them.
+/// Evaluates a stage: copies the values that it reads from the outcomes of all outputs, and writes its own outcomes
+/// there. `keep` may change these before other outputs read them.
 pub(crate) fn stage(
     place: Place<'_>,
     (inputs, values, own): (&[f64], &mut [f64], &mut [Outcome]),
@@ -365,7 +366,7 @@ pub(crate) fn stage(
     };
     match unknown {
         None => evaluate(all, own),
-        // Its default value is for inputs without a rule; here the inputs are not known.
+        // The default value applies to inputs for which no rule fires; here the inputs are unknown.
         Some(State::InputNotFinite) => own.fill(Outcome {
             state: State::InputNotFinite,
             ..Outcome::UNDEFINED

@@ -1,8 +1,8 @@
-//! Verifies the indices of a table.
+//! Verification of the indices of a table.
 
 use super::{ClosedForm, Conjunctions, Dimension, FuzzySet, Input, LayeredSet, Op, Table};
 
-/// The array of a damaged table or plan that has an index out of bounds.
+/// The error for a damaged table or plan: the name of the array with an index out of bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Damaged(pub &'static str);
 
@@ -18,19 +18,19 @@ impl core::fmt::Display for Damaged {
 
 impl core::error::Error for Damaged {}
 
-/// `Ok` where a condition on an array holds.
+/// Returns an error that names the array unless the condition is true.
 fn require(holds: bool, array: &'static str) -> Result<(), Damaged> {
     holds.then_some(()).ok_or(Damaged(array))
 }
 
-/// Whether a span lies in an array of this length.
+/// Returns whether a range of indices is inside an array of a length.
 fn within(first: u32, end: u32, length: usize) -> bool {
     first <= end && end as usize <= length
 }
 
 impl Table<'_> {
-    /// Verifies every index and size, so that an evaluation cannot panic. Exported tables pass; a table that was edited or
-    /// corrupted may not.
+    /// Verifies every index and size, so that an evaluation cannot panic. Exported tables always pass; a table that was
+    /// edited or corrupted may not.
     ///
     /// # Errors
     /// The first array with an index out of bounds.
@@ -150,7 +150,7 @@ impl Table<'_> {
         Ok(())
     }
 
-    /// Verifies the layers of an output with so many firing strengths.
+    /// Verifies the layers of an output with a number of firing strengths.
     fn check_layers(&self, set: &LayeredSet, strengths: usize) -> Result<(), Damaged> {
         require(
             within(set.first_base, set.end_base, self.bases.len())
@@ -170,7 +170,7 @@ impl Table<'_> {
         Ok(())
     }
 
-    /// Verifies the set of an output with so many firing strengths.
+    /// Verifies the set of an output with a number of firing strengths.
     fn check_set(&self, set: &FuzzySet, strengths: usize) -> Result<(), Damaged> {
         let terms = set.end_term.saturating_sub(set.first_term) as usize;
         require(
@@ -201,7 +201,7 @@ impl Table<'_> {
                 .cuts
                 .get(axis.first_cut as usize..axis.end_cut as usize);
             let cuts = cuts.ok_or(Damaged("axes"))?;
-            // Padding with infinity begins no interval.
+            // Infinity is padding and does not start an interval.
             let intervals = 1 + cuts.iter().filter(|cut| **cut < f64::INFINITY).count();
             let lines = self.lines.get(axis.first_line as usize..);
             let lines = lines.and_then(|lines| lines.get(..2 * intervals));
@@ -236,7 +236,7 @@ impl Table<'_> {
             require(alive < self.sizes.alive as usize, "dimensions")?;
             if i + 1 < self.dimensions.len() {
                 most = most.saturating_mul(alive.max(1));
-                // The evaluation writes one more than it counts.
+                // The evaluation writes one element more than it counts.
                 require(most < partial, "dimensions")?;
             }
         }
@@ -262,7 +262,7 @@ impl Table<'_> {
                 "nodes",
             )?;
             for edge in &self.edges[node.first_edge as usize..node.end_edge as usize] {
-                // Edges lead to later nodes only, so that no path has a cycle.
+                // Edges lead to later nodes only, so no path contains a cycle.
                 require(
                     edge.node as usize > i
                         && (edge.node as usize) < self.nodes.len()
@@ -274,14 +274,14 @@ impl Table<'_> {
         require(!self.nodes.is_empty() && self.sizes.partial > 0, "nodes")
     }
 
-    /// The bounds in `lines` of the intervals of an input.
+    /// Returns the limits, as indices in `lines`, of the intervals of an input.
     fn starts_of(&self, input: &Input) -> Option<&[u32]> {
         let intervals = input.end_cut.checked_sub(input.first_cut)? as usize + 1;
         let starts = self.starts.get(input.first_start as usize..)?;
         starts.get(..=intervals)
     }
 
-    /// Whether the literals of an input are below this number.
+    /// Returns whether the indices of the literals of an input are below a number.
     fn fits_literals(&self, input: &Input, literals: usize) -> bool {
         let first = u64::from(input.first_literal);
         let fits = |literal: u32| first + u64::from(literal) < literals as u64;
@@ -295,7 +295,7 @@ impl Table<'_> {
             && lines.is_some_and(|lines| lines.iter().all(|line| fits(line.literal)))
     }
 
-    /// The last literal of an input, and the most literals that can be over 0 at once.
+    /// Returns the last literal of an input, and the maximum number of literals that can be above 0 at the same value.
     fn alive_at_most(&self, input: &Input) -> Option<(u32, usize)> {
         let curves = input.first_curve as usize..input.end_curve as usize;
         let curves = self.curves.get(curves)?;
@@ -309,7 +309,7 @@ impl Table<'_> {
         Some((last, most + curves.len()))
     }
 
-    /// Whether a program neither joins fewer than two degrees nor pushes beyond the size of the stack.
+    /// Returns whether a program never combines fewer than two degrees and never exceeds the size of the stack.
     fn fits_stack(&self, steps: core::ops::Range<usize>) -> bool {
         let mut depth = 0usize;
         let steps = self.steps.get(steps).unwrap_or_default();

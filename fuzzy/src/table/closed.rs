@@ -1,4 +1,4 @@
-//! Defuzzifiers with a closed form: from firing strengths to a number by a few sums.
+//! Closed forms of defuzzifiers, which compute a number from the firing strengths with a few sums.
 
 use core::hint::select_unpredictable;
 
@@ -9,13 +9,13 @@ use super::{Arrays, Curve, Output, Point};
 use crate::formula::evaluate;
 use crate::rows::{join, set};
 
-/// How a table computes the value of an output from its firing strengths.
+/// The method by which a table computes the value of an output from its firing strengths.
 #[doc(hidden)] // The codes of exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClosedForm {
-    /// None: an [`Engine`](crate::Engine) integrates the aggregated set.
+    /// No closed form: an [`Engine`](crate::Engine) integrates the aggregated set.
     Integrated,
-    /// The centroid of minimum and maximum over a partition: [`Pair`]s.
+    /// The centroid of a partition with minimum and maximum: [`Pair`]s.
     Partition,
     /// The centroid of a sum of products: [`Moment`]s.
     Moments,
@@ -23,20 +23,22 @@ pub enum ClosedForm {
     WeightedAverage,
     /// Takagi-Sugeno, `sum(w z)`: [`Consequent`]s.
     WeightedSum,
-    /// Tsukamoto, `sum(w z) / sum(w)` with `z` where a term has the degree `w`: [`Curve`]s, one for each firing strength.
+    /// Tsukamoto, `sum(w z) / sum(w)`, where `z` is the value at which a term has the degree `w`: one [`Curve`] per
+    /// firing strength.
     Tsukamoto,
-    /// A [`FuzzySet`](super::FuzzySet) of terms that are cut off: the implication is the minimum.
+    /// A [`FuzzySet`](super::FuzzySet) of terms that are cut off (implication by minimum).
     Cut,
-    /// A [`FuzzySet`](super::FuzzySet) of terms that are scaled: the implication is the product.
+    /// A [`FuzzySet`](super::FuzzySet) of terms that are scaled (implication by product).
     Scaled,
-    /// The centroid of product and maximum over a partition: [`Pair`]s.
+    /// The centroid of a partition with product and maximum: [`Pair`]s.
     ScaledPartition,
-    /// The centroid of minimum and maximum over straight terms: a [`LayeredSet`](super::LayeredSet).
+    /// The centroid of straight terms with minimum and maximum: a [`LayeredSet`](super::LayeredSet).
     Layers,
 }
 
 impl ClosedForm {
-    /// The form of this code in exported data. An unknown code, of a damaged table, has no closed form.
+    /// Returns the form of a code in exported data; [`ClosedForm::Integrated`] for an unknown code, which only a
+    /// damaged table contains.
     #[inline(always)]
     pub(crate) const fn from_code(code: u32) -> Self {
         match code {
@@ -55,29 +57,31 @@ impl ClosedForm {
 }
 
 /// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its right.
-/// Two fill a vector register of every processor that has vectors.
+/// Two numbers fill a vector register on every processor that has vectors.
 ///
-/// A term cut at firing strength h has, on a slope of width w around its middle m (from the middle of the range),
-/// area `w (h - h^2 / 2)` and first moment `m area + s w^2 (h^2 / 4 - h^3 / 6)`, with s = 1 rising and -1
-/// falling; on a plateau `w h` and `m w h`. Both sum over the term's stretches to polynomials in h. Where a
-/// falling and a rising slope overlap, the minimum of the two cut terms has area `w v (1 - v)` with
-/// `v = min(h_falling, h_rising, 1/2)`, symmetric about m. The area of the union is the sum less the overlaps.
+/// Consider a term cut at firing strength h. A slope of width w with its middle at m (relative to the middle of the
+/// range) contributes the area `w (h - h^2 / 2)` and the first moment `m area + s w^2 (h^2 / 4 - h^3 / 6)`, with s = 1
+/// if the slope rises and s = -1 if it falls. A plateau contributes `w h` and `m w h`. The sums over the slopes and
+/// plateaus of a term are polynomials in h. Where a falling slope and a rising slope overlap, the minimum of the two
+/// cut terms has the area `w v (1 - v)` with `v = min(h_falling, h_rising, 1/2)`, symmetric about m. The area of the
+/// union is the sum of the areas minus the overlaps.
 ///
-/// A term scaled by firing strength h has, on such a slope, area `w h / 2` and first moment `(m / 2 + s w / 12) w h`. The
-/// minimum of a falling slope scaled by a and a rising one scaled by b is a triangle, highest at the part `t = a / (a + b)` of
-/// the overlap: it has area `w b t / 2`, and its centre lies at `m + w (2 t - 1) / 6`.
+/// Consider a term scaled by firing strength h. Such a slope contributes the area `w h / 2` and the first moment
+/// `(m / 2 + s w / 12) w h`. The minimum of a falling slope scaled by a and a rising slope scaled by b is a triangle
+/// with its peak at the fraction `t = a / (a + b)` of the overlap. It has the area `w b t / 2` and its centroid at
+/// `m + w (2 t - 1) / 6`.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
 pub struct Pair {
-    /// `area = area[0] h + area[1] h^2`; scaled, `area[0] h`.
+    /// `area = area[0] h + area[1] h^2`; for scaled terms `area[0] h`.
     pub area: [[f64; 2]; 2],
-    /// `moment = moment[0] h + moment[1] h^2 + moment[2] h^3`; scaled, `moment[0] h`, and `moment[1]` is a sixth of the length of
-    /// the overlap.
+    /// `moment = moment[0] h + moment[1] h^2 + moment[2] h^3`; for scaled terms `moment[0] h`, and `moment[1]` is a
+    /// sixth of the width of the overlap.
     pub moment: [[f64; 2]; 3],
-    /// The width of the overlap, 0 where there is none; scaled, half of it.
+    /// The width of the overlap, 0 if there is none; for scaled terms half of it.
     pub width: [f64; 2],
-    /// The middle of the overlap, from the middle of the range.
+    /// The middle of the overlap, relative to the middle of the range.
     pub middle: [f64; 2],
 }
 
@@ -88,7 +92,7 @@ pub struct Pair {
 pub struct Moment {
     /// The area.
     pub area: f64,
-    /// The moment, from the middle of the range.
+    /// The first moment, relative to the middle of the range.
     pub moment: f64,
 }
 
@@ -99,13 +103,13 @@ pub struct Moment {
 pub struct Consequent {
     /// The constant.
     pub constant: f64,
-    /// Its span of coefficients.
+    /// The index of its first coefficient.
     pub first: u32,
-    /// The end of that span.
+    /// The end of its coefficients.
     pub end: u32,
-    /// The span in `points` of the code of its formula; empty where it has none.
+    /// The index in `points` of the code of its formula; the range is empty if it has no formula.
     pub first_code: u32,
-    /// The end of that span.
+    /// The end of that code.
     pub end_code: u32,
 }
 
@@ -121,7 +125,8 @@ pub struct Coefficient {
 }
 
 impl Pair {
-    /// The area and moment that one of the two terms adds, cut at its firing strength, from that of the term to its right.
+    /// Returns the area and moment that one of the two terms adds when it is cut at `h`; `right` is the firing strength
+    /// of the term to its right.
     #[inline(always)]
     pub(crate) fn cut(&self, side: usize, h: f64, right: f64) -> (f64, f64) {
         let v = smaller(smaller(h, right), 0.5);
@@ -132,7 +137,7 @@ impl Pair {
         (area, alone - self.middle[side] * common)
     }
 
-    /// [`Pair::cut`] for a term that is scaled.
+    /// Works like [`Pair::cut`], for a term that is scaled.
     #[inline(always)]
     pub(crate) fn scaled(&self, side: usize, h: f64, right: f64) -> (f64, f64) {
         let t = h / larger(h + right, f64::MIN_POSITIVE);
@@ -144,8 +149,8 @@ impl Pair {
         )
     }
 
-    /// The areas and moments of the aggregated sets of a partition, whose terms are cut or scaled. Firing strengths are ordered
-    /// from left to right.
+    /// Returns the areas and moments of the aggregated sets of a partition whose terms are cut or scaled. The firing
+    /// strengths are ordered from left to right.
     #[inline(always)]
     pub(crate) fn integrals<const L: usize>(
         pairs: &[Pair],
@@ -170,14 +175,14 @@ impl Pair {
     }
 }
 
-/// The centroid of a set whose moment is measured from `origin`; `None` where it has no area.
+/// Returns the centroid of a set whose moment is relative to `origin`; `None` if the area is 0.
 #[inline(always)]
 pub(crate) fn centroid(area: f64, moment: f64, origin: f64) -> Option<f64> {
     (area > 0.0).then(|| origin + moment / area)
 }
 
-/// Writes the values of an output with a closed form that is the same few sums in every row; NaN where no rule fired. `false`
-/// for another output. `bases` is memory for those of a [`LayeredSet`](super::LayeredSet).
+/// Computes the values of an output whose closed form needs the same few sums in every row; NaN if no rule fired.
+/// Returns `false` for any other output. `bases` is memory for the bases of a [`LayeredSet`](super::LayeredSet).
 #[inline(always)]
 pub(super) fn closed<A: Arrays, const L: usize>(
     table: &A,
@@ -219,7 +224,7 @@ pub(super) fn closed<A: Arrays, const L: usize>(
     true
 }
 
-/// [`closed`], apart from the code of partitions, from which it would take registers.
+/// Works like [`closed`]. It is a separate function because its code would take registers from that of partitions.
 #[inline(never)]
 pub(super) fn closed_apart<A: Arrays, const L: usize>(
     table: &A,
@@ -232,7 +237,7 @@ pub(super) fn closed_apart<A: Arrays, const L: usize>(
     closed(table, output, strengths, bases, inputs, values)
 }
 
-/// [`closed`] of a partition.
+/// Works like [`closed`], for a partition.
 #[inline(always)]
 pub(super) fn partition<A: Arrays, const L: usize>(
     table: &A,
@@ -247,7 +252,8 @@ pub(super) fn partition<A: Arrays, const L: usize>(
 }
 
 impl Output {
-    /// The centroid of a set, from its area and its moment from the middle of the range; NaN where it has no area.
+    /// Returns the centroid of a set, given its area and its moment relative to the middle of the range; NaN if the
+    /// area is 0.
     #[inline(always)]
     pub(crate) fn centroid(&self, (area, moment): (f64, f64)) -> f64 {
         let value = self.origin() + moment / area;
@@ -255,8 +261,8 @@ impl Output {
         select_unpredictable(area > 0.0, value, f64::NAN)
     }
 
-    /// The value of a Takagi-Sugeno output with this total of weights; NaN where no rule fired, and where there is no value. It
-    /// is not clamped to the range unless the author says so: consequents are numbers that the author chose.
+    /// Returns the value of a Takagi-Sugeno output with a total weight; NaN if no rule fired or the value is not
+    /// finite. It is clamped to the range only if the author requests it, because the author chose the consequents.
     #[inline(always)]
     pub(crate) fn weighted(&self, value: f64, total: f64) -> f64 {
         let is_value = (total > 0.0) & (fabs(value) < f64::INFINITY);
@@ -264,8 +270,8 @@ impl Output {
     }
 }
 
-/// The value in one row of an output that [`closed`] does not know; `None` where no rule fired. `integrate` gives the value of
-/// an output without a closed form from its index and its firing strengths.
+/// Returns the value in one row of an output that [`closed`] does not support; `None` if no rule fired. `integrate`
+/// returns the value of an output without a closed form, given its index and its firing strengths.
 #[inline(always)]
 pub(crate) fn value_in_row<A: Arrays>(
     table: &A,
@@ -280,7 +286,7 @@ pub(crate) fn value_in_row<A: Arrays>(
     }
 }
 
-/// [`value_in_row`] of an output with a closed form, apart from the code that calls it.
+/// Implements [`value_in_row`] for an output with a closed form; not inlined into its callers.
 fn closed_in_row<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) -> Option<f64> {
     match output.form() {
         ClosedForm::Cut | ClosedForm::Scaled => super::set::value(table, output, strengths),
@@ -299,7 +305,7 @@ fn closed_in_row<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) -> Op
     }
 }
 
-/// A place, or the end of the range on the side where it lies at infinity.
+/// Returns a value if it is finite, or else the end of the range on its side.
 pub(crate) fn finite(place: f64, low: f64, high: f64) -> f64 {
     if place.is_finite() {
         place
@@ -310,7 +316,8 @@ pub(crate) fn finite(place: f64, low: f64, high: f64) -> f64 {
     }
 }
 
-/// `sum(w z) / sum(w)` with firing strengths w; `None` where none is over 0. Not clamped to the range.
+/// Computes `sum(w z) / sum(w)` with firing strengths w; `None` if none is above 0. The result is not clamped to the
+/// range.
 fn tsukamoto(
     output: &Output,
     curves: &[Curve],
@@ -330,7 +337,8 @@ fn tsukamoto(
     (total > 0.0).then(|| sum / total)
 }
 
-/// Writes `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; NaN where none is over 0, and where a formula has no value.
+/// Computes `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; NaN if none is above 0 or a formula has no
+/// value.
 #[inline(always)]
 fn weighted<const L: usize>(
     output: &Output,
@@ -349,7 +357,7 @@ fn weighted<const L: usize>(
         let code = &points[consequent.first_code as usize..consequent.end_code as usize];
         let product = |c: &Coefficient, row: usize| c.coefficient * inputs[c.input as usize][row];
         match (terms, code) {
-            // The commonest ones in one pass.
+            // The most common consequents take a single pass.
             ([], []) => add(&mut sums, &mut totals, strengths, |_| constant),
             ([a], []) => add(&mut sums, &mut totals, strengths, |row| {
                 constant + product(a, row)
@@ -393,7 +401,7 @@ fn add<const L: usize>(
     z: impl Fn(usize) -> f64,
 ) {
     for row in 0..L {
-        // It may be infinite where the rule does not fire.
+        // The consequent may be infinite where the rule does not fire.
         let z = select_unpredictable(strengths[row] > 0.0, z(row), 0.0);
         sums[row] += strengths[row] * z;
         totals[row] += strengths[row];

@@ -1,15 +1,16 @@
-//! Finds the plain ANDs that fire, in a table of cells or a trie.
+//! Finding the plain ANDs that fire, in a table of cells or a trie.
 //!
-//! A firing strength of 0 has no effect, and 0 AND anything is 0. So a plain AND is followed only while its degree is over 0:
-//! with terms that sum to 1, that is 16 of the 625 rules of 4 inputs with 5 terms.
+//! A firing strength of 0 has no effect, and 0 AND anything is 0. A plain AND is therefore evaluated only as long as
+//! its degree is above 0. If the terms of each input sum to 1, this visits 16 of the 625 rules of 4 inputs with 5 terms
+//! each.
 
 use super::Arrays;
 use super::acting::Act;
 use super::input::{along, curves, lines};
 use super::rules::{Action, Axis, Dimension};
 
-/// The degree of the first literals of a plain AND, and the offset of the cell or the index of the node they lead to, in each
-/// of `L` rows.
+/// The degree of the first literals of a plain AND, with the offset of the cell or the index of the node that they lead
+/// to, in each of `L` rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Partial<const L: usize = 1> {
     pub(super) degree: [f64; L],
@@ -17,7 +18,7 @@ pub struct Partial<const L: usize = 1> {
 }
 
 impl Partial {
-    /// The strength of a rule and its index, as [`Activation`](super::Activation) takes them.
+    /// Creates the strength and the index of a rule, as [`Activation`](super::Activation) expects them.
     pub(crate) fn new(degree: f64, at: u32) -> Self {
         Partial {
             degree: [degree],
@@ -25,7 +26,7 @@ impl Partial {
         }
     }
 
-    /// The strength and the index.
+    /// Returns the strength and the index.
     pub(crate) fn parts(&self) -> (f64, u32) {
         let ([degree], [at]) = (self.degree, self.at);
         (degree, at)
@@ -33,19 +34,19 @@ impl Partial {
 }
 
 impl<const L: usize> Partial<L> {
-    /// No literal yet.
+    /// The initial content of memory, with degree 0.
     pub const NONE: Self = Partial {
         degree: [0.0; L],
         at: [0; L],
     };
 
-    /// No literal yet, which holds.
+    /// The empty conjunction, with degree 1.
     const START: Self = Partial {
         degree: [1.0; L],
         at: [0; L],
     };
 
-    /// AND of both, by `and`.
+    /// Returns the conjunction of both, by `and`.
     #[inline(always)]
     fn and(&self, other: &Self, and: impl Fn(f64, f64) -> f64) -> Self {
         let mut both = Partial::NONE;
@@ -92,8 +93,8 @@ pub(super) fn fire_uniform<A: Arrays, const L: usize>(
         let [c, d] = &at(table, second, values);
         let mut reached = [*a, *b, *a, *b];
         for (cell, other) in reached.iter_mut().zip([c, c, d, d]) {
-            // Without this check between them, a compiler compares the four pairs at once and picks by branches, which a processor
-            // mispredicts. It fails only in a damaged table.
+            // Without this check between them, a compiler compares the four pairs together and selects by branches that
+            // a processor mispredicts. It fails only in a damaged table.
             if L == 1 && (cell.at[0] + other.at[0]) as usize >= cells.actions.len() {
                 return;
             }
@@ -116,7 +117,7 @@ pub(super) fn fire_uniform<A: Arrays, const L: usize>(
     firing.act_in_cells(cells, &mut partial[..count]);
 }
 
-/// The degrees and offsets of the two lines on the interval that holds the axis' input.
+/// Returns the degrees and offsets of the two lines on the interval that contains the value of the axis' input.
 #[inline(always)]
 fn at<A: Arrays, const L: usize>(table: &A, axis: &Axis, values: &[[f64; L]]) -> [Partial<L>; 2] {
     let values = &values[axis.input as usize];
@@ -129,7 +130,7 @@ fn at<A: Arrays, const L: usize>(table: &A, axis: &Axis, values: &[[f64; L]]) ->
             }
         }
     }
-    // Gathered first, so that the arithmetic is that of whole rows.
+    // The parameters are gathered first, so that the arithmetic runs on whole rows.
     let mut gathered = [[[0.0; L]; 4]; 2];
     let mut reached = [Partial::NONE; 2];
     for row in 0..L {
@@ -153,7 +154,7 @@ fn at<A: Arrays, const L: usize>(table: &A, axis: &Axis, values: &[[f64; L]]) ->
     reached
 }
 
-/// Extends partial ANDs input by input. The last input acts at once.
+/// Extends partial ANDs input by input. The last input triggers the actions.
 #[inline(always)]
 pub(super) fn fire_dense<A: Arrays, const L: usize>(
     table: &A,
@@ -181,7 +182,7 @@ pub(super) fn fire_dense<A: Arrays, const L: usize>(
             let mut widened = 0;
             for cell in &partial[..counts[row]] {
                 for term in &alive[..alive_here[row]] {
-                    // Always written, but counted only where it is over 0: a branch would be mispredicted.
+                    // Always written, but counted only if it is above 0: a branch would be mispredicted.
                     let degree = and(cell.degree[row], term.degree[row]);
                     next[widened].set(row, degree, cell.at[row] + term.at[row]);
                     widened += usize::from(degree > 0.0);
@@ -202,7 +203,7 @@ pub(super) fn fire_dense<A: Arrays, const L: usize>(
     }
 }
 
-/// Writes the degrees over 0 and their offsets, and returns their number in each row.
+/// Writes the degrees above 0 and their offsets, and returns their number in each row.
 #[inline(always)]
 fn alive_terms<A: Arrays, const L: usize>(
     table: &A,
@@ -237,7 +238,7 @@ fn alive_terms<A: Arrays, const L: usize>(
     counts
 }
 
-/// Walks the trie in a row.
+/// Traverses the trie in one row.
 #[inline(always)]
 pub(super) fn fire_trie<A: Arrays, const L: usize>(
     table: &A,
@@ -249,7 +250,7 @@ pub(super) fn fire_trie<A: Arrays, const L: usize>(
 ) {
     path[0] = Partial::START;
     let mut open = 1usize;
-    // In a tree no node is reached twice. Where a damaged table is no tree, time stays bounded.
+    // In a tree no node is reached twice. In a damaged table that is not a tree, this limit bounds the time.
     for _ in table.nodes() {
         let Some(left) = open.checked_sub(1) else {
             return;
@@ -261,7 +262,7 @@ pub(super) fn fire_trie<A: Arrays, const L: usize>(
         firing.act(&table.actions()[range], row, degree);
         for edge in &table.edges()[node.first_edge as usize..node.end_edge as usize] {
             let both = and(degree, degrees[edge.literal as usize][row]);
-            // In a damaged table there may be no room.
+            // In a damaged table there may not be enough room.
             if both > 0.0
                 && let Some(next) = path.get_mut(open)
             {

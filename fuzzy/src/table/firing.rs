@@ -1,4 +1,4 @@
-//! Fires all rules: plain ANDs that a table or a trie finds, all others as programs.
+//! Firing of all rules: plain ANDs are found by a table or a trie; all other rules are programs.
 
 use core::ops::DerefMut;
 
@@ -11,14 +11,15 @@ use super::rules::{Op, Step};
 use super::{Arrays, Buffers, Conjunction, Conjunctions, Disjunction};
 use crate::rows::{change, join};
 
-/// Whether a uniform table finds all rules.
+/// Returns whether a uniform table contains all rules.
 pub(crate) fn has_cells_alone<A: Arrays>(table: &A) -> bool {
     let is_uniform = matches!(table.conjunctions(), Conjunctions::Uniform { .. });
     is_uniform && table.programs().is_empty()
 }
 
-/// Fires all rules on the values in the scratch memory into its firing strengths and strongest rules. `CELLS` is
-/// [`has_cells_alone`]: the code for other tables would take registers from that of cells.
+/// Fires all rules for the values in the scratch memory, and writes the firing strengths and strongest rules there.
+/// `CELLS` is [`has_cells_alone`]; it is a constant because the code for other tables would take registers from that of
+/// cells.
 #[inline(always)]
 pub(crate) fn fire<A, N, P, S, const L: usize, const CELLS: bool>(
     table: &A,
@@ -36,7 +37,7 @@ pub(crate) fn fire<A, N, P, S, const L: usize, const CELLS: bool>(
     }
 }
 
-/// As [`fire`], for rules of any kind in one row.
+/// Works like [`fire`], for rules of any kind in one row.
 #[inline(always)]
 pub(crate) fn fire_row<A, N, P, S>(table: &A, scratch: &mut Buffers<N, P, S>)
 where
@@ -50,7 +51,7 @@ where
     firing.end();
 }
 
-/// Nothing has fired yet.
+/// Prepares the memory for a row in which no rule has fired yet.
 #[inline(always)]
 fn ready<'m, A, N, P, S, const L: usize>(
     table: &A,
@@ -62,7 +63,7 @@ where
     P: DerefMut<Target = [Partial<L>]>,
     S: DerefMut<Target = [Strongest<L>]>,
 {
-    // Models with one output are the common case; this saves the call of `fill`.
+    // Models with one output are the most common; this avoids a call of `fill` for them.
     match &mut *scratch.strongest {
         [one] => *one = Strongest::NONE,
         all => all.fill(Strongest::NONE),
@@ -73,7 +74,7 @@ where
     (finding, firing)
 }
 
-/// Makes all 0. A few are written here, because a call of `memset` takes longer.
+/// Sets all strengths to 0. Few elements are written inline, because a call of `memset` takes longer.
 #[inline(always)]
 fn clear<const L: usize>(strengths: &mut [[f64; L]]) {
     match strengths.split_first_chunk_mut::<8>() {
@@ -87,7 +88,7 @@ fn clear<const L: usize>(strengths: &mut [[f64; L]]) {
     }
 }
 
-/// The memory in which the rules that fire are found.
+/// The memory used to find the rules that fire.
 pub(super) struct Finding<'m, const L: usize> {
     values: &'m [[f64; L]],
     degrees: &'m mut [[f64; L]],
@@ -102,7 +103,7 @@ impl<'m, const L: usize> Finding<'m, L> {
         self.values
     }
 
-    /// Writes the degrees of all literals, where rules read them by index.
+    /// Writes the degrees of all literals, if rules read them by index.
     #[inline(always)]
     fn find_degrees<A: Arrays>(&mut self, table: &A) {
         if self.degrees.is_empty() {
@@ -112,7 +113,7 @@ impl<'m, const L: usize> Finding<'m, L> {
             self.degrees.fill([0.0; L]);
         }
         for (input, values) in table.inputs().iter().zip(self.values) {
-            // In a damaged table an input without literals may begin anywhere.
+            // In a damaged table an input without literals may have any index.
             let of_input = self.degrees.get_mut(input.first_literal as usize..);
             degrees_in_rows(table, input, values, of_input.unwrap_or_default());
         }
@@ -120,7 +121,7 @@ impl<'m, const L: usize> Finding<'m, L> {
 }
 
 impl<N, P, S> Buffers<N, P, S> {
-    /// The memory in which rules are found, and that of what they do.
+    /// Splits the memory into the part used to find rules, the firing strengths, and the strongest rules.
     #[inline(always)]
     pub(super) fn split<const L: usize>(
         &mut self,
@@ -142,7 +143,7 @@ impl<N, P, S> Buffers<N, P, S> {
     }
 }
 
-/// Finds the rules of any kind that fire on one row, and gives them to `firing`.
+/// Finds the rules of any kind that fire in one row, and passes them to `firing`.
 #[inline(always)]
 pub(super) fn fire_row_into<A: Arrays>(
     table: &A,
@@ -155,7 +156,7 @@ pub(super) fn fire_row_into<A: Arrays>(
     }
 }
 
-/// As [`fire_row_into`], but compiled once for all operators, for questions that are rarely asked.
+/// Works like [`fire_row_into`], but is compiled only once for all operators; for rare calls.
 pub(super) fn fire_row_by_any<A: Arrays>(
     table: &A,
     mut finding: Finding<'_, 1>,
@@ -182,7 +183,7 @@ fn fire_in_blocks<A: Arrays>(table: &A, mut finding: Finding<'_, 1>, firing: &mu
     fire_blocks(table, degrees, partial, stack, firing);
 }
 
-/// Finds the rules that fire on the values where there are no blocks, and gives them to `firing`.
+/// Finds the rules that fire if there are no blocks, and passes them to `firing`.
 #[inline(always)]
 fn fire_into<A: Arrays, const L: usize, const CELLS: bool>(
     table: &A,
@@ -192,7 +193,7 @@ fn fire_into<A: Arrays, const L: usize, const CELLS: bool>(
     if !CELLS {
         finding.find_degrees(table);
     }
-    // The common operators, so that the loops do not branch on the operator.
+    // The common operators get their own instances, so that the loops do not branch on the operator.
     match (table.and(), table.or()) {
         (Conjunction::Minimum, Disjunction::Maximum) => {
             fire_with::<A, L, CELLS>(table, smaller, larger, finding, firing);
@@ -262,7 +263,7 @@ fn fire_with<A: Arrays, const L: usize, const CELLS: bool>(
         let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
         let strength = |degree: f64| fires(program.weight * degree, least);
         match steps {
-            // The commonest rule, in one pass over the rows.
+            // The most common rule takes a single pass over the rows.
             [first, second] if L > 1 && second.op == Op::AND_LITERAL && hedges.is_empty() => {
                 let first = &degrees[first.literal as usize];
                 let second = &degrees[second.literal as usize];
@@ -282,13 +283,13 @@ fn fire_with<A: Arrays, const L: usize, const CELLS: bool>(
     }
 }
 
-/// Into [0, 1], which rounding may have left.
+/// Clamps a degree to [0, 1], which it may have left by rounding.
 #[inline(always)]
 fn into_unit(degree: f64) -> f64 {
     larger(0.0, smaller(1.0, degree))
 }
 
-/// Writes the degrees of an antecedent to `top`. `stack` holds at least the depth of the program.
+/// Computes the degrees of an antecedent into `top`. `stack` must be at least as long as the depth of the program.
 #[inline(always)]
 pub(super) fn run<const L: usize>(
     steps: &[Step],

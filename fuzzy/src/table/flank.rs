@@ -1,4 +1,4 @@
-//! Flanks of output terms: degree, inverse, and the area below them.
+//! Flanks of output terms: their degree, its inverse, and the area below them.
 
 use core::f64::consts::{PI, SQRT_2};
 
@@ -8,12 +8,13 @@ use super::Kind;
 use super::numeric::{gauss, root};
 use super::operators::{larger, smaller};
 
-/// A stretch of the output's range on which a term only rises, only falls or is level.
+/// A part of the output's range on which a term only rises, only falls or is level.
 ///
-/// Its foot is its lower end. The tail up to `x` is what lies between the foot and `x`: its area and first moment. Measured from
-/// there, also the area of a low tail is exact to its last digits. The tail of a gaussian is
-/// `sd sqrt(pi/2) (erfc(z) - erfc(z_foot))` with `z = |x - mean| / (sd sqrt(2))`. That of a straight flank is a trapezoid. The
-/// others have [`Knot`]s, with Gauss-Legendre of 8 nodes between a knot and `x`.
+/// The foot of a flank is its lower end. The tail up to `x` is the area and first moment between the foot and `x`.
+/// Because tails are measured from the foot, the area of a low tail is accurate to its last digits. The tail of a
+/// Gaussian is `sd sqrt(pi/2) (erfc(z) - erfc(z_foot))` with `z = |x - mean| / (sd sqrt(2))`. The tail of a straight
+/// flank is a trapezoid. All other flanks have [`Knot`]s, and use Gauss-Legendre quadrature with 8 nodes between a knot
+/// and `x`.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
@@ -22,9 +23,9 @@ pub struct Flank {
     pub parameters: [f64; 4],
     /// The height of the term.
     pub height: f64,
-    /// Where it begins.
+    /// The lower end of its interval.
     pub from: f64,
-    /// Where it ends.
+    /// The upper end of its interval.
     pub to: f64,
     /// The degree just inside `from`.
     pub left: f64,
@@ -32,19 +33,19 @@ pub struct Flank {
     pub right: f64,
     /// The area of the whole flank.
     pub area: f64,
-    /// The moment of the whole flank, from the middle of the range.
+    /// The first moment of the whole flank, relative to the middle of the range.
     pub moment: f64,
-    /// Of a gaussian: the area beyond the foot.
+    /// The area beyond the foot; Gaussians only.
     pub beyond: f64,
-    /// The kind of membership function; [`Kind::PIECEWISE`] is straight from `left` to `right`.
+    /// The kind of membership function; [`Kind::PIECEWISE`] is a straight line from `left` to `right`.
     pub kind: Kind,
-    /// Its span of knots.
+    /// The index of its first knot.
     pub first_knot: u32,
-    /// The end of that span.
+    /// The end of its knots.
     pub end_knot: u32,
 }
 
-/// The tail of a flank up to a value. The first knot of a flank is its foot.
+/// The tail of a flank up to a value. The first knot of a flank is at its foot.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
@@ -53,21 +54,21 @@ pub struct Knot {
     pub x: f64,
     /// The area of the tail.
     pub area: f64,
-    /// Its moment, from the middle of the range.
+    /// The first moment of the tail, relative to the middle of the range.
     pub moment: f64,
 }
 
-/// How areas over the range of an output are measured.
+/// The units of areas and moments over the range of an output.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Measure {
-    /// The middle of the range. Moments are measured from there.
+    /// The middle of the range, to which moments are relative.
     pub(crate) origin: f64,
     /// The unit of length of areas.
     pub(crate) unit: f64,
 }
 
 impl Measure {
-    /// The area and moment of a rectangle.
+    /// Returns the area and moment of a rectangle.
     #[inline(always)]
     pub(crate) fn rectangle(self, from: f64, to: f64, degree: f64) -> (f64, f64) {
         let area = degree * ((to - from) / self.unit);
@@ -81,14 +82,14 @@ impl Flank {
         self.left < self.right
     }
 
-    /// Whether every value of the flank has one degree. A curve may only seem level, because it differs by less than the last
-    /// digit.
+    /// Returns whether the degree is exactly constant. A curve does not count even if its ends are equal, because they
+    /// may differ by less than the last digit.
     #[inline(always)]
     pub(crate) fn is_level(&self) -> bool {
         self.left == self.right && self.kind == Kind::PIECEWISE
     }
 
-    /// The foot, and the degree there.
+    /// Returns the foot, and the degree there.
     #[inline(always)]
     pub(crate) fn foot(&self) -> (f64, f64) {
         if self.right < self.left {
@@ -98,7 +99,7 @@ impl Flank {
         }
     }
 
-    /// The summit, and the degree there.
+    /// Returns the summit, and the degree there.
     #[inline(always)]
     pub(crate) fn summit(&self) -> (f64, f64) {
         if self.right < self.left {
@@ -108,11 +109,11 @@ impl Flank {
         }
     }
 
-    /// The degree at `x`.
+    /// Returns the degree at `x`.
     pub(crate) fn degree(&self, x: f64) -> f64 {
         if self.kind == Kind::PIECEWISE {
             let (left, right) = (x - self.from, self.to - x);
-            // From the nearer end, so that the ends are exact.
+            // Measured from the nearer end, so that the degrees at the ends are exact.
             return if left < right {
                 self.left + (self.right - self.left) * (left / (self.to - self.from))
             } else {
@@ -122,18 +123,18 @@ impl Flank {
         self.height * self.kind.membership(&self.parameters, &[], x)
     }
 
-    /// Of a gaussian: what it is the exponential of, without its sign.
+    /// Returns the negated exponent of a Gaussian at `x`.
     pub(crate) fn exponent(&self, x: f64) -> f64 {
         let [mean, sd, ..] = self.parameters;
         let z = (x - mean) / sd;
         0.5 * z * z
     }
 
-    /// Where the flank has a degree between those of its ends.
+    /// Returns the value at which the flank has a degree, which must be between the degrees of its ends.
     pub(crate) fn where_degree_is(&self, degree: f64) -> f64 {
         let [a, b, c, d] = self.parameters;
         let level = smaller(1.0, degree / self.height);
-        // From the middle of the shape to the left or right.
+        // The side of the shape's middle: left is -1, right is 1.
         let side = if self.rises() { -1.0 } else { 1.0 };
         let x = match self.kind {
             Kind::PIECEWISE => {
@@ -156,11 +157,11 @@ impl Flank {
             Kind::CONCAVE => 2.0 * b - a - (b - a) / level,
             _ => root(self.from, self.to, |x| self.degree(x) - degree),
         };
-        // NaN becomes the upper end.
+        // NaN is replaced by the upper end.
         larger(self.from, smaller(x, self.to))
     }
 
-    /// The area and moment of the tail up to `x`, where the flank has this degree.
+    /// Returns the area and moment of the tail up to `x`; `degree` is the degree of the flank at `x`.
     pub(crate) fn tail(&self, knots: &[Knot], measure: Measure, x: f64, degree: f64) -> (f64, f64) {
         let (foot, low) = self.foot();
         if self.kind == Kind::PIECEWISE {
@@ -192,7 +193,7 @@ impl Flank {
         )
     }
 
-    /// The area of a gaussian beyond `x`, seen from the mean.
+    /// Returns the area of a Gaussian beyond `x`, as seen from the mean.
     pub(crate) fn beyond_of(&self, x: f64, measure: Measure) -> f64 {
         /// `sqrt(pi / 2)`.
         const HALF: f64 = 1.253_314_137_315_500_3;
@@ -202,7 +203,7 @@ impl Flank {
         self.height * (sd / measure.unit) * HALF * erfc(z)
     }
 
-    /// The area and moment of the flank cut off at a firing strength, from `from` to `until`, where it is at or above its foot.
+    /// Returns the area and moment of the flank cut off at a firing strength that is at or above its foot.
     pub(crate) fn clipped(&self, knots: &[Knot], measure: Measure, strength: f64) -> (f64, f64) {
         let (summit, high) = self.summit();
         if high <= strength {
@@ -224,7 +225,8 @@ impl Flank {
     }
 }
 
-/// Where a smooth step of two parabolas has a degree: `2 t^2` to the middle, `1 - 2 (1 - t)^2` beyond.
+/// Returns the fraction at which a smooth step of two parabolas has a degree. The step is `2 t^2` up to the middle and
+/// `1 - 2 (1 - t)^2` beyond.
 fn step(degree: f64) -> f64 {
     if degree <= 0.5 {
         sqrt(0.5 * degree)

@@ -1,4 +1,4 @@
-//! From an input's value to the degrees of its literals. A literal is a term, hedged or not.
+//! Computing the degrees of literals from the value of an input. A literal is a term, with or without hedges.
 
 use super::operators::Hedge;
 use super::{Arrays, Kind};
@@ -9,39 +9,39 @@ use crate::rows::{change, set};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Input {
-    /// The lower end of its range.
+    /// The lower end of the range.
     pub low: f64,
-    /// The upper end of its range.
+    /// The upper end of the range.
     pub high: f64,
     /// The index of its first literal among those of all inputs.
     pub first_literal: u32,
-    /// Its span of cuts. A value below the first cut is in the first interval.
+    /// The index of its first cut. A value below the first cut is in the first interval.
     pub first_cut: u32,
-    /// The end of that span.
+    /// The end of its cuts.
     pub end_cut: u32,
     /// The index in `starts` of its first interval.
     pub first_start: u32,
-    /// Its span of curves.
+    /// The index of its first curve.
     pub first_curve: u32,
-    /// The end of that span.
+    /// The end of its curves.
     pub end_curve: u32,
 }
 
-/// `base + rise ((x - foot) / run)`, the degree of a literal on an interval.
+/// The degree of a literal on an interval: `base + rise ((x - foot) / run)`.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Line {
-    /// The lower end of the slope. Measured from there, the degree is exactly 0 at the foot and exactly 1 at the top, and
-    /// near the foot it is as exact as the value.
+    /// The lower end of the slope. Since `x` is measured relative to it, the degree is exactly 0 at the foot and
+    /// exactly 1 at the top, and near the foot it is as accurate as the value.
     pub foot: f64,
-    /// The width of the slope; negative where it falls.
+    /// The width of the slope; negative if the slope falls.
     pub run: f64,
     /// The degree at its foot.
     pub base: f64,
-    /// The degree at its top less that at its foot.
+    /// The difference between the degree at its top and that at its foot.
     pub rise: f64,
-    /// The index of the literal among its input's; in a uniform table, its offset among the cells.
+    /// The index of the literal among those of its input; in a uniform table, its offset among the cells.
     pub literal: u32,
 }
 
@@ -60,20 +60,20 @@ pub struct Curve {
     pub height: f64,
     /// The kind of membership function.
     pub kind: Kind,
-    /// The index of the literal among its input's.
+    /// The index of the literal among those of its input.
     pub literal: u32,
-    /// Its span of points, where it is piecewise linear or a formula.
+    /// The index of its first point, if it is piecewise linear or a formula.
     pub first_point: u32,
-    /// The end of that span.
+    /// The end of its points.
     pub end_point: u32,
-    /// Its span of hedges, in the order in which they apply.
+    /// The index of its first hedge; hedges are in the order in which they are applied.
     pub first_hedge: u32,
-    /// The end of that span.
+    /// The end of its hedges.
     pub end_hedge: u32,
 }
 
 impl Line {
-    /// A constant degree.
+    /// Returns a line of constant degree.
     pub(crate) const fn flat(literal: u32, degree: f64) -> Self {
         Line {
             literal,
@@ -90,7 +90,7 @@ impl Line {
     }
 }
 
-/// Writes the degrees of the literals that can be over 0 at the values of each row.
+/// Computes, for each row, the degrees of those literals that can be above 0 at its value.
 #[inline(always)]
 pub(crate) fn degrees_in_rows<A: Arrays, const L: usize>(
     table: &A,
@@ -111,7 +111,7 @@ pub(crate) fn degrees_in_rows<A: Arrays, const L: usize>(
             });
         }
     }
-    // Along a row of a map all inputs but one stay the same.
+    // Along a row of a map, all inputs but one are constant.
     let is_same = L > 1
         && values
             .iter()
@@ -128,7 +128,7 @@ pub(crate) fn degrees_in_rows<A: Arrays, const L: usize>(
     }
 }
 
-/// The lines on the interval that holds `x`.
+/// Returns the lines on the interval that contains `x`.
 #[inline(always)]
 pub(super) fn lines<'t, A: Arrays>(table: &'t A, input: &Input, x: f64) -> &'t [Line] {
     let cuts = &table.cuts()[input.first_cut as usize..input.end_cut as usize];
@@ -147,7 +147,7 @@ pub(super) fn curves<'t, A: Arrays>(table: &'t A, input: &Input) -> &'t [Curve] 
     &table.curves()[input.first_curve as usize..input.end_curve as usize]
 }
 
-/// Writes the degrees of a curve at the values of each row.
+/// Computes the degrees of a curve at the values of each row.
 #[inline(always)]
 pub(super) fn along<A: Arrays, const L: usize>(
     table: &A,

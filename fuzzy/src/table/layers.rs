@@ -1,8 +1,9 @@
-//! The centroid of straight terms that are cut at their firing strengths, by a formula: a set is layers on top of each other.
+//! The centroid of straight terms that are cut at their firing strengths, by a formula: the set is split into
+//! horizontal layers.
 //!
-//! At a degree, the maximum of cut terms is as wide as the highest term whose firing strength is over that degree. So on a part
-//! of the range where no terms cross, a term counts from the largest firing strength of the terms above it, the base of its layer,
-//! up to its own where that is higher.
+//! At any degree, the maximum of cut terms is as wide as the highest term whose firing strength exceeds that degree.
+//! Therefore, on a part of the range where no terms cross, a term contributes from the largest firing strength of the
+//! terms above it (the base of its layer) up to its own firing strength, if that is larger.
 
 use super::Arrays;
 use super::operators::{larger, smaller};
@@ -13,40 +14,43 @@ use crate::rows::set;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct LayeredSet {
-    /// Its span of bases.
+    /// The index of its first base.
     pub first_base: u32,
-    /// The end of that span.
+    /// The end of its bases.
     pub end_base: u32,
-    /// Its span of layers.
+    /// The index of its first layer.
     pub first_layer: u32,
-    /// The end of that span.
+    /// The end of its layers.
     pub end_layer: u32,
 }
 
-/// The largest firing strength of some terms: that of all but the last one, or of the last one.
+/// The largest firing strength of a list of terms: the larger of that of all but the last term, and that of the last
+/// term.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct Base {
-    /// The base of all but the last one: 0 for that of no term, which is at 0, else one more than its index in the set.
+    /// The base of all terms but the last one: 0 if there is no other term (that base is 0), else the index in the set
+    /// plus 1.
     pub others: u32,
-    /// The index of the last one's firing strength among those of the output.
+    /// The index of the last term's firing strength among those of the output.
     pub strength: u32,
 }
 
-/// Four layers of one term. Four fill the vector registers of most processors.
+/// Four layers of one term. Four numbers fill the vector registers of most processors.
 ///
-/// Each lies on a part of the range where the term is straight and the same terms are above it. Cut at a degree h, the term has
-/// there, with `u = min(h, high)` and `v = max(u - low, 0)`,
+/// Each layer covers a part of the range where the term is straight and the same terms are above it. Cut at a degree h,
+/// the term has there, with `u = min(h, high)` and `v = max(u - low, 0)`,
 ///
 /// ```text
 /// area(h)   = area[0] u + area[1] v^2
 /// moment(h) = moment[0] u + moment[1] v^2 + moment[2] v^3
 /// ```
 ///
-/// and the layer is the difference between two degrees. For a part of width w with its middle at m, from the middle of the range,
-/// the coefficients are `w, -w / 2d` and `w m, -w l / 2d, s w^2 / 6d^2`, with `d = high - low`, l the place of the lower end,
-/// and s = 1 where the term falls, -1 where it rises. Where it is level, those of the powers of v are 0.
+/// The layer is the difference between these at two degrees. For a part of width w whose middle is at m (relative to
+/// the middle of the range), the coefficients are `w, -w / 2d` and `w m, -w l / 2d, s w^2 / 6d^2`, with
+/// `d = high - low`, l the value at the lower end, and s = 1 if the term falls, -1 if it rises. If it is level, the
+/// coefficients of the powers of v are 0.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
@@ -59,14 +63,14 @@ pub struct Layers {
     pub area: [[f64; 4]; 2],
     /// The coefficients of the moments.
     pub moment: [[f64; 4]; 3],
-    /// The bases, as in [`Base::others`].
+    /// The bases, encoded as in [`Base::others`].
     pub bases: [u32; 4],
     /// The index of the term's firing strength among those of the output.
     pub strength: u32,
 }
 
 impl Layers {
-    /// The area and moment from the bases up to a firing strength.
+    /// Returns the area and moment between the bases and a firing strength.
     #[inline(always)]
     fn between(&self, bases: [f64; 4], strength: f64) -> (f64, f64) {
         let (mut areas, mut moments) = ([0.0; 4], [0.0; 4]);
@@ -96,7 +100,7 @@ impl LayeredSet {
         &table.layers()[self.first_layer as usize..self.end_layer as usize]
     }
 
-    /// The area and moment of the term of a firing strength alone.
+    /// Returns the area and moment of the term of a firing strength, as if no other term were present.
     pub(super) fn alone<A: Arrays>(&self, table: &A, strength: u32) -> (f64, f64) {
         let layers = self.layers(table).iter();
         let parts = layers.filter(|four| four.strength == strength);
@@ -106,7 +110,7 @@ impl LayeredSet {
         })
     }
 
-    /// The areas and moments of the aggregated set. `bases` is memory for one more than there are.
+    /// Returns the areas and moments of the aggregated set. `bases` needs one element more than there are bases.
     #[inline(always)]
     pub(super) fn integrals<A: Arrays, const L: usize>(
         &self,

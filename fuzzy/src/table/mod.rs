@@ -1,10 +1,10 @@
-//! A compiled rule set as plain arrays. Evaluating it needs neither an allocator nor a standard library.
+//! A compiled rule set as plain arrays. Evaluating it needs neither an allocator nor the standard library.
 //!
-//! An [`Engine`](crate::Engine) owns such arrays. Exported as `static` data they are the same table on board, and give the
-//! same bits. Indices into an array are absolute. Structures have the layout of C.
+//! An [`Engine`](crate::Engine) owns such arrays. Exported as `static` data, they form the same table on board and give
+//! bitwise the same results. Indices into an array are absolute. Structs have the memory layout of C.
 //!
-//! A table is made by compiling a model, not by hand: its arrays index into one another. [`Table::check`] verifies the
-//! indices.
+//! A table is compiled from a model, not written by hand: its arrays contain indices into one another. [`Table::check`]
+//! verifies these indices.
 //!
 //! # A worked example: three triangles, two rules, and their arrays
 //! ```
@@ -41,18 +41,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # Words
+//! # Terminology
 //!
-//! | word here | meaning in the literature |
+//! | term in this module | meaning in the literature |
 //! |---|---|
 //! | literal | a proposition "input is term", with its hedges |
 //! | alive | a literal whose support contains the value |
-//! | partial | the conjunction of the first literals of an antecedent, while it is over 0 |
+//! | partial | the conjunction of the first literals of an antecedent, while it is above 0 |
 //! | action | a consequent: the rule, its weight, and the firing strength that it raises |
 //! | flank | a part of a membership function that only rises or only falls; its tail is the integral from its foot |
 //! | knot | a node of the tabulated integral of a curved flank |
 //! | section, strand | a part of the output's range on which terms keep their order; a flank on it |
-//! | layer, base | the part of a set between two alpha-levels; the lower one of them |
+//! | layer, base | the part of a set between two alpha-levels; the lower of the two levels |
 
 use core::ops::DerefMut;
 
@@ -107,10 +107,10 @@ pub(crate) use raising::{concluded_by, raised_by};
 use results::Given;
 pub(crate) use results::Results;
 
-/// How the rules that are plain ANDs of terms of different inputs are found.
+/// The data structure that finds the rules that are plain ANDs of terms of different inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Conjunctions {
-    /// A table with a cell for each combination of terms. On each axis exactly two terms are read.
+    /// A table with a cell for each combination of terms. On each axis exactly two terms are evaluated.
     Uniform {
         /// The number of actions of each cell.
         actions_a_cell: u32,
@@ -121,7 +121,7 @@ pub enum Conjunctions {
     },
     /// A table with a cell for each combination of terms.
     Dense,
-    /// A trie whose paths are the terms of rules.
+    /// A trie whose paths are the terms of the rules.
     #[default]
     Trie,
 }
@@ -130,76 +130,76 @@ pub enum Conjunctions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(C)]
 pub struct Sizes {
-    /// The number of literals; 0 where no rule reads their degrees by index.
+    /// The number of literals; 0 if no rule reads their degrees by index.
     pub degrees: u32,
-    /// The most terms of an input with a degree over 0 at once, and two more.
+    /// The maximum number of terms of an input with a degree above 0 at the same value, plus two.
     pub alive: u32,
-    /// The most cells or edges held at once.
+    /// The maximum number of cells or edges that are stored at the same time.
     pub partial: u32,
-    /// The depth of the deepest program, and one more than the bases of the largest layered set.
+    /// The maximum of the depth of the deepest program, and the number of bases of the largest layered set plus one.
     pub stack: u32,
-    /// The number of firing strengths of all outputs, and one that belongs to no output.
+    /// The number of firing strengths of all outputs, plus one that no output uses.
     pub strengths: u32,
 }
 
-/// An output: its range, and how firing strengths become a number.
+/// An output: its range, and the method that reduces its firing strengths to a number.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Output {
-    /// The lower end of its range.
+    /// The lower end of the range.
     pub low: f64,
-    /// The upper end of its range.
+    /// The upper end of the range.
     pub high: f64,
-    /// The value where no rule fires; NaN where the output is undefined there.
+    /// The value if no rule fires; NaN if the output is then undefined.
     pub default_value: f64,
     /// The code of its [closed form](Output::form).
     pub form: u32,
-    /// Its span in the array of that form.
+    /// The index of its first element in the array of that form.
     pub first: u32,
-    /// The end of that span.
+    /// The end of its elements in that array.
     pub end: u32,
-    /// Its span in the firing strengths.
+    /// The index of its first firing strength.
     pub first_strength: u32,
-    /// The end of that span.
+    /// The end of its firing strengths.
     pub end_strength: u32,
-    /// 1 where a value outside the range is clamped to it, which only Takagi-Sugeno outputs can have; else 0.
+    /// 1 if a value outside the range is clamped to it, else 0. Only Takagi-Sugeno outputs can leave their range.
     pub clamps: u32,
 }
 
-/// The memory an evaluation works in, of the [`Sizes`] of the table: slices or vectors of numbers, partial conjunctions
-/// and strongest rules.
+/// The working memory of an evaluation, with the [`Sizes`] of the table: slices or vectors of numbers, partial
+/// conjunctions and strongest rules.
 #[derive(Debug, Clone)]
 pub struct Buffers<N, P, S> {
-    /// One for each input.
+    /// One element per input.
     pub values: N,
-    /// [`Sizes::degrees`].
+    /// [`Sizes::degrees`] elements.
     pub degrees: N,
-    /// [`Sizes::alive`].
+    /// [`Sizes::alive`] elements.
     pub alive: P,
-    /// [`Sizes::partial`].
+    /// [`Sizes::partial`] elements.
     pub partial: P,
-    /// [`Sizes::partial`].
+    /// [`Sizes::partial`] elements.
     pub next: P,
-    /// [`Sizes::stack`].
+    /// [`Sizes::stack`] elements.
     pub stack: N,
-    /// [`Sizes::strengths`].
+    /// [`Sizes::strengths`] elements.
     pub strengths: N,
-    /// One for each output.
+    /// One element per output.
     pub strongest: S,
 }
 
-/// The memory of the caller that an evaluation works in.
+/// Working memory that is borrowed from the caller.
 pub type Scratch<'m> = Buffers<&'m mut [f64], &'m mut [Partial], &'m mut [Strongest]>;
 
 impl Output {
-    /// How its value is computed.
+    /// Returns the method that computes its value.
     #[inline(always)]
     pub fn form(&self) -> ClosedForm {
         ClosedForm::from_code(self.form)
     }
 
-    /// The value, clamped to the range where the author says so.
+    /// Returns the value, clamped to the range if the author requests it.
     #[inline(always)]
     fn clamped(&self, value: f64) -> f64 {
         match self.clamps {
@@ -208,7 +208,7 @@ impl Output {
         }
     }
 
-    /// The middle of the range. Moments are measured from there, against cancellation.
+    /// Returns the middle of the range. Moments are relative to it, to avoid cancellation.
     #[inline(always)]
     pub(crate) fn origin(&self) -> f64 {
         self.low + 0.5 * (self.high - self.low)
@@ -216,13 +216,13 @@ impl Output {
 }
 
 impl Table<'_> {
-    /// Evaluates one value for each input into one outcome for each output. It does not allocate, and does not panic where
-    /// [`Table::check`] passes and the scratch memory has the sizes of the table.
+    /// Evaluates one value per input into one outcome per output. It does not allocate. It does not panic if
+    /// [`Table::check`] succeeds and the scratch memory has the sizes of the table.
     ///
-    /// A value outside its input's range is clamped to the range, and the outcome says so. A value that is NaN or
-    /// infinite makes every outcome [`State::InputNotFinite`].
+    /// A value outside the range of its input is clamped to it; the outcome reports that. If a value is NaN or
+    /// infinite, every outcome is [`State::InputNotFinite`].
     ///
-    /// # Example: a fan's speed from the temperature
+    /// # Example: the speed of a fan as a function of temperature
     /// ```
     /// use fuzzy::{Engine, model::{Model, Output, MembershipFunction, Variable}, rule};
     /// use fuzzy::table::{Outcome, Partial, Scratch, Strongest};
@@ -263,7 +263,7 @@ impl Table<'_> {
 }
 
 impl Scratch<'_> {
-    /// The same memory, as rows of one number.
+    /// Returns the same memory as rows of one number each.
     #[inline(always)]
     pub(crate) fn rows(&mut self) -> Buffers<&mut [[f64; 1]], &mut [Partial], &mut [Strongest]> {
         Buffers {
@@ -279,8 +279,8 @@ impl Scratch<'_> {
     }
 }
 
-/// [`Table::evaluate`], with `integrate` giving the value of an output without a closed form from its index and its firing
-/// strengths. `fire` fires the rules, as [`fire_row`] does.
+/// Implements [`Table::evaluate`]. `integrate` returns the value of an output without a closed form, given its index
+/// and its firing strengths. `fire` fires the rules, as [`fire_row`] does.
 #[inline(always)]
 pub(crate) fn evaluate_row<A, N, P, S>(
     table: &A,
@@ -309,9 +309,9 @@ pub(crate) fn evaluate_row<A, N, P, S>(
     }
 }
 
-/// Evaluates the values of each input in `L` rows, in a table without blocks, into the results of each output. `in_row` gives
-/// the value in one row of an output that [`closed`] does not know, from its index, the row and the firing strengths of all
-/// rows.
+/// Evaluates the values of each input in `L` rows into the results of each output; the table must not have blocks.
+/// `in_row` returns the value in one row of an output that [`closed`] does not support, given its index, the row and
+/// the firing strengths of all rows.
 #[inline(always)]
 pub(crate) fn evaluate_rows<A, N, P, S, const L: usize, const CELLS: bool>(
     table: &A,
@@ -332,7 +332,7 @@ pub(crate) fn evaluate_rows<A, N, P, S, const L: usize, const CELLS: bool>(
     }
 }
 
-/// Clamps each value to the range of its input, also one that is not finite.
+/// Clamps each value to the range of its input, including values that are not finite.
 #[inline(always)]
 fn clamp<A: Arrays, const L: usize>(
     table: &A,
@@ -344,12 +344,12 @@ fn clamp<A: Arrays, const L: usize>(
         infinite: [0; L],
     };
     for ((input, inside), values) in table.inputs().iter().zip(values).zip(inputs) {
-        // NaN becomes the upper end.
+        // NaN is replaced by the upper end.
         let nearest = each(|row| larger(smaller(values[row], input.high), input.low));
         for row in 0..L {
             given.clamped[row] |= u64::from(nearest[row] != values[row]);
         }
-        // What is not finite is outside, which is rare.
+        // Values that are not finite are outside the range, which is rare.
         if given.clamped.iter().fold(0, |any, one| any | one) != 0 {
             for (infinite, value) in given.infinite.iter_mut().zip(&values) {
                 *infinite |= u64::from(!value.is_finite());
@@ -360,7 +360,7 @@ fn clamp<A: Arrays, const L: usize>(
     given
 }
 
-/// Writes the results for an output of the rules that have fired.
+/// Writes the results of an output after the rules have fired.
 #[inline(always)]
 fn fill<A, N, P, S, const L: usize>(
     table: &A,

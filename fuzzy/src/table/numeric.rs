@@ -1,7 +1,7 @@
 //! Numerical integration and root finding.
 
-/// Gauss-Legendre with 8 nodes on [-1, 1]: exact for polynomials up to degree 15.
-/// Half of the nodes; the others are their mirror images. (Abramowitz and Stegun, table 25.4.)
+/// Gauss-Legendre quadrature with 8 nodes on [-1, 1], which is exact for polynomials up to degree 15. Only half of the
+/// nodes are listed; the other half are their mirror images. (Abramowitz and Stegun, table 25.4.)
 const NODES: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
@@ -9,7 +9,7 @@ const NODES: [(f64, f64); 4] = [
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
 ];
 
-/// The integrals of `f(x)` and of `(x - origin) f(x)` between two values.
+/// Returns the integrals of `f(x)` and of `(x - origin) f(x)` between two values.
 pub(crate) fn gauss(f: impl Fn(f64) -> f64, from: f64, to: f64, origin: f64) -> (f64, f64) {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let (mut area, mut moment) = (0.0, 0.0);
@@ -24,7 +24,8 @@ pub(crate) fn gauss(f: impl Fn(f64) -> f64, from: f64, to: f64, origin: f64) -> 
     )
 }
 
-/// The root of a function that changes sign between `a` and `b`: bisection with regula falsi (Illinois), to the last digit.
+/// Returns the root of a function that changes sign between `a` and `b`, accurate to the last digit, by bisection with
+/// regula falsi (Illinois).
 pub(crate) fn root(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut a, mut b) = (a, b);
     let (mut fa, mut fb) = (f(a), f(b));

@@ -1,10 +1,10 @@
-//! The operators and hedges.
+//! Operators and hedges.
 
 use core::hint::select_unpredictable;
 
 use super::LEAST_STRENGTH;
 
-/// AND of two degrees: a t-norm.
+/// The AND of two degrees: a t-norm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Conjunction {
     /// `min(a, b)`.
@@ -14,17 +14,17 @@ pub enum Conjunction {
     Product,
     /// `max(0, a + b - 1)` (Lukasiewicz).
     BoundedDifference,
-    /// `min(a, b)` where one of them is 1 up to rounding (1e-12), else 0.
+    /// `min(a, b)` if one of them is 1 up to rounding (1e-12), else 0.
     Drastic,
     /// `a b / (2 - (a + b - a b))`.
     Einstein,
-    /// `a b / (a + b - a b)`, 0 where both are 0.
+    /// `a b / (a + b - a b)`; 0 if both are 0.
     Hamacher,
-    /// `min(a, b)` where `a + b > 1` by more than rounding (1e-12) or one of them is 1, else 0.
+    /// `min(a, b)` if `a + b > 1` by more than rounding (1e-12) or one of them is 1, else 0.
     NilpotentMinimum,
 }
 
-/// OR of two degrees: an s-norm.
+/// The OR of two degrees: an s-norm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Disjunction {
     /// `max(a, b)`.
@@ -34,21 +34,21 @@ pub enum Disjunction {
     ProbabilisticSum,
     /// `min(1, a + b)`.
     BoundedSum,
-    /// `max(a, b)` where one of them is 0 up to rounding (1e-12), else 1.
+    /// `max(a, b)` if one of them is 0 up to rounding (1e-12), else 1.
     Drastic,
     /// `(a + b) / (1 + a b)`.
     Einstein,
-    /// `(a + b - 2 a b) / (1 - a b)`, 1 where both are 1.
+    /// `(a + b - 2 a b) / (1 - a b)`; 1 if both are 1.
     Hamacher,
-    /// `max(a, b)` where `a + b < 1` by more than rounding (1e-12) or one of them is 0, else 1.
+    /// `max(a, b)` if `a + b < 1` by more than rounding (1e-12) or one of them is 0, else 1.
     NilpotentMaximum,
 }
 
-/// How a firing strength `h` activates a consequent with membership `m`: a t-norm, such as `min(h, m)` (Mamdani) or `h m`
-/// (Larsen).
+/// The function that activates a consequent with membership `m` at firing strength `h`: a t-norm, such as `min(h, m)`
+/// (Mamdani) or `h m` (Larsen).
 pub type Implication = Conjunction;
 
-/// How the activated consequents of an output are aggregated.
+/// The function that aggregates the activated consequents of an output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Aggregation {
     /// `max(a, b)`.
@@ -60,17 +60,17 @@ pub enum Aggregation {
     BoundedSum,
     /// `a + b`, unbounded.
     Sum,
-    /// `max(a, b)` where one of them is 0 up to rounding (1e-12), else 1.
+    /// `max(a, b)` if one of them is 0 up to rounding (1e-12), else 1.
     Drastic,
     /// `(a + b) / (1 + a b)`.
     Einstein,
-    /// `(a + b - 2 a b) / (1 - a b)`, 1 where both are 1.
+    /// `(a + b - 2 a b) / (1 - a b)`; 1 if both are 1.
     Hamacher,
-    /// `max(a, b)` where `a + b < 1` by more than rounding (1e-12) or one of them is 0, else 1.
+    /// `max(a, b)` if `a + b < 1` by more than rounding (1e-12) or one of them is 0, else 1.
     NilpotentMaximum,
 }
 
-/// A hedge: changes a membership `x`. Of several hedges the one nearest to the term applies first.
+/// A hedge: a function that changes a degree `x`. Of several hedges, the one nearest to the term is applied first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u32)]
 pub enum Hedge {
@@ -84,7 +84,7 @@ pub enum Hedge {
     Extremely,
     /// `(x/2)^(1/2)` up to 0.5, `1 - ((1 - x)/2)^(1/2)` above.
     Seldom,
-    /// 1.
+    /// The constant 1.
     Any,
 }
 
@@ -139,14 +139,14 @@ impl Hedge {
         Hedge::Any,
     ];
 
-    /// Whether it may stand in a conclusion: it leaves a strength of 0 at 0, so that a rule that does not fire concludes
-    /// nothing.
+    /// Returns whether the hedge is allowed in a conclusion: it maps a strength of 0 to 0, so that a rule that does not
+    /// fire has no effect.
     #[must_use]
     pub fn may_conclude(self) -> bool {
         !matches!(self, Hedge::Not | Hedge::Any)
     }
 
-    /// Its word in the rule language.
+    /// Returns its word in the rule language.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -160,26 +160,27 @@ impl Hedge {
     }
 }
 
-/// The smaller of two numbers that are not NaN, in one instruction, unlike `f64::min`, and never by a branch.
+/// Returns the smaller of two numbers that are not NaN. Unlike `f64::min` it takes one instruction, and it never
+/// branches.
 #[inline(always)]
 pub(crate) fn smaller(a: f64, b: f64) -> f64 {
     select_unpredictable(a < b, a, b)
 }
 
-/// The larger of two numbers that are not NaN.
+/// Returns the larger of two numbers that are not NaN.
 #[inline(always)]
 pub(crate) fn larger(a: f64, b: f64) -> f64 {
     select_unpredictable(a > b, a, b)
 }
 
 impl Conjunction {
-    /// AND of two degrees in [0, 1]; 0 AND anything is 0.
+    /// Returns the AND of two degrees in [0, 1]; 0 AND anything is 0.
     #[inline(always)]
     pub(crate) fn of(self, a: f64, b: f64) -> f64 {
         match self {
             Conjunction::Minimum => smaller(a, b),
             Conjunction::Product => a * b,
-            // `a + b - 1` loses the digits of a small degree.
+            // `a + b - 1` would lose digits of a small degree.
             Conjunction::BoundedDifference => larger(0.0, smaller(a, b) - (1.0 - larger(a, b))),
             Conjunction::Drastic => {
                 if 1.0 - larger(a, b) <= LEAST_STRENGTH {
@@ -199,7 +200,7 @@ impl Conjunction {
                 }
             }
             Conjunction::NilpotentMinimum => {
-                // `a + b` is 1 up to rounding where b is `1 - a`.
+                // `a + b` is 1 up to rounding if b is `1 - a`.
                 let (small, large) = (smaller(a, b), larger(a, b));
                 if large == 1.0 || small - (1.0 - large) > LEAST_STRENGTH {
                     small
@@ -212,7 +213,7 @@ impl Conjunction {
 }
 
 impl Disjunction {
-    /// OR of two degrees in [0, 1]; 0 OR `a` is `a`.
+    /// Returns the OR of two degrees in [0, 1]; 0 OR `a` is `a`.
     #[inline(always)]
     pub(crate) fn of(self, a: f64, b: f64) -> f64 {
         match self {
@@ -247,14 +248,14 @@ impl Disjunction {
     }
 }
 
-/// `a + b - a b`, as `a + b (1 - a)`, which rounds into [0, 1].
+/// Returns `a + b - a b`, computed as `a + b (1 - a)`, which stays in [0, 1] up to rounding.
 #[inline(always)]
 pub(crate) fn probabilistic_sum(a: f64, b: f64) -> f64 {
     smaller(1.0, a + b * (1.0 - a))
 }
 
 impl Aggregation {
-    /// The aggregated degree of two activated consequents.
+    /// Returns the aggregated degree of two activated consequents.
     #[inline(always)]
     pub(crate) fn of(self, a: f64, b: f64) -> f64 {
         match self {
@@ -271,7 +272,7 @@ impl Aggregation {
 }
 
 impl Hedge {
-    /// The hedged degree.
+    /// Returns the hedged degree.
     pub(crate) fn of(self, x: f64) -> f64 {
         match self {
             Hedge::Not => 1.0 - x,
@@ -301,7 +302,7 @@ mod tests {
     use super::*;
 
     const CONJUNCTIONS: [(Conjunction, f64, f64); Conjunction::ALL.len()] = [
-        // At (0.5, 0.75) and at (0.25, 0.5), by hand.
+        // Computed by hand at (0.5, 0.75) and at (0.25, 0.5).
         (Conjunction::Minimum, 0.5, 0.25),
         (Conjunction::Product, 0.375, 0.125),
         (Conjunction::BoundedDifference, 0.25, 0.0),
@@ -365,7 +366,7 @@ mod tests {
             for b in DEGREES {
                 for (and, ..) in CONJUNCTIONS {
                     let both = and.of(a, b);
-                    // The law holds up to a rounding.
+                    // The inequality is exact up to rounding.
                     let most = a.min(b) * (1.0 + 4e-16);
                     assert!(
                         (0.0..=most).contains(&both),

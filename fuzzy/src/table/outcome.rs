@@ -1,8 +1,8 @@
 //! The results of an evaluation.
 
-/// The result for one output.
+/// The result of an evaluation for one output.
 ///
-/// # Example: the value, or why there is none
+/// # Example: a value, or the reason why there is none
 /// ```
 /// use fuzzy::engine::{Outcome, State};
 ///
@@ -11,24 +11,25 @@
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Outcome {
-    /// The value, or why there is none.
+    /// The value, or the reason why there is none.
     pub state: State,
-    /// The largest firing strength (weight included) of a rule of this output, in [0, 1].
+    /// The largest firing strength (including the weight) of a rule of this output, in [0, 1].
     pub coverage: f64,
-    /// The index in the model of the rule with that strength, the first of equal ones. `None` where no rule fired.
+    /// The index in the model of the rule with that strength; among equally strong rules the first. `None` if no rule
+    /// fired.
     pub dominant_rule: Option<usize>,
     /// Whether an input was outside its range and was clamped to it.
     pub clamped: bool,
 }
 
-/// Whether an output has a value.
+/// The value of an output, or the reason why it has none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum State {
-    /// Rules fired and gave this value.
+    /// Rules fired and determined this value.
     Defined(f64),
     /// No rule fired; this is the default value of the output.
     Default(f64),
-    /// No rule fired; this is the value of the evaluation before, in a `Sequence`.
+    /// No rule fired; this is the value of the previous evaluation in a `Sequence`.
     Previous(f64),
     /// No rule fired, and the output has no default value.
     #[default]
@@ -38,7 +39,7 @@ pub enum State {
 }
 
 impl Outcome {
-    /// No rule fired.
+    /// The outcome if no rule fired.
     pub const UNDEFINED: Outcome = Outcome {
         state: State::NoRuleFired,
         coverage: 0.0,
@@ -46,7 +47,7 @@ impl Outcome {
         clamped: false,
     };
 
-    /// The value that rules gave, the default value or the previous one. Never NaN.
+    /// Returns the value that rules determined, the default value, or the previous one. It is never NaN.
     pub fn value(&self) -> Option<f64> {
         match self.state {
             State::Defined(value) | State::Default(value) | State::Previous(value) => Some(value),

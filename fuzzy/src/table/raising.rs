@@ -1,4 +1,4 @@
-//! Which rule raises an output most.
+//! The rule that raises an output most.
 
 use core::ops::DerefMut;
 
@@ -9,13 +9,15 @@ use super::firing::fire_row_by_any;
 use super::{Action, Arrays, Buffers, ClosedForm, Output, Scratch, Table, clamp, value_in_row};
 
 impl Table<'_> {
-    /// The index of the rule that raises an output most where it has a value, without allocating: of the rules that fire, the
-    /// one with the largest `strength (alone - (low + value) / 2)`. `alone` is the value of the output if only this rule
-    /// fired, and `low` the lower end of its range. `None` where no rule fires. Of equal rules it is the first.
+    /// Returns the index of the rule that raises an output most, without allocating. Among the rules that fire, it is
+    /// the one with the largest `strength (alone - (low + value) / 2)`; among equal rules it is the first. `value` is
+    /// the value of the output, `alone` its value if only this rule fired, and `low` the lower end of its range. `None`
+    /// if no rule fires.
     ///
-    /// Against the middle between `low` and the value, since of rules that conclude the same the strongest counts.
+    /// The comparison is with the midpoint between `low` and the value, rather than with the value, so that the
+    /// strongest of several rules with the same conclusion is selected.
     ///
-    /// After it, the scratch memory holds the degrees of the literals.
+    /// Afterwards the scratch memory contains the degrees of the literals.
     pub fn raised_by(
         &self,
         scratch: &mut Scratch<'_>,
@@ -33,7 +35,7 @@ impl Table<'_> {
     }
 }
 
-/// [`Table::raised_by`], with `integrate` as in [`evaluate`](super::evaluate).
+/// Implements [`Table::raised_by`], with `integrate` as in [`evaluate`](super::evaluate).
 pub(crate) fn raised_by<A, N, P, S>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,
@@ -52,8 +54,8 @@ where
     most(table, scratch, inputs, (output, &score), &mut integrate)
 }
 
-/// The index of the rule that says most that an output has a degree: of the rules that fire, the one with the largest
-/// `strength degree(alone)`; where none of them says so, the strongest.
+/// Returns the index of the rule that contributes most to a degree of an output. Among the rules that fire, it is the
+/// one with the largest `strength degree(alone)`; if that is 0 for all rules, it is the strongest rule.
 pub(crate) fn concluded_by<A, N, P, S>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,
@@ -72,7 +74,7 @@ where
     most(table, scratch, inputs, (output, &score), &mut integrate)
 }
 
-/// The index of the rule with the largest product of its firing strength and the score of `alone`.
+/// Returns the index of the rule with the largest product of its firing strength and `score(alone)`.
 fn most<A, N, P, S>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,
@@ -97,11 +99,11 @@ where
     let strengths = strengths.get_mut(first as usize..of.end_strength as usize)?;
     strengths.fill([0.0]);
     let score = |strength: u32| {
-        // In a damaged table it may be one of another output.
+        // In a damaged table it may belong to a different output.
         let index = strength.checked_sub(first)? as usize;
         *strengths.get_mut(index)? = [1.0];
         let mut value = [f64::NAN];
-        // The memory for the bases of layers is in use by the rule that fires.
+        // No memory for the bases of layers is available, because the firing rules use it.
         let alone = if of.form() == ClosedForm::Layers {
             let set = table.layered_sets().get(of.first as usize)?;
             Some(of.centroid(set.alone(table, index as u32)))
@@ -123,13 +125,14 @@ where
     raising.most.map(|(_, rule)| rule as usize)
 }
 
-/// Keeps the rule that raises an output most.
+/// Records the rule that raises an output most.
 struct Raising<F> {
     least: f64,
     output: u32,
-    /// The score of the value of the output where only one firing strength, of this index, is 1.
+    /// The score of the value that the output has if only the firing strength with this index is 1 and all others are
+    /// 0.
     score: F,
-    /// How much it is raised, and by which rule.
+    /// The largest increase so far, and the rule that causes it.
     most: Option<(f64, u32)>,
 }
 
@@ -148,7 +151,7 @@ impl<F: FnMut(u32) -> Option<f64>> Act<1> for Raising<F> {
                 && let Some(score) = (self.score)(action.strength)
             {
                 let raises = strength * score;
-                // In whatever order they fire.
+                // The result does not depend on the order in which rules fire.
                 let is_more = |(most, rule): (f64, u32)| {
                     raises > most || raises == most && action.rule < rule
                 };

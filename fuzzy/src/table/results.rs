@@ -1,31 +1,31 @@
-//! The results of an evaluation of several rows, and each row's outcome.
+//! The results of an evaluation of several rows, and their conversion to outcomes.
 
 use super::{Outcome, State};
 
 /// The results for an output in `L` rows.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Results<const L: usize> {
-    /// The values where no rule fires; NaN where the output is undefined there.
+    /// The values if no rule fires; NaN if the output is then undefined.
     pub(crate) default_values: [f64; L],
-    /// The values that rules gave; NaN where they gave none.
+    /// The values that rules determined; NaN if no rule fired.
     pub(crate) values: [f64; L],
     /// The largest firing strengths.
     pub(crate) coverage: [f64; L],
-    /// The [numbers](number_of) of the rules with those strengths, infinite where none is over 0.
+    /// The [numbers](number_of) of the rules with those strengths, infinite if none is above 0.
     pub(crate) rules: [f64; L],
     pub(crate) given: Given<L>,
 }
 
-/// What the inputs of `L` rows are. All are numbers as wide as the values, so that vectors hold as many.
+/// Flags of the inputs of `L` rows. They are as wide as the values, so that a vector contains equally many.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Given<const L: usize> {
-    /// 1 where an input was outside its range, else 0.
+    /// 1 if an input was outside its range, else 0.
     pub(crate) clamped: [u64; L],
-    /// 1 where an input is NaN or infinite, else 0.
+    /// 1 if an input is NaN or infinite, else 0.
     pub(crate) infinite: [u64; L],
 }
 
-/// The number of a rule, `2^52 + index`: as wide as a strength, so that vectors hold as many.
+/// Returns the number of a rule, `2^52 + index`. It is as wide as a strength, so that a vector contains equally many.
 #[inline(always)]
 pub(crate) fn number_of(rule: u32) -> f64 {
     f64::from_bits(0x4330 << 48 | u64::from(rule))
@@ -37,7 +37,7 @@ fn rule_of(number: f64) -> u32 {
 }
 
 impl<const L: usize> Results<L> {
-    /// No row yet.
+    /// Empty results.
     pub(crate) const NONE: Self = Results {
         default_values: [f64::NAN; L],
         values: [f64::NAN; L],
@@ -49,7 +49,7 @@ impl<const L: usize> Results<L> {
         },
     };
 
-    /// The value of a row that rules gave or that stands where no rule fires; NaN where it has none.
+    /// Returns the value of a row, from its rules or the default if no rule fires; NaN if it has none.
     #[inline(always)]
     pub(crate) fn value(&self, row: usize) -> f64 {
         let value = self.values[row];
@@ -65,13 +65,13 @@ impl<const L: usize> Results<L> {
         }
     }
 
-    /// The rule with the largest firing strength of a row.
+    /// Returns the rule with the largest firing strength in a row.
     #[inline(always)]
     pub(crate) fn dominant(&self, row: usize) -> Option<u32> {
         (self.coverage[row] > 0.0).then_some(rule_of(self.rules[row]))
     }
 
-    /// Takes the outcome of a row.
+    /// Stores the outcome of a row.
     pub(crate) fn set(&mut self, row: usize, outcome: &Outcome) {
         (self.values[row], self.default_values[row]) = (f64::NAN, f64::NAN);
         match outcome.state {
@@ -87,7 +87,7 @@ impl<const L: usize> Results<L> {
         self.given.infinite[row] = u64::from(outcome.state == State::InputNotFinite);
     }
 
-    /// The outcome of a row.
+    /// Returns the outcome of a row.
     #[inline(always)]
     pub(crate) fn outcome(&self, row: usize) -> Outcome {
         if self.given.infinite[row] != 0 {

@@ -1,24 +1,26 @@
 //! Rules as plain data: their actions, and the tables, tries and programs that find the rules that fire.
 
-/// What a rule does for one of its consequents: its weight times the degree of its antecedent is its firing strength.
+/// The action of a rule for one of its consequents. The firing strength is the weight times the degree of the
+/// antecedent.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Action {
-    /// The rule's weight.
+    /// The weight of the rule.
     pub weight: f64,
-    /// The index of the firing strength it updates.
+    /// The index of the firing strength that it updates.
     pub strength: u32,
     /// The index of the output.
     pub output: u32,
-    /// The rule's index in the model.
+    /// The index of the rule in the model.
     pub rule: u32,
-    /// 1 where firing strengths are summed, 0 where the largest counts.
+    /// 1 if firing strengths are summed, 0 if the largest is used.
     pub sums: u32,
 }
 
 impl Action {
-    /// An action without effect, which pads cells. `unused` is the index of the firing strength of no output.
+    /// Returns an action without effect, which pads cells. `unused` is the index of a firing strength that no output
+    /// uses.
     pub(crate) fn none(unused: u32) -> Self {
         Action {
             weight: 0.0,
@@ -30,17 +32,18 @@ impl Action {
     }
 }
 
-/// An input of a uniform table. All its terms are straight and at most two overlap. Each interval has two lines, padded with
-/// lines of degree 0, so every value visits the same number of cells without a branch that a processor could mispredict.
+/// An input of a uniform table. All its terms are straight, and at most two overlap. Each interval has exactly two
+/// lines, if necessary padded with lines of degree 0. Every value therefore visits the same number of cells, without a
+/// branch that a processor could mispredict.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Axis {
     /// The index of the input.
     pub input: u32,
-    /// Its span of cuts, padded to a multiple of 4 with infinity.
+    /// The index of its first cut; the cuts are padded to a multiple of 4 with infinity.
     pub first_cut: u32,
-    /// The end of that span.
+    /// The end of its cuts.
     pub end_cut: u32,
     /// The index of the first of the two lines of its first interval.
     pub first_line: u32,
@@ -55,12 +58,12 @@ pub struct Dimension {
     pub input: u32,
     /// The distance, in cells, between neighbouring terms.
     pub stride: u32,
-    /// The coordinate of rules without this input; [`Dimension::NONE`] where there are none.
+    /// The coordinate of rules without this input; [`Dimension::NONE`] if there are no such rules.
     pub any: u32,
 }
 
 impl Dimension {
-    /// [`Dimension::any`] where every rule has the input.
+    /// The value of [`Dimension::any`] if every rule reads the input.
     pub const NONE: u32 = u32::MAX;
 }
 
@@ -69,13 +72,13 @@ impl Dimension {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct Node {
-    /// Its span of edges.
+    /// The index of its first edge.
     pub first_edge: u32,
-    /// The end of that span.
+    /// The end of its edges.
     pub end_edge: u32,
-    /// The span of actions of the rules that end here.
+    /// The index of the first action of the rules that end here.
     pub first_action: u32,
-    /// The end of that span.
+    /// The end of those actions.
     pub end_action: u32,
 }
 
@@ -84,43 +87,44 @@ pub struct Node {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Edge {
-    /// The index of its literal among those of all inputs.
+    /// The index of the literal among those of all inputs.
     pub literal: u32,
     /// The index of the node it leads to.
     pub node: u32,
 }
 
-/// A rule whose antecedent is not a plain AND, whose conclusion has hedges, or that stands in a [`Block`](super::Block). The
-/// degree of its antecedent times `weight`, then changed by the activation method and the hedges, is the strength that its
-/// actions take. In a block with an activation method, a program without steps is more of the rule before it.
+/// A rule whose antecedent is not a plain AND, whose conclusion has hedges, or that belongs to a
+/// [`Block`](super::Block). The strength that its actions use is the degree of its antecedent times `weight`, adjusted
+/// by the activation method and then by the hedges. In a block with an activation method, a program without steps
+/// continues the previous rule.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Program {
-    /// The rule's weight, which multiplies the degree before the hedges; those of the actions are not used.
+    /// The weight of the rule, which multiplies the degree before the hedges. The weights of the actions are not used.
     pub weight: f64,
-    /// Its span of steps.
+    /// The index of its first step.
     pub first_step: u32,
-    /// The end of that span.
+    /// The end of its steps.
     pub end_step: u32,
-    /// Its span of actions.
+    /// The index of its first action.
     pub first_action: u32,
-    /// The end of that span.
+    /// The end of its actions.
     pub end_action: u32,
-    /// Its span of hedges, in the order in which they apply.
+    /// The index of its first hedge; hedges are in the order in which they are applied.
     pub first_hedge: u32,
-    /// The end of that span.
+    /// The end of its hedges.
     pub end_hedge: u32,
 }
 
-/// A step of an antecedent, on a stack of degrees.
+/// A step in the computation of an antecedent, on a stack of degrees.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(C)]
 pub struct Step {
     /// The operation.
     pub op: Op,
-    /// The index of its literal among those of all inputs; 0 where the operation has none.
+    /// The index of the literal among those of all inputs; 0 if the operation has no literal.
     pub literal: u32,
 }
 
@@ -131,16 +135,16 @@ pub struct Step {
 pub struct Op(pub u32);
 
 impl Op {
-    /// Push the degree of a literal.
+    /// Pushes the degree of a literal.
     pub const PUSH: Op = Op(0);
-    /// Replace the top by its AND with a literal.
+    /// Replaces the top of the stack by its conjunction with a literal.
     pub const AND_LITERAL: Op = Op(1);
-    /// Replace the top by its OR with a literal.
+    /// Replaces the top of the stack by its disjunction with a literal.
     pub const OR_LITERAL: Op = Op(2);
-    /// Replace the two on top by their AND.
+    /// Replaces the top two degrees by their conjunction.
     pub const AND: Op = Op(3);
-    /// Replace the two on top by their OR.
+    /// Replaces the top two degrees by their disjunction.
     pub const OR: Op = Op(4);
-    /// Replace the top by one minus it.
+    /// Replaces the top of the stack by one minus its degree.
     pub const NOT: Op = Op(5);
 }

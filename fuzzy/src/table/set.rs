@@ -1,9 +1,10 @@
-//! Prepared fuzzy sets: outputs whose terms overlap, are curved, or are defuzzified by another way than the centroid of a
+//! Prepared fuzzy sets: outputs whose terms overlap or are curved, or whose defuzzifier is not the centroid of a
 //! partition.
 //!
-//! What does not depend on the inputs is computed when a model is compiled: the [`Flank`]s of the terms, and for the maximum the
-//! [`Section`]s of the range on which no two terms cross. With the maximum and minimum, the order of the terms on a section
-//! is the same whatever their firing strengths are; with the product, two terms cross at most once on a section.
+//! Everything that does not depend on the inputs is computed when a model is compiled: the [`Flank`]s of the terms and,
+//! for aggregation by maximum, the [`Section`]s of the range in which no two terms cross. With maximum and minimum, the
+//! order of the terms on a section does not depend on their firing strengths; with the product, two terms cross at most
+//! once on a section.
 
 use super::flank::{Flank, Knot, Measure};
 use super::numeric::root;
@@ -14,7 +15,7 @@ pub(crate) use maxima::Maxima;
 mod bisector;
 mod maxima;
 
-/// How a fuzzy set becomes a number.
+/// The defuzzifier of a fuzzy set.
 #[doc(hidden)] // The codes of exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SetDefuzzifier {
@@ -26,7 +27,7 @@ pub enum SetDefuzzifier {
     Maxima(OfMaxima),
 }
 
-/// A value among those at which a set is highest.
+/// The selection among the values at which a set is highest.
 #[doc(hidden)] // The codes of exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OfMaxima {
@@ -39,7 +40,7 @@ pub enum OfMaxima {
 }
 
 impl SetDefuzzifier {
-    /// All of them, in the order of their codes in exported data.
+    /// All defuzzifiers, in the order of their codes in exported data.
     pub const ALL: [SetDefuzzifier; 5] = [
         SetDefuzzifier::Centroid,
         SetDefuzzifier::Bisector,
@@ -48,7 +49,7 @@ impl SetDefuzzifier {
         SetDefuzzifier::Maxima(OfMaxima::Largest),
     ];
 
-    /// The code in exported data.
+    /// Returns the code in exported data.
     #[cfg(feature = "alloc")]
     pub(crate) fn code(self) -> u32 {
         let index = Self::ALL.iter().position(|other| *other == self);
@@ -63,17 +64,17 @@ impl SetDefuzzifier {
 pub struct FuzzySet {
     /// The unit of length of areas.
     pub unit: f64,
-    /// The defuzzifier, an index in [`SetDefuzzifier::ALL`].
+    /// The defuzzifier, as an index in [`SetDefuzzifier::ALL`].
     pub defuzzifier: u32,
-    /// 1 where the aggregation is the sum, else the maximum.
+    /// 1 if the aggregation is the sum, 0 if it is the maximum.
     pub sum: u32,
-    /// Its span of sections; empty for a sum.
+    /// The index of its first section; the range is empty for a sum.
     pub first_section: u32,
-    /// The end of that span.
+    /// The end of its sections.
     pub end_section: u32,
-    /// Its span of terms, one for each firing strength.
+    /// The index of its first term; there is one per firing strength.
     pub first_term: u32,
-    /// The end of that span.
+    /// The end of its terms.
     pub end_term: u32,
 }
 
@@ -82,26 +83,26 @@ pub struct FuzzySet {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct SetTerm {
-    /// Its highest degree within the range.
+    /// The maximum degree within the range.
     pub highest: f64,
-    /// Its span of flanks.
+    /// The index of its first flank.
     pub first_flank: u32,
-    /// The end of that span.
+    /// The end of its flanks.
     pub end_flank: u32,
 }
 
-/// A part of the range, with its span of strands.
+/// A part of the range, with its strands.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Section {
-    /// Where it begins.
+    /// The lower end.
     pub from: f64,
-    /// Where it ends.
+    /// The upper end.
     pub to: f64,
-    /// Its span of strands, from the highest to the lowest in the middle of the section.
+    /// The index of its first strand; strands are ordered from the highest to the lowest in the middle of the section.
     pub first_strand: u32,
-    /// The end of that span.
+    /// The end of its strands.
     pub end_strand: u32,
 }
 
@@ -110,13 +111,13 @@ pub struct Section {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Strand {
-    /// The degree just inside the beginning of the section.
+    /// The degree just inside the lower end of the section.
     pub left: f64,
-    /// The degree just inside its end.
+    /// The degree just inside the upper end.
     pub right: f64,
-    /// The area and moment of the flank's tail up to the beginning.
+    /// The area and moment of the flank's tail up to the lower end of the section.
     pub left_tail: [f64; 2],
-    /// The area and moment of the flank's tail up to the end.
+    /// The area and moment of the flank's tail up to the upper end of the section.
     pub right_tail: [f64; 2],
     /// The index of its firing strength among those of the output.
     pub strength: u32,
@@ -133,11 +134,11 @@ struct Prepared<'t> {
     flanks: &'t [Flank],
     knots: &'t [Knot],
     measure: Measure,
-    /// Whether the implication is the product, else the minimum.
+    /// Whether the implication is the product; otherwise it is the minimum.
     scales: bool,
 }
 
-/// A part of the aggregated set: a flank times `degree`, or a plateau of that degree.
+/// A part of the aggregated set: a flank scaled by `degree`, or a plateau of that degree.
 struct Part<'t> {
     from: f64,
     to: f64,
@@ -145,11 +146,11 @@ struct Part<'t> {
     moment: f64,
     degree: f64,
     flank: Option<&'t Flank>,
-    /// Whether the parts to its left have been seen, and not those to its right.
+    /// Whether the parts to the left have already been visited, rather than those to the right.
     from_left: bool,
 }
 
-/// The value of a prepared set; `None` where it has no area.
+/// Returns the value of a prepared set; `None` if its area is 0.
 pub(super) fn value<A: Arrays>(table: &A, output: &Output, strengths: &[f64]) -> Option<f64> {
     let set = table.sets().get(output.first as usize)?;
     let prepared = Prepared {
@@ -202,7 +203,7 @@ impl<'t> Prepared<'t> {
         &self.flanks[term.first_flank as usize..term.end_flank as usize]
     }
 
-    /// The area and moment of a flank that is cut or scaled alone.
+    /// Returns the area and moment of a flank that is cut or scaled, as if no other were present.
     fn alone(&self, flank: &Flank, strength: f64) -> (f64, f64) {
         if self.scales {
             (strength * flank.area, strength * flank.moment)
@@ -222,10 +223,11 @@ impl<'t> Prepared<'t> {
         }
     }
 
-    /// The maximum of terms cut off at their firing strengths.
+    /// Visits the parts of the maximum of terms that are cut off at their firing strengths.
     ///
-    /// Strands are ordered from the highest to the lowest, so one counts only where it is cut off above all before it. It
-    /// then is the set between the level of those and its own. What it leaves open is where it is above its own.
+    /// Strands are ordered from the highest to the lowest, so a strand contributes only if it is cut off above all
+    /// previous ones. It then contributes the part between their level and its own. The part in which the strand is
+    /// above its own level remains for the following strands.
     #[inline(always)]
     fn cut(
         &self,
@@ -247,7 +249,7 @@ impl<'t> Prepared<'t> {
             } else {
                 (strand.right, strand.left)
             };
-            // What remains is open at the lower end of the strand or at the higher one.
+            // The remaining part is at the lower or the higher end of the strand.
             let mut leave = |from: &mut f64, to: &mut f64, clip: f64, degree, part: Option<f64>| {
                 let x = larger(*from, smaller(*to, clip));
                 let degree = if x == clip { degree } else { f64::NAN };
@@ -285,7 +287,8 @@ impl<'t> Prepared<'t> {
         }
     }
 
-    /// The maximum of terms scaled by their firing strengths. Two cross at most once.
+    /// Visits the parts of the maximum of terms that are scaled by their firing strengths. Two terms cross at most
+    /// once.
     #[inline(always)]
     fn scaled(
         &self,
@@ -306,7 +309,7 @@ impl<'t> Prepared<'t> {
             return;
         };
         let mut from = section.from;
-        // Each strand is the highest once at most.
+        // Each strand is the highest at most once.
         for _ in strands {
             let mut next: Option<(f64, &Strand)> = None;
             for strand in strands {
@@ -318,7 +321,7 @@ impl<'t> Prepared<'t> {
                 let (first, second) = (self.flank(strand), self.flank(top));
                 let difference =
                     |x: f64| scale(strand) * first.degree(x) - scale(top) * second.degree(x);
-                // It is higher at the end; whether it is so already at the next crossing that is known.
+                // The strand is higher at the end. Check whether it is already higher at the nearest known crossing.
                 let after = if to < section.to {
                     difference(to)
                 } else {
@@ -337,7 +340,7 @@ impl<'t> Prepared<'t> {
                 } else if first.kind == Kind::PIECEWISE && second.kind == Kind::PIECEWISE {
                     from + (to - from) * (before / (before - after))
                 } else if first.kind == Kind::GAUSSIAN && second.kind == Kind::GAUSSIAN {
-                    // The logarithm of the ratio has the same sign, and no exponentials.
+                    // The logarithm of the ratio has the same sign and needs no exponentials.
                     let ratio =
                         libm::log((scale(strand) * first.height) / (scale(top) * second.height));
                     root(from, to, |x| ratio + second.exponent(x) - first.exponent(x))
@@ -380,7 +383,7 @@ impl<'t> Prepared<'t> {
         }
     }
 
-    /// A strand between two values of its section; `known` is the degree at one of them.
+    /// Returns the part of a strand between two values of its section; `known` is the degree at one of them.
     fn stretch(
         &self,
         section: &Section,
@@ -405,7 +408,7 @@ impl<'t> Prepared<'t> {
             flank.tail(self.knots, self.measure, x, degree).into()
         };
         let ([left, left_moment], [right, right_moment]) = (tail(from), tail(to));
-        // The tail of a falling flank shrinks to the right.
+        // The tail of a falling flank becomes smaller to the right.
         let sign = if flank.right < flank.left { -1.0 } else { 1.0 };
         Part {
             from,

@@ -1,7 +1,8 @@
-//! A document as a tree: scalars, lists and mappings, each with its span in the text.
+//! Documents as trees: scalars, lists and mappings, each with its position in the text.
 //!
-//! YAML, JSON and whatever else serde knows become this tree, and [`crate::Model`] is read from it and written to it. All
-//! findings of a tree are reported at once, each with its span, where direct deserialization stops at the first one.
+//! YAML, JSON and all other formats that serde supports are converted to this tree; [`crate::Model`] is read from it
+//! and written to it. All findings in a tree are reported together, each with its position, whereas direct
+//! deserialization stops at the first error.
 
 use alloc::{format, string::String, vec::Vec};
 use core::ops::Range;
@@ -12,51 +13,51 @@ mod serde_impl;
 
 pub use read::{Entry, Fields};
 
-/// A value with its span in the text.
+/// A value with its position in the text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// The value.
     pub value: Value,
-    /// Its bytes in the text; `0..0` where there is no text.
+    /// The byte range in the text; `0..0` if there is no text.
     pub span: Range<usize>,
 }
 
 /// A value of a document.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// Text, a number, a boolean or nothing.
+    /// Text, a number, a boolean or null.
     Scalar(Scalar),
     /// `[a, b]`
     List(Vec<Node>),
-    /// `{a: b}`, in the order written, repeated keys included.
+    /// `{a: b}`, in the order of the text, including repeated keys.
     Mapping(Vec<(Node, Node)>),
 }
 
-/// A scalar as it was written; whether it is a number is for its reader to decide.
+/// A scalar as it was written. Whether it is a number depends on how it is read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scalar {
-    /// What it says, escapes and line breaks resolved.
+    /// The text, with escapes and line breaks resolved.
     pub text: String,
-    /// Whether it was marked as text (quotes, `|`, `>`), so that it is no number even if it looks like one.
+    /// Whether it was marked as text (quotes, `|`, `>`); then it is not a number even if it looks like one.
     pub quoted: bool,
-    /// The offset of each of its bytes in the document.
+    /// The offset in the document of each byte of `text`.
     pub(crate) offsets: Offsets,
 }
 
-/// The offsets of a scalar's bytes in the document.
+/// The offsets in the document of the bytes of a scalar.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Offsets {
-    /// Contiguous from this offset on.
+    /// The bytes are contiguous, starting at this offset.
     From(usize),
     #[cfg_attr(
         not(feature = "yaml"),
         allow(dead_code, reason = "only text has escapes")
     )]
-    /// Character by character, since escapes, line breaks and indentation are resolved in the text.
+    /// The position of each character, because escapes, line breaks and indentation were resolved.
     Each(Vec<Letter>),
 }
 
-/// A character of a scalar's text: its first byte there, and its bytes in the document.
+/// A character of a scalar: the index of its first byte in the text of the scalar, and its byte range in the document.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Letter {
     pub(crate) text: usize,
@@ -64,7 +65,7 @@ pub(crate) struct Letter {
 }
 
 impl Scalar {
-    /// The bytes of the document that `part`, some bytes of this scalar's text, came from.
+    /// Returns the byte range in the document that corresponds to `part`, a byte range in the text of this scalar.
     #[must_use]
     pub fn span(&self, part: Range<usize>) -> Range<usize> {
         match &self.offsets {
@@ -89,12 +90,12 @@ impl Scalar {
 }
 
 impl Node {
-    /// Text, without a span.
+    /// Creates a text, without a position.
     pub fn text(text: impl Into<String>) -> Self {
         Self::scalar(text.into(), true)
     }
 
-    /// A number, without a span.
+    /// Creates a number, without a position.
     #[must_use]
     pub fn number(number: f64) -> Self {
         let text = if number.is_nan() {
@@ -109,7 +110,7 @@ impl Node {
         Self::scalar(text, false)
     }
 
-    /// A scalar, without a span.
+    /// Creates a scalar, without a position.
     pub(crate) fn scalar(text: String, quoted: bool) -> Self {
         let offsets = Offsets::From(0);
         Node {
@@ -122,7 +123,7 @@ impl Node {
         }
     }
 
-    /// A list, without a span.
+    /// Creates a list, without a position.
     #[must_use]
     pub fn list(items: Vec<Node>) -> Self {
         Node {
@@ -131,7 +132,7 @@ impl Node {
         }
     }
 
-    /// A mapping, without a span.
+    /// Creates a mapping, without a position.
     pub fn mapping<K: Into<String>>(entries: impl IntoIterator<Item = (K, Node)>) -> Self {
         let entries = entries
             .into_iter()
@@ -142,7 +143,7 @@ impl Node {
         }
     }
 
-    /// Whether nothing is there.
+    /// Returns whether the value is null.
     #[must_use]
     pub fn is_null(&self) -> bool {
         matches!(&self.value, Value::Scalar(scalar) if scalar.is_null())

@@ -1,4 +1,4 @@
-//! Reading a tree: what is expected is asked for, what is wrong goes to the list of findings.
+//! Reading values from a tree; errors are added to a list of findings.
 
 use alloc::{
     format,
@@ -13,39 +13,39 @@ use crate::{
     foreign,
 };
 
-/// What to say of `5 // five`.
+/// The suggestion for a comment such as `5 // five`.
 const COMMENT: &str = "a comment begins with `#`, not with `//`";
 
 /// The fields of a mapping whose keys are known.
 pub struct Fields<'a> {
-    /// What the mapping is, for messages: ``input `heat` ``.
+    /// A description of the mapping for messages, such as ``input `heat` ``.
     what: String,
-    /// Where to tell that something is missing.
+    /// The position at which missing keys are reported.
     place: Range<usize>,
     entries: Vec<Entry<'a>>,
-    /// The known keys that an unknown one stands for: they are not told as missing too.
+    /// The known keys that unknown keys probably refer to; they are not reported as missing as well.
     meant: Vec<String>,
 }
 
-/// A key and what stands behind it.
+/// A key with its value.
 #[derive(Clone)]
 pub struct Entry<'a> {
     /// The key.
     pub key: &'a str,
-    /// Where the key stands.
+    /// The position of the key.
     pub key_span: Range<usize>,
-    /// What stands behind it.
+    /// The value.
     pub value: &'a Node,
 }
 
 impl<'a> Fields<'a> {
-    /// The value behind a key; a key with nothing behind it counts as absent.
+    /// Returns the value of a key; `None` if the key or its value is missing.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&'a Node> {
         self.entry(key).map(|entry| entry.value)
     }
 
-    /// The key and the value behind it; a key with nothing behind it counts as absent.
+    /// Returns the entry of a key; `None` if the key or its value is missing.
     #[must_use]
     pub fn entry(&self, key: &str) -> Option<&Entry<'a>> {
         self.entries
@@ -53,18 +53,18 @@ impl<'a> Fields<'a> {
             .find(|entry| entry.key == key && !entry.value.is_null())
     }
 
-    /// Whether an unknown key stands for this one.
+    /// Returns whether an unknown key probably refers to this one.
     pub fn misspells(&self, key: &str) -> bool {
         self.meant.iter().any(|meant| meant == key)
     }
 
-    /// All keys that are there once, with their values.
+    /// Returns all keys, including unknown ones, with their values; of repeated keys only the first.
     #[must_use]
     pub fn entries(&self) -> &[Entry<'a>] {
         &self.entries
     }
 
-    /// The value behind a key that has to be there.
+    /// Returns the value of a required key, and reports a finding if it is missing.
     pub fn require(
         &self,
         key: &str,
@@ -86,7 +86,7 @@ impl<'a> Fields<'a> {
 }
 
 impl<'a> Entry<'a> {
-    /// [`Node::fields`] of the value; what is missing in it is told at the key.
+    /// Works like [`Node::fields`] of the value; missing keys are reported at the key.
     pub fn fields(
         &self,
         what: &str,
@@ -102,8 +102,8 @@ impl<'a> Entry<'a> {
 }
 
 impl Node {
-    /// Reads a mapping of known keys. `what` names it in messages, as in ``input `heat` ``. An unknown key, a key
-    /// given twice and anything but a mapping is a finding.
+    /// Reads a mapping with known keys. `what` names it in messages, as in ``input `heat` ``. Unknown keys, repeated
+    /// keys and values other than a mapping are reported.
     pub fn fields<'a>(
         &'a self,
         what: &str,
@@ -133,8 +133,8 @@ impl Node {
         })
     }
 
-    /// Reads a mapping of names the author chose: of two equal ones the second is a finding `duplicate-<kind>` and
-    /// left out.
+    /// Reads a mapping with names that the author chose. The second of two equal names is reported as
+    /// `duplicate-<kind>` and omitted.
     pub fn entries<'a>(
         &'a self,
         what: &str,
@@ -206,7 +206,7 @@ impl Node {
         }
     }
 
-    /// Reads a whole number from `least` on.
+    /// Reads an integer of at least `least`.
     pub fn whole(&self, what: &str, least: u64, findings: &mut Vec<Diagnostic>) -> Option<u64> {
         let found = match &self.value {
             Value::Scalar(scalar) if !scalar.quoted => scalar.text.parse().ok(),
@@ -226,7 +226,7 @@ impl Node {
         }
     }
 
-    /// Reads text. A number or `true` stands for its own letters: names may look like that.
+    /// Reads text. Numbers and booleans are returned as written, because names may look like them.
     pub fn words(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&Scalar> {
         match &self.value {
             Value::Scalar(scalar) if !scalar.is_null() => Some(scalar),
@@ -251,7 +251,7 @@ impl Node {
         found
     }
 
-    /// Reads one of several words.
+    /// Reads one of a list of words.
     pub fn choice<T: Copy>(
         &self,
         what: &str,
@@ -269,14 +269,14 @@ impl Node {
         found.map(|&(_, value)| value)
     }
 
-    /// A finding: here stands something else than what was expected.
+    /// Returns a finding for a value of an unexpected type.
     #[must_use]
     pub fn unexpected(&self, expected: &str) -> Diagnostic {
         let message = format!("expected {expected}, found {}", self.shown());
         Diagnostic::error("wrong-type", self.span.clone(), message)
     }
 
-    /// A finding: the document is no mapping. It may be any file, and is not quoted.
+    /// Returns a finding for a document that is not a mapping. The text may be any file, and is not quoted.
     #[must_use]
     pub fn unexpected_document(&self, what: &str) -> Diagnostic {
         let found = match &self.value {
@@ -287,7 +287,7 @@ impl Node {
         Diagnostic::error("wrong-type", self.span.clone(), message)
     }
 
-    /// What stands here, for messages.
+    /// Returns a description of this value for messages.
     fn shown(&self) -> String {
         match &self.value {
             Value::List(_) => "a list".into(),
@@ -309,8 +309,8 @@ impl Node {
         }
     }
 
-    /// What to do about a list that should hold so many numbers. `[0, 20,5]` holds a decimal comma: no blank stands behind
-    /// that one, and one behind the others. `[0 1]` holds no comma.
+    /// Returns a suggestion for a list with a wrong number of numbers. `[0, 20,5]` contains a decimal comma: there is
+    /// no blank after it, but one after the other commas. `[0 1]` contains no comma.
     #[must_use]
     pub fn list_advice(items: &[Node], expected: usize) -> Option<String> {
         if let [only] = items
@@ -399,7 +399,7 @@ impl Node {
 const MILLI: [(&str, &str); 4] = [("ms", "s"), ("mm", "m"), ("mV", "V"), ("mA", "A")];
 
 impl Scalar {
-    /// The number it is, if it is one: YAML's forms of decimal numbers, infinities and NaN.
+    /// Returns the number if this is one, in YAML's notations for decimal numbers, infinities and NaN.
     #[must_use]
     pub fn as_number(&self) -> Option<f64> {
         if self.quoted {
@@ -411,7 +411,7 @@ impl Scalar {
             ".inf" | ".Inf" | ".INF" if text.starts_with('-') => Some(f64::NEG_INFINITY),
             ".inf" | ".Inf" | ".INF" => Some(f64::INFINITY),
             ".nan" | ".NaN" | ".NAN" => Some(f64::NAN),
-            // Rust reads `inf` and `nan` as numbers, YAML as words.
+            // Rust parses `inf` and `nan` as numbers; in YAML they are words.
             _ if unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.') => {
                 text.parse().ok()
             }

@@ -1,4 +1,4 @@
-//! The tree in every format serde knows; places are YAML's alone.
+//! Conversion between the tree and all formats that serde supports; only YAML has positions.
 
 use alloc::{
     string::{String, ToString},

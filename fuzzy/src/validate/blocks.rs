@@ -1,4 +1,4 @@
-//! Activation methods, the least strength, and rule blocks.
+//! Validation of activation methods, the least strength, and rule blocks.
 
 use alloc::{collections::BTreeMap, format, string::String};
 use core::ops::Range;
@@ -93,7 +93,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Two blocks that conclude a fuzzy output have one implication.
+    /// Requires that all blocks that conclude a fuzzy output have the same implication.
     fn one_implication(&mut self, spans: &Spans) {
         let model = self.model;
         for output in &model.outputs {

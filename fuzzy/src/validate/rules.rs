@@ -1,4 +1,4 @@
-//! Rules: names, weights, provenance.
+//! Validation of rules: names, weights, provenance.
 
 use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 use core::ops::Range;
@@ -59,7 +59,7 @@ impl<'m> Validator<'m> {
         }
     }
 
-    /// `depth` counts NOTs and brackets, as the rule is written.
+    /// Validates a condition. `depth` is the number of enclosing NOTs and brackets in the text of the rule.
     pub(super) fn condition(
         &mut self,
         condition: &'m Condition,
@@ -123,7 +123,7 @@ impl<'m> Validator<'m> {
                 self.error("output-in-condition", &name.span, message, &help);
             }
             Some(term) => self.known_term(kind, variable, term),
-            // What a rule without a term reads back as.
+            // A proposition `IS any` without a term is parsed like this.
             None if proposition.hedges.last() == Some(&Hedge::Any) => {}
             None => {
                 let message = format!("`{}` has no term", name.text);
@@ -138,7 +138,7 @@ impl<'m> Validator<'m> {
         outputs.any(|o| o.variable.name == variable.name && o.defuzzifier.takes_numbers())
     }
 
-    /// Suggests an output only where the name is nearly that of one.
+    /// Reports an unknown input. An output is suggested only if its name is similar.
     pub(super) fn unknown_input(&self, name: &str, span: &Range<usize>) -> Diagnostic {
         let inputs = self.inputs.keys().copied();
         match nearest(name, inputs.clone().chain(self.outputs.keys().copied())) {
@@ -149,7 +149,7 @@ impl<'m> Validator<'m> {
 
     pub(super) fn known_output(&mut self, name: &Name) -> Option<&'m Variable> {
         let found = self.outputs.get(name.text.as_str()).copied();
-        // A model without outputs has a finding of its own.
+        // A model without outputs is reported on its own.
         if found.is_none() && !self.outputs.is_empty() {
             let finding = if self.inputs.contains_key(name.text.as_str()) {
                 let message = format!("`{}` is an input; a conclusion sets outputs", name.text);
@@ -165,7 +165,7 @@ impl<'m> Validator<'m> {
     }
 
     pub(super) fn known_term(&mut self, kind: &str, variable: &Variable, term: &Name) {
-        // Terms that could not be read, and an output without any, are findings of their own.
+        // Terms that could not be parsed, and outputs without terms, are reported on their own.
         let is_told = self.unread.contains(&variable.name.as_str())
             || (kind == "output" && variable.terms.is_empty());
         if is_told || variable.terms.iter().any(|t| t.name == term.text) {
@@ -199,8 +199,8 @@ fn unknown<'a>(
     finding
 }
 
-/// A partition with its peaks where the terms of a variable have their constants; `None` where they are not constants that
-/// differ.
+/// Returns a partition whose peaks are the constants of a variable's terms; `None` if the terms are not distinct
+/// constants.
 fn as_partition<'a>(variable: &'a Variable) -> Option<String> {
     let constant = |term: &'a Term| {
         let MembershipFunction::Constant { value } = term.membership_function else {

@@ -1,4 +1,4 @@
-//! Inputs and outputs: ranges, membership functions, what the terms of an output may be.
+//! Validation of inputs and outputs: ranges, membership functions, and the kinds of terms that an output supports.
 
 use alloc::{collections::BTreeSet, format, string::String};
 use core::ops::Range;
@@ -12,14 +12,15 @@ use crate::{
     },
 };
 
-/// Products of degrees and distances within a narrower range lose their digits.
+/// The minimum width of a range. With narrower ranges, products of degrees and distances lose digits.
 const NARROWEST_RANGE: f64 = 1e-250;
 
-/// More samples than this add no accuracy and make an evaluation hang.
+/// The maximum number of samples. More samples do not improve accuracy, and evaluation would take too long.
 const MOST_SAMPLES: usize = 10_000_000;
 
 impl Validator<'_> {
-    /// The range, the membership functions and the heights of an input or output; `what` names it in messages.
+    /// Validates the range, the membership functions and the heights of an input or output; `what` names it in
+    /// messages.
     pub(super) fn variable(&mut self, what: &str, variable: &Variable, spans: &VariableSpans) {
         if !spans.range_unread {
             self.range(what, variable, or(&spans.range, &spans.name));
@@ -57,7 +58,7 @@ impl Validator<'_> {
             let help = "write the least value first, then the greatest";
             self.error("wrong-range", here, message, help);
         } else if !(2.0 * (high - low)).is_finite() {
-            // Twice the width must be a number too, or distances within the range overflow.
+            // Twice the width must be finite too, or distances within the range overflow.
             let message = format!("the range of {what} is too wide");
             self.error(
                 "wrong-range",
@@ -72,7 +73,8 @@ impl Validator<'_> {
         }
     }
 
-    /// Terms of an input are not linear functions, their constants are degrees, and their formulas are over the input alone.
+    /// Requires that terms of an input are not linear functions, that their constants are degrees, and that their
+    /// formulas read only this input.
     pub(super) fn terms_are_sets(&mut self, input: &Variable, spans: &VariableSpans) {
         for (i, term) in input.terms.iter().enumerate() {
             let no_spans = TermSpans::default();
@@ -104,7 +106,7 @@ impl Validator<'_> {
         }
     }
 
-    /// A formula that is a fuzzy set reads its own variable alone.
+    /// Requires that a formula that defines a fuzzy set reads only its own variable.
     pub(super) fn own_formula(
         &mut self,
         what: &str,
@@ -181,7 +183,8 @@ impl Validator<'_> {
         }
     }
 
-    /// A Takagi-Sugeno output has numbers and linear functions as terms, a Mamdani output has fuzzy sets.
+    /// Requires that the terms of a Takagi-Sugeno output are numbers and linear functions, and those of a Mamdani
+    /// output fuzzy sets.
     pub(super) fn consequents_fit(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
         const WEIGHTED: &str = "it needs `defuzzifier: weighted_average` or `weighted_sum`";
         let weighted = output.defuzzifier.takes_numbers();
@@ -247,8 +250,8 @@ impl Validator<'_> {
         }
     }
 
-    /// One error for all constants of a fuzzy output. As fuzzy sets they would be flat, and the output the middle of its range
-    /// whichever rule fires.
+    /// Reports a single error for all constants of a fuzzy output. As fuzzy sets they would be flat, and the output
+    /// would be the middle of its range whichever rule fires.
     fn terms_are_not_numbers(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
         let terms = &output.variable.terms;
         let is_linear = |f: &MembershipFunction| matches!(f, MembershipFunction::Linear { .. });
@@ -256,7 +259,7 @@ impl Validator<'_> {
             .iter()
             .any(|term| is_linear(&term.membership_function))
         {
-            // An error of its own, with the same help.
+            // Linear functions are reported separately, with the same help.
             return;
         }
         let no_spans = TermSpans::default();
@@ -280,7 +283,7 @@ impl Validator<'_> {
         self.error("wrong-term", &here, message, help);
     }
 
-    /// The inputs that a linear function names.
+    /// Validates the inputs that a linear function names.
     pub(super) fn coefficients(
         &mut self,
         what: &str,
@@ -307,7 +310,7 @@ impl Validator<'_> {
         }
     }
 
-    /// What a consequent reads is an input or an output.
+    /// Requires that a name that a consequent reads is an input or an output.
     pub(super) fn is_read(&mut self, name: &str, here: &Range<usize>) {
         if !self.inputs.contains_key(name) && !self.outputs.contains_key(name) {
             let finding = self.unknown_input(name, here);
@@ -315,7 +318,7 @@ impl Validator<'_> {
         }
     }
 
-    /// A term without an area within the range gives an output no value.
+    /// Reports terms without an area within the range; with such a term an output would have no value.
     pub(super) fn terms_have_area(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
         let variable = &output.variable;
         for (i, term) in variable.terms.iter().enumerate() {

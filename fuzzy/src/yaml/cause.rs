@@ -1,11 +1,12 @@
-//! Why a text is not YAML at all: another program's format, a Markdown fence around it, comments of another language.
+//! The reasons for which a text is not YAML at all: the format of another program, a Markdown fence, or comments of
+//! another language.
 
 use alloc::{format, string::String, vec::Vec};
 
 use crate::diagnostic::Diagnostic;
 
-/// The one cause why a text is not read: it is another format, or it has signs around it or in it that YAML lacks. To be asked
-/// only about a text that is not read.
+/// Returns a finding if a text is in another format, or is surrounded by or contains characters that YAML does not
+/// allow. Call this only for texts that could not be parsed.
 pub(super) fn cause(text: &str) -> Option<Diagnostic> {
     let mut at = 0;
     let lines: Vec<(usize, &str)> = text
@@ -45,7 +46,7 @@ pub(super) fn cause(text: &str) -> Option<Diagnostic> {
     )
 }
 
-/// The format of a text that begins with this line.
+/// Returns the format of a text that starts with this line.
 fn program(first: &str) -> Option<&'static str> {
     let folded = first.to_lowercase();
     let begins = |starts: &[&str]| starts.iter().any(|start| folded.starts_with(start));

@@ -1,8 +1,9 @@
-//! YAML: text to [`Node`] and back. The only place that names the YAML library.
+//! Conversion between YAML text and [`Node`]s. This is the only module that uses the YAML library.
 //!
-//! The library is an event parser, not a deserializer: it gives every key, repeated ones included, with its span and its
-//! style. So a finding has the span of a wrong word within a rule within a folded scalar, and all findings of a file are
-//! reported at once. Aliases (`*name`) are expanded here within limits, so that a small file cannot take much memory.
+//! The library is an event parser, not a deserializer: it reports every key, including repeated ones, with its span and
+//! its style. A finding can therefore point to a wrong word in a rule in a folded scalar, and all findings of a file
+//! are reported together. Aliases (`*name`) are expanded here within limits, so that small files cannot use much
+//! memory.
 
 use alloc::{boxed::Box, collections::BTreeMap, string::String, vec::Vec};
 use core::{ops::Range, str::FromStr};
@@ -23,16 +24,18 @@ mod write;
 #[doc(hidden)]
 pub use write::to_text;
 
-/// Bytes of a text; larger ones are refused. 100,000 short rules take less.
+/// The maximum size of a text in bytes; larger texts are rejected. 100,000 short rules fit.
 pub const LARGEST_BYTES: usize = 4_000_000;
 
-/// Lists and mappings nested deeper than this are an error.
+/// The maximum nesting depth of lists and mappings; deeper nesting is an error.
 const DEEPEST: usize = 64;
 
-/// Values that aliases may add to a document, beyond which it is an error; 16 bytes of text count as one.
+/// The maximum number of values that aliases may add to a document; more is an error. 16 bytes of text count as one
+/// value.
 const MOST_FROM_ALIASES: usize = 100_000;
 
-/// Reads one YAML document as a tree. Public for the crate that reads its profiles so; not part of the API.
+/// Parses one YAML document to a tree. It is public for the crate `flagred`, which parses its profiles with it; not
+/// part of the API.
 ///
 /// # Errors
 /// The first syntax error; parsing stops there.
@@ -50,10 +53,10 @@ pub fn read(text: &str) -> Result<Node, Findings> {
     })
 }
 
-/// Reads a rule set in YAML.
+/// Parses a rule set in YAML.
 ///
 /// # Errors
-/// All findings of the file, with line and column, where one of them is an error.
+/// All findings of the file, with line and column, if any of them is an error.
 ///
 /// # Example
 /// ```
@@ -81,7 +84,7 @@ pub fn parse(text: &str) -> Result<Document, Findings> {
     document(&read(text)?, text)
 }
 
-/// The rule set in the tree of a text.
+/// Reads the rule set from the tree of a text.
 pub(crate) fn document(tree: &Node, text: &str) -> Result<Document, Findings> {
     match format::read(tree) {
         Ok(document) => Ok(Document {
@@ -95,7 +98,7 @@ pub(crate) fn document(tree: &Node, text: &str) -> Result<Document, Findings> {
     }
 }
 
-/// A rule set as YAML; [`parse`] reads the same model from it.
+/// Formats a rule set as YAML. [`parse`] reads the same model from it.
 #[must_use]
 pub fn to_string(model: &Model) -> String {
     to_text(&format::write(model))
@@ -104,19 +107,19 @@ pub fn to_string(model: &Model) -> String {
 impl FromStr for Model {
     type Err = Findings;
 
-    /// The model that [`parse`] reads; its warnings are dropped.
+    /// Parses the model with [`parse`]; warnings are discarded.
     fn from_str(text: &str) -> Result<Self, Findings> {
         parse(text).map(|document| document.model)
     }
 }
 
-/// A list or mapping that is not yet at its end.
+/// A list or mapping whose end has not been reached.
 struct Open {
     start: usize,
     end: usize,
     anchor: usize,
     content: Content,
-    /// Values inside, and how deep they lie, for the limits on aliases.
+    /// The number of values inside, and their nesting depth, for the limits on aliases.
     values: usize,
     depth: usize,
 }
@@ -126,7 +129,7 @@ enum Content {
     Mapping(Vec<(Node, Node)>, Option<Node>),
 }
 
-/// A value, how many values it holds and how deep they lie.
+/// A value, with the number of values in it and their nesting depth.
 #[derive(Clone)]
 struct Whole {
     node: Node,
@@ -181,7 +184,7 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
                 let Some(mut ended) = open.pop() else {
                     continue;
                 };
-                // A flow collection ends with its bracket, a block with its last value.
+                // A flow collection ends with its bracket, a block collection with its last value.
                 ended.end = ended.end.max(if bytes.is_empty() { 0 } else { bytes.end });
                 let anchor = ended.anchor;
                 (end(ended), anchor)
@@ -338,7 +341,7 @@ fn scalar(document: &str, value: &str, style: ScalarStyle, bytes: &Range<usize>)
     } else {
         Offsets::Each(table(written, value, style, bytes.start))
     };
-    // Nothing behind a key is handed over as `~` without a place.
+    // A missing value after a key is reported as `~` without a position.
     let text = if bytes.is_empty() { "" } else { value };
     Scalar {
         text: String::from(text),
@@ -347,8 +350,8 @@ fn scalar(document: &str, value: &str, style: ScalarStyle, bytes: &Range<usize>)
     }
 }
 
-/// The span of each character of a scalar's value: both texts have the same characters except for white space, which is
-/// folded and indented, and for escapes in quotes.
+/// Returns the span of each character of a scalar's value. The value and the written text have the same characters,
+/// except that white space is folded and indented, and quoted text may contain escapes.
 fn table(written: &str, value: &str, style: ScalarStyle, start: usize) -> Vec<Letter> {
     let rest = |from: usize| written.get(from..).unwrap_or("");
     let quoted = matches!(style, ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted);
@@ -362,7 +365,7 @@ fn table(written: &str, value: &str, style: ScalarStyle, start: usize) -> Vec<Le
         let length = match (style, first) {
             (ScalarStyle::DoubleQuoted, Some('\\')) => escape(rest(here)),
             (ScalarStyle::SingleQuoted, Some('\'')) => 2,
-            // White space that folds away leaves its place to the character behind it.
+            // For white space that is removed by folding, the following character gets the position.
             _ if c.is_whitespace() && first != Some(c) => 0,
             (_, first) => first.map_or(0, char::len_utf8),
         };
@@ -374,7 +377,7 @@ fn table(written: &str, value: &str, style: ScalarStyle, start: usize) -> Vec<Le
     letters
 }
 
-/// The length of the white space here, with line breaks that are escaped.
+/// Returns the length of the white space at this position, including escaped line breaks.
 fn blank(rest: &str, style: ScalarStyle) -> usize {
     let mut left = rest.trim_start();
     while is_escaped_break(left, style) {
@@ -383,12 +386,13 @@ fn blank(rest: &str, style: ScalarStyle) -> usize {
     rest.len() - left.len()
 }
 
-/// Whether here is a backslash at the end of a line in double quotes: both vanish, with the indentation behind them.
+/// Returns whether there is a backslash at the end of a line in double quotes here; both are removed, with the
+/// following indentation.
 fn is_escaped_break(rest: &str, style: ScalarStyle) -> bool {
     style == ScalarStyle::DoubleQuoted && (rest.starts_with("\\\n") || rest.starts_with("\\\r\n"))
 }
 
-/// The length of the escape here, in double quotes.
+/// Returns the length of the escape at this position in double quotes.
 fn escape(rest: &str) -> usize {
     match rest.chars().nth(1) {
         Some('x') => 4,

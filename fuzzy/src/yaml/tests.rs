@@ -11,7 +11,7 @@ fn scalar_of(node: &Node) -> &Scalar {
     }
 }
 
-/// Every way to write a rule, and where its words stand.
+/// All styles of writing a rule, with the expected positions of its words.
 #[test]
 fn places_in_a_scalar_are_found_in_every_style() {
     for text in [
@@ -109,7 +109,7 @@ fn aliases_stand_for_what_they_name() {
     assert_eq!(entries[0].1, entries[1].1);
 }
 
-/// Any tree, without places.
+/// Any tree, without positions.
 fn any_tree() -> impl Strategy<Value = Node> {
     let leaf = prop_oneof![
         any::<f64>().prop_map(Node::number),
@@ -130,7 +130,7 @@ fn any_tree() -> impl Strategy<Value = Node> {
     })
 }
 
-/// The tree without what only its text has.
+/// Returns the content of the tree, without its positions.
 fn meaning(node: &Node) -> serde_json::Value {
     serde_json::to_value(node).unwrap()
 }

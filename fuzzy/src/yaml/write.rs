@@ -1,13 +1,13 @@
-//! A tree as YAML: short lists and mappings on one line, long ones in a block.
+//! Writing a tree as YAML: short lists and mappings on one line, long ones as blocks.
 
 use alloc::string::String;
 
 use crate::tree::{Node, Scalar, Value};
 
-/// Lines that would grow longer than this are broken into a block.
+/// The maximum length of a line; longer lists and mappings are written as blocks.
 const LINE_WIDTH: usize = 110;
 
-/// The tree as YAML text; reading it again gives the same tree but for the places.
+/// Formats the tree as YAML text. Parsing it gives the same tree, except for the positions.
 #[must_use]
 pub fn to_text(node: &Node) -> String {
     let mut text = String::new();
@@ -15,7 +15,7 @@ pub fn to_text(node: &Node) -> String {
     text
 }
 
-/// Writes what stands behind `key:` or `-`, with the line break behind it.
+/// Writes the value after `key:` or `-`, including the line break.
 fn block(out: &mut String, node: &Node, indent: usize) {
     match &node.value {
         Value::List(items) if !items.is_empty() => {
@@ -41,7 +41,7 @@ fn block(out: &mut String, node: &Node, indent: usize) {
     }
 }
 
-/// Writes a value behind its key: on the same line where it fits, below otherwise.
+/// Writes a value after its key: on the same line if it fits, otherwise below.
 fn nested(out: &mut String, node: &Node, indent: usize, deeper: usize) {
     let mut line = String::new();
     flow(&mut line, node);
@@ -50,7 +50,7 @@ fn nested(out: &mut String, node: &Node, indent: usize, deeper: usize) {
         Value::List(items) => items.is_empty(),
         Value::Mapping(entries) => entries.is_empty(),
     };
-    // The top of a file is always a block: that is what people expect of a rule set.
+    // The top level of a file is always a block, as people expect of a rule set.
     let fits =
         indent > 0 || matches!(&node.value, Value::List(items) if items.iter().all(is_number));
     if is_leaf || (fits && indent + line.len() < LINE_WIDTH && !line.contains('\n')) {
@@ -110,7 +110,7 @@ fn plain_or_quoted(out: &mut String, scalar: &Scalar) {
             '\n' => out.push_str("\\n"),
             '\t' => out.push_str("\\t"),
             '\r' => out.push_str("\\r"),
-            // Line and paragraph separators and the byte order mark would be read as layout.
+            // Line and paragraph separators and the byte order mark would be parsed as layout.
             c if c.is_control()
                 || matches!(
                     c,
@@ -126,7 +126,8 @@ fn plain_or_quoted(out: &mut String, scalar: &Scalar) {
     out.push('"');
 }
 
-/// Whether text can stand without quotes: words that neither YAML nor an older YAML takes for something else.
+/// Returns whether text needs no quotes: it must not be a word that YAML or an older version of YAML interprets
+/// differently.
 fn is_safe(text: &str) -> bool {
     let words = ["true", "false", "null", "yes", "no", "on", "off", "y", "n"];
     text.starts_with(|c: char| c.is_alphabetic() || c == '_')

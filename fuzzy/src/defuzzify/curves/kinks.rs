@@ -1,4 +1,4 @@
-//! Where an aggregated set of curves has a kink or a step.
+//! Finding the kinks and steps of an aggregated set of curves.
 
 use alloc::vec::Vec;
 
@@ -12,16 +12,17 @@ use crate::table::{LEAST_STRENGTH, numeric::root};
 struct Cuts<'a> {
     cuts: &'a mut Vec<f64>,
     most: usize,
-    /// Whether memory was short.
+    /// Whether the memory was exhausted.
     is_full: bool,
-    /// Just inside two cuts next to each other, between which others are added.
+    /// Positions just inside two adjacent cuts, between which further cuts are added.
     between: (f64, f64),
 }
 
 impl Curves {
-    /// Fills `workspace` with the cuts of the aggregated set on the stretch of its runs, from left to right: its ends, kinks and
-    /// steps. Returns whether they are all known: not of formulas, and not where memory is short. A kink may be missed where
-    /// curves meet twice between two cuts. Then the integration takes longer, and is as exact.
+    /// Fills `workspace.cuts` with the cuts of the aggregated set between `from` and `to`, in ascending order: the
+    /// ends, kinks and steps. Returns whether all of them are known. They are not if a term is a formula or the memory
+    /// is exhausted. A kink may also be missed if curves meet twice between two cuts; the integration then takes longer
+    /// but is equally accurate.
     pub(super) fn kinks(
         &self,
         strengths: Strengths<'_>,
@@ -50,7 +51,7 @@ impl Curves {
             }
         });
         let all_known = !cuts.is_full && !self.has_formula;
-        // Between the levels each activated term is smooth.
+        // Each activated term is smooth between the levels.
         let kinks = Kinks::of(joint.aggregation);
         cuts.each_stretch(|cuts, stretch| {
             if kinks == Kinks::None || !steps.take(strengths.strengths.len()) {
@@ -74,7 +75,7 @@ impl Curves {
         !cuts.is_full && !self.has_formula
     }
 
-    /// Cuts where a term passes a level of its implication.
+    /// Adds the values at which a term crosses a level of its implication.
     fn levels(
         &self,
         strengths: Strengths<'_>,
@@ -97,7 +98,7 @@ impl Curves {
         }
     }
 
-    /// Cuts at the kinks and steps of the aggregation.
+    /// Adds the kinks and steps of the aggregation.
     fn crossings(&self, parts: &[Part], kinks: Kinks, cuts: &mut Cuts<'_>) {
         let degree = |part: &Part, x: f64| self.joined(&[*part], Aggregation::Maximum, x);
         let is_line = |part: &Part| part.line.is_some();
@@ -126,11 +127,11 @@ impl Curves {
 }
 
 impl Cuts<'_> {
-    /// Calls `visit` for each stretch between two cuts, before others are added.
+    /// Calls `visit` for each interval between two of the current cuts; `visit` may add cuts.
     fn each_stretch(&mut self, mut visit: impl FnMut(&mut Self, (f64, f64))) {
         for i in 1..self.cuts.len() {
             if let (Some(&a), Some(&b)) = (self.cuts.get(i - 1), self.cuts.get(i)) {
-                // Past a step at the cut.
+                // Beyond a step at the cut.
                 let inside = INSIDE * (b - a);
                 self.between = (a.next_up().max(a + inside), b.next_down().min(b - inside));
                 visit(self, (a, b));
@@ -147,7 +148,7 @@ impl Cuts<'_> {
         }
     }
 
-    /// Adds a cut where a function, which may be a straight line, changes its sign.
+    /// Adds a cut at the sign change of a function, which may be a straight line.
     fn at_sign_change(&mut self, f: impl Fn(f64) -> f64, is_line: bool) {
         let (a, b) = self.between;
         let (fa, fb) = (f(a), f(b));
@@ -159,7 +160,8 @@ impl Cuts<'_> {
         }
     }
 
-    /// The same for a function that may also turn between, and change its sign twice. `slope` is that at `x`, on a stretch of a width.
+    /// Works like `at_sign_change` for a function that may have an extremum in between, and therefore two sign changes.
+    /// `slope` returns its slope at `x`, given the width of the interval.
     fn at_sign_changes(&mut self, f: impl Fn(f64) -> f64, slope: impl Fn(f64, f64) -> f64) {
         let (a, b) = self.between;
         let (fa, fb) = (f(a), f(b));

@@ -5,8 +5,8 @@ use crate::defuzzify::tests::{MINIMUM_MAXIMUM, model};
 use crate::model::{Defuzzifier, MembershipFunction};
 use crate::table::ClosedForm;
 
-/// The centroid of the maximum of triangles `(left, peak, right)` cut at their firing strengths, from a value at which nothing
-/// bends to the next one.
+/// Returns the centroid of the maximum of triangles `(left, peak, right)` cut at their firing strengths, integrated
+/// between the values at which the set has corners.
 fn centroid_between_bends((low, high): (f64, f64), terms: &[([f64; 3], f64)]) -> f64 {
     let degree = |[left, peak, right]: [f64; 3], x: f64| {
         let (rising, falling) = ((x - left) / (peak - left), (right - x) / (right - peak));
@@ -23,7 +23,7 @@ fn centroid_between_bends((low, high): (f64, f64), terms: &[([f64; 3], f64)]) ->
             bends.extend([left + h * (peak - left), right - h * (right - peak)]);
         }
         for ([other, top, end], _) in terms {
-            // A flank through (a, 0) with the width w crosses the one through (b, 0) with the width v.
+            // Finds the crossing of a flank through (a, 0) with the width w, and one through (b, 0) with the width v.
             for (a, w) in [(left, peak - left), (right, peak - right)] {
                 for (b, v) in [(other, top - other), (end, top - end)] {
                     bends.push((b * w - a * v) / (w - v));
@@ -37,7 +37,7 @@ fn centroid_between_bends((low, high): (f64, f64), terms: &[([f64; 3], f64)]) ->
     for ends in bends.windows(2) {
         let (from, to) = (ends[0], ends[1]);
         let (middle, width) = (0.5 * (from + to), to - from);
-        // Simpson's rule is exact for what is straight, and for that times x.
+        // Simpson's rule is exact for linear functions, and for their product with x.
         let (a, b) = (set(from), set(to));
         area += width * 0.5 * (a + b);
         moment += width * (a * from + 2.0 * (a + b) * middle + b * to) / 6.0;

@@ -1,4 +1,4 @@
-//! Where two flanks cross, whatever the firing strengths of their terms are.
+//! The crossings of two flanks for any firing strengths of their terms.
 
 use alloc::{vec, vec::Vec};
 
@@ -6,7 +6,7 @@ use super::{degree, stretches::LEVEL};
 use crate::table::numeric::root;
 use crate::table::{Flank, Kind};
 
-/// Two flanks where both are.
+/// Two flanks on the interval that both cover.
 pub(super) struct Couple<'f> {
     a: &'f Flank,
     b: &'f Flank,
@@ -14,7 +14,7 @@ pub(super) struct Couple<'f> {
     pub(super) to: f64,
 }
 
-/// Points at which two flanks that run in the same direction are compared, besides their cuts.
+/// The number of points at which two flanks with the same direction are compared, in addition to their cuts.
 const COMPARED: usize = 24;
 
 impl<'f> Couple<'f> {
@@ -27,7 +27,7 @@ impl<'f> Couple<'f> {
         }
     }
 
-    /// Adds the cuts that make the two cross at most at cuts (minimum), or at most once between two (product).
+    /// Adds cuts such that the two flanks cross only at cuts (minimum), or at most once between two cuts (product).
     pub(super) fn cuts(&self, seeds: [&[f64]; 2], scales: bool, cuts: &mut Vec<f64>) {
         let direction = |flank: &Flank| match () {
             () if flank.is_level() => 0,
@@ -96,7 +96,8 @@ impl<'f> Couple<'f> {
     }
 }
 
-/// Where a function with one maximum (or minimum) between two values has it: by the golden section, to a part in a million.
+/// Returns the extremum of a function with one maximum (or minimum) between two values, by golden-section search, to a
+/// relative accuracy of one in a million.
 fn turning_point(from: f64, to: f64, is_maximum: bool, f: impl Fn(f64) -> f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let f = |x: f64| if is_maximum { f(x) } else { -f(x) };

@@ -1,4 +1,4 @@
-//! Terms cut into stretches that only rise, only fall or are level, and the knots of curved ones.
+//! Splitting terms into stretches that only rise, only fall or are level, and computing the knots of curved stretches.
 
 use alloc::{vec, vec::Vec};
 
@@ -10,14 +10,14 @@ use crate::table::{Flank, Knot};
 
 /// A part of a term that only rises, only falls or is level.
 pub(crate) struct Stretch {
-    /// Its ends, and the cuts between.
+    /// The ends of the stretch, and the cuts between them.
     pub(super) cuts: Vec<f64>,
     pub(super) left: f64,
     pub(super) right: f64,
     pub(super) is_curved: bool,
 }
 
-/// The corners of a term; `None` if it is curved.
+/// Returns the corners of a term; `None` if it is curved.
 pub(crate) fn corners(term: &Term) -> Option<Vec<(f64, f64)>> {
     let mut corners = term.membership_function.corners()?;
     for corner in &mut corners {
@@ -26,7 +26,7 @@ pub(crate) fn corners(term: &Term) -> Option<Vec<(f64, f64)>> {
     Some(corners)
 }
 
-/// The stretches of a straight term within the range, without those where it is 0.
+/// Returns the stretches of a straight term within the range, except those where it is 0.
 pub(crate) fn straight(corners: &[(f64, f64)], low: f64, high: f64) -> Vec<Stretch> {
     let mut cuts: Vec<f64> = corners.iter().map(|corner| corner.0).collect();
     cuts.retain(|x| low < *x && *x < high);
@@ -48,7 +48,7 @@ pub(crate) fn straight(corners: &[(f64, f64)], low: f64, high: f64) -> Vec<Stret
         .collect()
 }
 
-/// The degrees of a polyline just inside the ends of an interval without corners.
+/// Returns the degrees of a polyline just inside the ends of an interval without corners.
 pub(in crate::defuzzify) fn limits(corners: &[(f64, f64)], from: f64, to: f64) -> (f64, f64) {
     let mut before: Option<(f64, f64)> = None;
     for &corner in corners {
@@ -74,13 +74,13 @@ fn on_line(a: (f64, f64), b: (f64, f64), x: f64) -> f64 {
     }
 }
 
-/// A curve whose degrees differ by less over a stretch is level there.
+/// The difference of degrees below which a stretch of a curve counts as level.
 pub(super) const LEVEL: f64 = 4e-16;
 
 pub(super) fn curved(term: &Term, low: f64, high: f64) -> Vec<Stretch> {
     let f = |x: f64| term.membership(x);
     let cuts = monotone(&term.membership_function, low, high);
-    // Just inside, past a step at the cut.
+    // Just inside, beyond a step at the cut.
     let inside = |x: f64, next: f64| {
         let (here, there) = (f(x), f(next));
         if libm::fabs(here - there) > 1e-9 {
@@ -121,7 +121,7 @@ pub(super) fn curved(term: &Term, low: f64, high: f64) -> Vec<Stretch> {
     stretches
 }
 
-/// The knots of a curved flank, so close to each other that Gauss-Legendre is exact between them.
+/// Returns the knots of a curved flank, so close to each other that Gauss-Legendre quadrature is exact between them.
 pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec<Knot>> {
     let mut cuts = cuts.to_vec();
     if flank.right < flank.left {
@@ -138,7 +138,7 @@ pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec
     };
     let mut knots = vec![foot];
     let mut sum = foot;
-    // The next stretch from the foot is the last one.
+    // A stack; the stretch next to the foot is on top.
     let mut open: Vec<(f64, f64)> = cuts
         .iter()
         .zip(cuts.iter().skip(1))
@@ -146,7 +146,7 @@ pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec
         .collect();
     open.reverse();
     while let Some((a, b)) = open.pop() {
-        // Not in the middle: a symmetric kink there would go unseen.
+        // Not at the middle, where a symmetric kink would not be detected.
         let middle = a + 0.43 * (b - a);
         let (whole, left, right) = (integral(a, b), integral(a, middle), integral(middle, b));
         let halves = left.0 + right.0;
@@ -163,7 +163,7 @@ pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec
         if error <= 4e-15 * known || libm::fabs(b - a) <= narrowest {
             add(b, whole);
         } else if error <= 1e-11 * known {
-            // The parts are exact to 0.57^16 of that.
+            // The error of the parts is 0.57^16 of that.
             add(middle, left);
             add(b, right);
         } else {
@@ -176,14 +176,14 @@ pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec
     Some(fewer(knots, |a, b| integral(a, b).0))
 }
 
-/// Leaves out knots that are not needed.
+/// Removes knots that are not needed.
 fn fewer(knots: Vec<Knot>, area: impl Fn(f64, f64) -> f64) -> Vec<Knot> {
     let mut kept: Vec<Knot> = Vec::new();
     let mut last: Option<Knot> = None;
     for knot in knots {
         match (kept.last(), last) {
             (Some(from), Some(last)) => {
-                // The tail is asked for anywhere up to the knot, and a symmetric kink cancels at the knot itself.
+                // Tails may end anywhere before the knot, and the error of a symmetric kink cancels at the knot itself.
                 let agree = [0.37, 0.71, 1.0].into_iter().all(|part| {
                     let x = last.x + part * (knot.x - last.x);
                     let known = last.area - from.area + area(last.x, x);

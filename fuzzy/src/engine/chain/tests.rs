@@ -21,7 +21,8 @@ fn values(engine: &Engine, inputs: &[f64]) -> Vec<Option<f64>> {
     outcomes.iter().map(|outcome| outcome.value()).collect()
 }
 
-/// A partition, and triangles and rectangles whose areas and centres are plain. The later output stands first.
+/// A partition, and triangles and rectangles with simple areas and centres. The output of the later stage is listed
+/// first.
 const FAN: &str = "
 fuzzy: 1
 name: fan
@@ -41,7 +42,7 @@ rules:
 fn two_stages_by_hand() {
     let engine = engine(FAN);
     let outcomes = engine.evaluate(&[3.0]).unwrap();
-    // comfort = 0.7 * 7.5 + 0.3 * 2.5 = 6, which is good to (6 - 5) / 2.5 = 0.4
+    // comfort = 0.7 * 7.5 + 0.3 * 2.5 = 6, whose degree in `good` is (6 - 5) / 2.5 = 0.4
     let value = |i: usize| outcomes[i].value().unwrap();
     assert!((value(1) - 6.0).abs() < 1e-12);
     // fan = (0.4 * 20 + 0.5 * 0.6 * 80) / (0.4 + 0.5 * 0.6)
@@ -70,13 +71,13 @@ rules: [IF level IS any THEN need IS by_level AND pump IS by_need]
     );
     assert_eq!(values(&engine, &[6.0]), [Some(2.0), Some(26.0)]);
     assert!(!engine.evaluate(&[6.0]).unwrap()[1].clamped);
-    // A Takagi-Sugeno output is not clamped, an input of a rule is.
+    // The value of a Takagi-Sugeno output is not clamped, but it is clamped as an input of a rule.
     assert_eq!(values(&engine, &[2.0]), [Some(6.0), Some(42.0)]);
     let outcomes = engine.evaluate(&[2.0]).unwrap();
     assert_eq!((outcomes[0].clamped, outcomes[1].clamped), (false, true));
 }
 
-/// `x` says `a` below 4, `a` says `b`, `b` and `x` say `c`.
+/// `x` below 4 determines `a`, `a` determines `b`, and `b` and `x` determine `c`.
 fn three(a: &str, c: &str) -> Engine {
     engine(&alloc::format!(
         "
@@ -101,7 +102,7 @@ rules:
 fn what_reads_an_unknown_output_is_unknown() {
     let engine = three("undefined", "{value: 0.5}");
     assert!(values(&engine, &[2.0]).iter().all(Option::is_some));
-    // `b` and `c` have a default value and `c` a rule about `x`, but what they rest on is not known.
+    // `b` and `c` have default values, and `c` has a rule about `x`, but the outputs they read are undefined.
     let outcomes = engine.evaluate(&[5.0]).unwrap();
     assert_eq!(outcomes[..], [Outcome::UNDEFINED; 4]);
     let explanation = engine.explain(&[5.0]).unwrap();
@@ -173,7 +174,7 @@ fn a_circle_is_refused_with_its_path() {
     );
 }
 
-/// A model over `x`, `y` and what it reads, with conclusions about one output.
+/// A model over `inputs` with conclusions about one output.
 fn any_stage(
     inputs: &'static [&'static str],
     output: &'static str,
@@ -268,7 +269,7 @@ fn any_operators() -> impl Strategy<Value = Operators> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// One chained model against two models whose values are handed over here.
+    /// Compares one model with a chain to two models with the value passed by hand.
     #[test]
     fn a_chain_has_the_bits_of_two_models_in_a_row(
         mut first in any_stage(&["x", "y"], "mid"),
@@ -278,7 +279,7 @@ proptest! {
         points in prop::collection::vec((-1.0..=11.0f64, -1.0..=11.0f64), 1..10),
     ) {
         (first.operators, second.operators) = (operators, operators);
-        // One meaning of each variable.
+        // Each variable must have the same definition in both.
         second.inputs.truncate(0);
         second.inputs.extend(first.inputs.iter().cloned());
         second.inputs.push(first.outputs[0].variable.clone());
@@ -328,7 +329,7 @@ proptest! {
     }
 }
 
-/// The rule that raises the fan most is about the comfort, and that one holds by what a rule says of the heat.
+/// The rule that raises the fan most reads the comfort; the rule about comfort reads the heat.
 #[test]
 fn the_rule_that_raises_an_output_is_found_through_the_outputs_it_reads() {
     let engine = engine(FAN);
@@ -346,7 +347,7 @@ fn the_rule_that_raises_an_output_is_found_through_the_outputs_it_reads() {
         (place, why.rule, why.input, &*why.term),
         (3, 1, 2, "NOT good")
     );
-    // Low heat is the stronger rule, but it says that the comfort is good.
+    // The rule for low heat is stronger, but it concludes that the comfort is good.
     let place = engine.concluded_by(&mut scratch, &[3.0], why).unwrap();
     let why = of_place(place);
     assert_eq!((place, why.rule, why.input, &*why.term), (1, 3, 0, "high"));
@@ -354,7 +355,7 @@ fn the_rule_that_raises_an_output_is_found_through_the_outputs_it_reads() {
     assert_eq!(engine.raised_by(&mut scratch, &[f64::NAN], 0, fan), None);
 }
 
-/// The outcomes of the plain arrays of a chain; `None` where an output has no closed form.
+/// Returns the outcomes of the plain arrays of a chain; `None` if an output has no closed form.
 fn of_arrays(engine: &Engine, inputs: &[f64]) -> Option<Vec<Outcome>> {
     let chain = engine.chain()?;
     assert_eq!(chain.check(inputs.len()), Ok(()));

@@ -1,8 +1,10 @@
-//! Single evaluations of a small rule set of two inputs, of which at most two terms each overlap: the commonest one.
+//! Single evaluations of small rule sets with two inputs, of which at most two terms each overlap. This is the most
+//! common kind.
 //!
-//! The inputs' intervals cut their plane into regions. In each, two terms of either input hold, so four cells of the table, and
-//! their rules act on four firing strengths at most. All that an evaluation reads of a region stands together, in the order of
-//! vectors. The operations and their order are those of the table, and so are the bits.
+//! The intervals of the two inputs divide their plane into regions. In each region two terms of either input can be
+//! above 0, so an evaluation visits four cells of the table, and their rules act on at most four firing strengths. All
+//! data of a region is contiguous and in the order of vectors. The operations and their order are those of the table,
+//! so the results are bitwise equal.
 
 use alloc::vec::Vec;
 
@@ -21,13 +23,14 @@ pub(in super::super) struct Plane {
     pub(super) sides: [Side; 2],
     /// The number of intervals of the second input.
     pub(super) columns: usize,
-    /// The regions of the first interval of the first input, then those of its second.
+    /// The regions, row by row: those of the first interval of the first input, then those of its second interval, and
+    /// so on.
     pub(super) regions: Vec<Region>,
-    /// A firing strength below it counts as 0.
+    /// The least firing strength: smaller ones count as 0.
     pub(super) least: f64,
     pub(super) and: And,
     pub(super) output: Output,
-    /// How firing strengths become a value.
+    /// The closed form, which reduces the firing strengths to a value.
     pub(super) form: ClosedForm,
 }
 
@@ -39,27 +42,28 @@ pub(super) struct Side {
     pub(super) cuts: Cuts,
 }
 
-/// The numbers of an interval of each input.
+/// The numbers of a region: one interval of each input.
 ///
-/// The four lines are two of the first input, then two of the second. The four cells are the first line of the first input with
-/// the first of the second, the second with the first, the first with the second, and the second with the second. The four
-/// slots are the firing strengths that the cells act on, ascending; those that are left over are 0.
+/// There are four lines: two of the first input, then two of the second. There are four cells, in this order: the first
+/// line of the first input with the first of the second, the second with the first, the first with the second, and the
+/// second with the second. There are four slots for the firing strengths that the cells act on, in ascending order;
+/// unused slots are 0.
 #[derive(Debug, Clone)]
 pub(super) struct Region {
     pub(super) lines: Lines,
-    /// Of each cell: the weight of its rule.
+    /// The weight of the rule of each cell.
     pub(super) weights: [f64; 4],
-    /// Of each cell, for each slot: infinite where it acts on it, else 0.
+    /// For each cell and slot: infinity if the cell acts on the slot, else 0.
     pub(super) acts: [[f64; 4]; 4],
-    /// Of each slot: the numbers of the closed form, as in [`Pair`](crate::table::Pair), [`Moment`](crate::table::Moment) and
-    /// [`Consequent`](crate::table::Consequent).
+    /// For each slot, the numbers of the closed form, as in [`Pair`](crate::table::Pair),
+    /// [`Moment`](crate::table::Moment) and [`Consequent`](crate::table::Consequent).
     pub(super) numbers: [[f64; 4]; 7],
-    /// For each set of cells, as bits: the first rule in the model of those of the cells.
+    /// For each subset of cells, encoded as bits: the smallest rule index of these cells.
     pub(super) first_rules: [u32; 16],
 }
 
 impl Plane {
-    /// [`Engine::evaluate_with`](crate::Engine::evaluate_with).
+    /// Works like [`Engine::evaluate_with`](crate::Engine::evaluate_with).
     #[inline(always)]
     pub(in super::super) fn evaluate(&self, inputs: &[f64; 2], outcome: &mut Outcome) {
         fearless_simd::dispatch!(self.level, simd => self.evaluate_by(simd, inputs, outcome));
@@ -68,15 +72,15 @@ impl Plane {
     #[inline(always)]
     fn evaluate_by<S: Simd>(&self, simd: S, inputs: &[f64; 2], outcome: &mut Outcome) {
         let [first, second] = &self.sides;
-        // NaN becomes the upper end.
+        // NaN is replaced by the upper end.
         let near = |x: f64, side: &Side| larger(smaller(x, side.high), side.low);
         let (x, y) = (near(inputs[0], first), near(inputs[1], second));
         let clamped = (x != inputs[0]) | (y != inputs[1]);
-        // What is not finite is outside, which is rare.
+        // Values that are not finite are outside the range, which is rare.
         let infinite = clamped && !(inputs[0].is_finite() && inputs[1].is_finite());
         let (row, column) = (first.cuts.interval(simd, x), second.cuts.interval(simd, y));
         let Some(region) = self.regions.get(row * self.columns + column) else {
-            // There is one for each two intervals.
+            // Unreachable: there is a region for each pair of intervals.
             *outcome = Outcome::UNDEFINED;
             return;
         };
@@ -100,7 +104,7 @@ impl Plane {
         *outcome = results.outcome(0);
     }
 
-    /// The value; NaN where no rule fired.
+    /// Returns the value; NaN if no rule fired.
     #[inline(always)]
     fn value<S: Simd>(&self, simd: S, region: &Region, strengths: f64x4<S>, at: [f64; 2]) -> f64 {
         let output = &self.output;
@@ -125,7 +129,7 @@ impl Plane {
                 let averages = self.form == ClosedForm::WeightedAverage;
                 output.weighted(if averages { sum / total } else { sum }, total)
             }
-            // No plane has these forms.
+            // A plane never has these forms.
             ClosedForm::Integrated
             | ClosedForm::Tsukamoto
             | ClosedForm::Cut
@@ -136,7 +140,7 @@ impl Plane {
 }
 
 impl Region {
-    /// What each cell adds to the slots.
+    /// Returns the contribution of each cell to the slots.
     #[inline(always)]
     fn parts<S: Simd>(&self, simd: S, strengths: f64x4<S>) -> [f64x4<S>; 4] {
         let strengths = strengths.to_array();
@@ -144,21 +148,21 @@ impl Region {
         [part(0), part(1), part(2), part(3)]
     }
 
-    /// The largest firing strength of each slot.
+    /// Returns the largest firing strength of each slot.
     #[inline(always)]
     fn largest<S: Simd>(&self, simd: S, strengths: f64x4<S>) -> f64x4<S> {
         let [a, b, c, d] = self.parts(simd, strengths);
         a.max(b).max(c.max(d))
     }
 
-    /// The sum of the firing strengths of each slot.
+    /// Returns the sum of the firing strengths of each slot.
     #[inline(always)]
     fn sums<S: Simd>(&self, simd: S, strengths: f64x4<S>) -> f64x4<S> {
         let [a, b, c, d] = self.parts(simd, strengths);
         a + b + c + d
     }
 
-    /// The area and moment of the maximum of terms cut at their heights.
+    /// Returns the area and the moment of the maximum of the terms, each cut at its height.
     #[inline(always)]
     fn cut<S: Simd>(&self, simd: S, heights: f64x4<S>) -> (f64, f64) {
         let h = heights;
@@ -172,7 +176,7 @@ impl Region {
         (sum(areas), sum(moments))
     }
 
-    /// The area and moment of the maximum of terms scaled by their heights.
+    /// Returns the area and the moment of the maximum of the terms, each scaled by its height.
     #[inline(always)]
     fn scaled<S: Simd>(&self, simd: S, heights: f64x4<S>) -> (f64, f64) {
         let (h, right) = (heights, right_of(simd, heights));
@@ -187,27 +191,27 @@ impl Region {
         )
     }
 
-    /// The weighted sum of the consequents, and that of the weights.
+    /// Returns the weighted sum of the consequents, and the sum of the weights.
     #[inline(always)]
     fn weighted<S: Simd>(&self, simd: S, weights: f64x4<S>, [x, y]: [f64; 2]) -> (f64, f64) {
         let [constant, of_x, of_y, ..] = &self.numbers;
         let four = |numbers| four(simd, numbers);
         let z = four(constant) + four(of_x) * splat(simd, x) + four(of_y) * splat(simd, y);
-        // It may be infinite where the rule does not fire.
+        // The consequent may be infinite where the rule does not fire.
         let zero = splat(simd, 0.0);
         let z = weights.simd_gt(zero).select(z, zero);
         (sum(weights * z), sum(weights))
     }
 }
 
-/// For each slot, the height of the next one.
+/// Returns, for each slot, the height of the next slot.
 #[inline(always)]
 fn right_of<S: Simd>(simd: S, heights: f64x4<S>) -> f64x4<S> {
     let [_, b, c, d] = heights.to_array();
     four(simd, &[b, c, d, 0.0])
 }
 
-/// In the order of the slots.
+/// Returns the sum, added in the order of the slots.
 #[inline(always)]
 fn sum<S: Simd>(numbers: f64x4<S>) -> f64 {
     let [a, b, c, d] = numbers.to_array();

@@ -1,4 +1,4 @@
-//! From a compiled table to the regions of its plane.
+//! Conversion of a compiled table to the regions of a plane.
 
 use alloc::vec::Vec;
 use core::array::from_fn;
@@ -14,7 +14,7 @@ use crate::table::{
 };
 
 impl Plane {
-    /// `None` where the table is another one.
+    /// Returns `None` if the table is not a plane.
     pub(in super::super) fn new(table: &OwnedTable) -> Option<Self> {
         let ([first, second], [_, _], [output]) = (&*table.axes, &*table.inputs, &*table.outputs)
         else {
@@ -62,7 +62,7 @@ impl Plane {
                 let [c, d] = lines(table, second, column)?;
                 let cell = |one: &Line, other: &Line| {
                     let action = actions.get((one.literal + other.literal) as usize)?;
-                    // Rules of weight 0 act on nothing, nor do cells without a rule.
+                    // Neither rules of weight 0 nor cells without a rule act on anything.
                     Some((*action, action.weight > 0.0))
                 };
                 let cells = [cell(&a, &c)?, cell(&b, &c)?, cell(&a, &d)?, cell(&b, &d)?];
@@ -82,7 +82,7 @@ impl Plane {
     }
 }
 
-/// An input of the table; `None` where it has too many cuts.
+/// Returns an input of the table; `None` if it has too many cuts.
 fn side(table: &OwnedTable, axis: &Axis) -> Option<Side> {
     let input = table.inputs.get(axis.input as usize)?;
     Some(Side {
@@ -92,7 +92,7 @@ fn side(table: &OwnedTable, axis: &Axis) -> Option<Side> {
     })
 }
 
-/// What the closed form knows of the firing strengths.
+/// The arrays with the numbers of the closed form.
 struct Numbers<'t> {
     pairs: &'t [Pair],
     moments: &'t [Moment],
@@ -102,7 +102,7 @@ struct Numbers<'t> {
 }
 
 impl Numbers<'_> {
-    /// The region of four lines and four cells, each with whether it acts.
+    /// Returns the region of four lines and four cells; each cell has a flag that is set if it acts.
     fn region(&self, lines: [Line; 4], cells: [(Action, bool); 4]) -> Option<Region> {
         let acting = cells.iter().filter(|(_, acts)| *acts);
         let mut slots: Vec<u32> = acting.map(|(action, _)| action.strength).collect();
@@ -137,8 +137,8 @@ impl Numbers<'_> {
         })
     }
 
-    /// The numbers of a firing strength, where that of the next one is or is not in the region; `None` where the plane has no
-    /// place for them.
+    /// Returns the numbers of a firing strength; `None` if a plane cannot represent them. `next_is_there` is true if
+    /// the next firing strength is in the same region.
     fn of(&self, strength: usize, next_is_there: bool) -> Option<[f64; 7]> {
         match self.form {
             ClosedForm::Partition | ClosedForm::ScaledPartition => {
@@ -157,7 +157,8 @@ impl Numbers<'_> {
                 let span = consequent.first as usize..consequent.end as usize;
                 let coefficients = self.coefficients.get(span)?;
                 let mut of = [0.0; 2];
-                // In the order of the inputs, each at most once: another order may give other bits.
+                // The coefficients must be in the order of the inputs, each input at most once: another order may give
+                // different bits.
                 if !coefficients.is_sorted_by(|a, b| a.input < b.input)
                     || consequent.first_code < consequent.end_code
                 {

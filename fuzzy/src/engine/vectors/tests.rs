@@ -1,4 +1,4 @@
-//! Vectors and the table's own code are two ways to the same bits.
+//! The vector code and the table code give bitwise equal results.
 
 use alloc::format;
 use alloc::vec::Vec;
@@ -14,7 +14,7 @@ use crate::table::{Partial, Scratch, Strongest};
 
 const TERMS: [&str; 4] = ["a", "b", "c", "d"];
 
-/// All rules of inputs with four terms each, with weights that repeat and are 0 at times; conclusions by a seed.
+/// All rules of inputs with four terms each. Weights repeat and are sometimes 0; `seed` selects the conclusions.
 fn model(inputs: usize, kind: usize, multiplies: bool, weights: &[u8], seed: usize) -> Model {
     let mut power = Variable::new("y", -3.0, 7.0);
     if kind == 3 {

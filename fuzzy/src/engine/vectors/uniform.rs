@@ -10,14 +10,14 @@ use crate::engine::arrays::OwnedTable;
 use crate::table::operators::larger;
 use crate::table::{Arrays as _, Conjunctions, Line, Strongest, has_cells_alone};
 
-/// A uniform table that has an action a cell, on one output.
+/// A uniform table with one action per cell and one output.
 #[derive(Debug, Clone)]
 pub(in super::super) struct Uniform {
     level: Level,
     axes: Vec<Axis>,
     cells: Vec<Cell>,
     and: And,
-    /// A firing strength below it counts as 0.
+    /// The least firing strength: smaller ones count as 0.
     least: f64,
 }
 
@@ -30,7 +30,7 @@ struct Axis {
     intervals: Vec<[Line; 2]>,
 }
 
-/// What the rule of a cell does: [`Action`](crate::table::Action).
+/// The action of the rule of a cell: see [`Action`](crate::table::Action).
 #[derive(Debug, Clone)]
 struct Cell {
     weight: f64,
@@ -38,13 +38,13 @@ struct Cell {
     rule: u32,
 }
 
-/// The most cells that a value of each input visits.
+/// The maximum number of cells that an evaluation visits.
 const MOST_VISITED: usize = 16;
-/// The most firing strengths.
+/// The maximum number of firing strengths.
 const MOST_STRENGTHS: usize = 16;
 
 impl Uniform {
-    /// `None` where the table is another one.
+    /// Returns `None` if the table is not supported.
     pub(in super::super) fn new(table: &OwnedTable) -> Option<Self> {
         let Conjunctions::Uniform {
             actions_a_cell: 1,
@@ -86,7 +86,7 @@ impl Uniform {
         })
     }
 
-    /// Writes the firing strengths at the values of the inputs, and returns the strongest rule.
+    /// Computes the firing strengths at the values of the inputs, and returns the strongest rule.
     #[inline(always)]
     pub(in super::super) fn fire(
         &self,
@@ -99,7 +99,7 @@ impl Uniform {
             _ => None,
         });
         strongest.unwrap_or_else(|| {
-            // There is a line for each interval and a cell for all lines.
+            // Unreachable: there is a line for each interval, and a cell for each combination of lines.
             strengths.fill([0.0]);
             Strongest::NONE
         })
@@ -140,7 +140,7 @@ impl Uniform {
             vectors *= 2;
         }
         let mut top = splat(simd, 0.0);
-        // Cells next to one another often act on the same strength, and would wait for each other.
+        // Adjacent cells often act on the same strength; separate banks avoid waiting for the previous addition.
         let mut banks = [[0.0; MOST_STRENGTHS]; 4];
         for (i, degrees) in visited.iter_mut().enumerate().take(vectors) {
             let cell = |of: usize| self.cells.get(cells[4 * i + of] as usize);

@@ -1,4 +1,4 @@
-//! The parts that JSON Schemas are made of.
+//! Building blocks of JSON Schemas.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -57,7 +57,7 @@ pub(super) fn list(description: &str, items: Node, least: Option<usize>) -> Node
     Node::mapping(entries)
 }
 
-/// A list of so many numbers.
+/// Returns the schema of a list with a number of numbers.
 pub(super) fn numbers(description: &str, count: usize) -> Node {
     let count = || Node::number(count as f64);
     about(
@@ -71,7 +71,7 @@ pub(super) fn numbers(description: &str, count: usize) -> Node {
     )
 }
 
-/// A mapping of known keys and no others.
+/// Returns the schema of a mapping that allows only known keys.
 pub(super) fn object<'a>(
     description: &str,
     properties: impl IntoIterator<Item = (&'a str, Node)>,
@@ -99,7 +99,7 @@ pub(super) fn any_of(description: &str, options: Vec<Node>) -> Node {
     about(description, [("anyOf", Node::list(options))])
 }
 
-/// A mapping of names the author chooses.
+/// Returns the schema of a mapping of names that the author chooses.
 pub(super) fn named(description: &str, of: &str) -> Node {
     let entries = [
         ("type", Node::text("object")),
@@ -108,7 +108,7 @@ pub(super) fn named(description: &str, of: &str) -> Node {
     about(description, entries)
 }
 
-/// That exactly one of two keys is there.
+/// Returns the requirement that exactly one of two keys is present.
 pub(super) fn one_of<const N: usize>(keys: [&str; N]) -> (String, Node) {
     let one = |key: &str| Node::mapping([("required", Node::list([Node::text(key)].into()))]);
     entry("oneOf", Node::list(keys.map(one).into()))

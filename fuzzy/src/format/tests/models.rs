@@ -1,4 +1,4 @@
-//! Models at random, for property tests.
+//! Random models for property tests.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -11,7 +11,7 @@ use crate::{
     rule::{self, Condition},
 };
 
-/// Numbers as authors write them, and any others.
+/// Generates numbers as authors write them, and arbitrary ones.
 fn position() -> impl Strategy<Value = f64> {
     prop_oneof![3 => (-100..100i32).prop_map(|x| f64::from(x) / 10.0), 1 => -1e9..1e9f64, 1 => -1e-9..1e-9f64]
 }
@@ -68,7 +68,7 @@ pub(super) fn any_text() -> impl Strategy<Value = String> {
     prop_oneof!["[a-z_]{1,8}", "\\PC{1,8}", "[ -~\\n]{1,6}"]
 }
 
-/// A variable, some of whose terms may lie outside its range.
+/// Generates a variable; some of its terms may be outside its range.
 fn any_variable() -> impl Strategy<Value = Variable> {
     let terms = prop_oneof![
         vec(any_set().prop_map(Some), 1..4),
@@ -115,7 +115,7 @@ fn any_variable() -> impl Strategy<Value = Variable> {
         })
 }
 
-/// A finite number, near the ranges that variables have or anywhere.
+/// Generates finite numbers, near the usual ranges or arbitrary.
 pub(super) fn any_finite() -> impl Strategy<Value = f64> {
     prop_oneof![3 => position(), 1 => any::<f64>().prop_filter("finite", |x| x.is_finite())]
 }
@@ -338,7 +338,7 @@ pub(super) fn any_model() -> impl Strategy<Value = Model> {
         )
 }
 
-/// Models that mean something.
+/// Generates valid models.
 pub(super) fn valid_model() -> impl Strategy<Value = Model> {
     any_model().prop_filter("compiles", |model| Engine::new(model).is_ok())
 }

@@ -26,7 +26,7 @@ impl Prepared<'_> {
                 before += area;
                 continue;
             }
-            // The areas seen from the left end of the section, and from its right end.
+            // The cumulative area from the left end of the section, and from its right end.
             let (mut left, mut right) = (before, before + area);
             let mut value = None;
             self.parts(section, strengths, |part| {
@@ -44,20 +44,20 @@ impl Prepared<'_> {
                     right -= part.area;
                 }
             });
-            // Between two parts by rounding.
+            // By rounding, the value lies between two parts.
             return value.or(Some(section.to));
         }
         self.sections.last().map(|section| section.to)
     }
 
-    /// Up to where a part has this area.
+    /// Returns the value up to which a part has a given area.
     fn where_area_is(&self, part: &Part<'_>, area: f64) -> f64 {
         let units = area / part.degree;
         let Some(flank) = part.flank else {
             return smaller(part.to, part.from + units * self.measure.unit);
         };
         if flank.kind == Kind::PIECEWISE {
-            // units = left d + slope d^2 / 2, solved for d without cancellation.
+            // Solve units = left d + slope d^2 / 2 for d without cancellation.
             let (left, right) = (flank.degree(part.from), flank.degree(part.to));
             let slope = (right - left) * (self.measure.unit / (part.to - part.from));
             let root = libm::sqrt(larger(0.0, left * left + 2.0 * slope * units));
@@ -70,7 +70,7 @@ impl Prepared<'_> {
         self.newton((part.from, part.to), rest, |x| flank.degree(x))
     }
 
-    /// The root of a rising function, given its derivative in units of length.
+    /// Returns the root of a rising function, given its derivative in units of length.
     fn newton(
         &self,
         (from, to): (f64, f64),
@@ -89,7 +89,7 @@ impl Prepared<'_> {
             let newton = x - y / derivative(x) * self.measure.unit;
             let inside = from < newton && newton < to;
             let next = if inside { newton } else { 0.5 * (from + to) };
-            // Another step would be the square of this one.
+            // Convergence is quadratic, so the error of the next step would be about the square of this one.
             let small = inside && libm::fabs(next - x) <= 1e-9 * self.measure.unit;
             if small || next <= from || next >= to {
                 return next;
@@ -99,7 +99,7 @@ impl Prepared<'_> {
         x
     }
 
-    /// The bisector of a sum: the terms' areas add up.
+    /// Returns the bisector of a sum, for which the areas of the terms add up.
     pub(super) fn bisector_of_sum(&self, output: &Output, strengths: &[f64]) -> Option<f64> {
         let sum = |of: &dyn Fn(&Flank, f64) -> f64| {
             let mut sum = 0.0;
@@ -132,7 +132,7 @@ impl Prepared<'_> {
         Some(self.newton((output.low, output.high), rest, degree))
     }
 
-    /// The area to the left of `x` of a flank that is cut or scaled alone.
+    /// Returns the area to the left of `x` of a flank that is cut or scaled, as if no other were present.
     fn area_up_to(&self, flank: &Flank, strength: f64, x: f64) -> f64 {
         if x <= flank.from {
             return 0.0;
@@ -141,7 +141,7 @@ impl Prepared<'_> {
         if x >= flank.to {
             return whole;
         }
-        // What lies between the foot and x.
+        // The area between the foot and x.
         let degree = flank.degree(x);
         let tail = |x: f64, degree: f64| flank.tail(self.knots, self.measure, x, degree).0;
         let area = if self.scales {

@@ -5,10 +5,10 @@ use crate::table::Flank;
 use crate::table::operators::{larger, smaller};
 
 impl Prepared<'_> {
-    /// The smallest, the mean or the largest value at which the maximum is highest.
+    /// Returns the smallest, the mean or the largest value at which the aggregated maximum is highest.
     pub(super) fn maxima(&self, which: OfMaxima, strengths: &[f64]) -> Option<f64> {
-        // The highest degree of the term itself that counts. A strength that is its highest degree but for rounding cuts
-        // nothing off.
+        // The degree of the unscaled term at which it counts as highest. A strength that equals its maximum degree up
+        // to rounding does not cut it.
         let level = |term: &SetTerm, strength: f64| {
             if self.scales || strength >= term.highest * (1.0 - TIE) {
                 term.highest
@@ -16,7 +16,7 @@ impl Prepared<'_> {
                 strength
             }
         };
-        // The same, cut or scaled.
+        // The same degree after cutting or scaling.
         let top = |term: &SetTerm, strength: f64| {
             if self.scales {
                 strength * term.highest
@@ -50,10 +50,12 @@ impl Prepared<'_> {
     }
 }
 
-/// Degrees this close to the highest, relative to it, count as the highest: two rules that fire alike may differ by rounding.
+/// The relative difference from the maximum up to which degrees count as equal: two rules that fire equally may differ
+/// by rounding.
 const TIE: f64 = 1e-12;
 
-/// Where terms are at their highest on a section: from its beginning to `left`, from `right` to its end, and at its ends.
+/// The values of a section at which terms are highest: from its lower end to `left`, from `right` to its upper end, and
+/// at its ends.
 struct Spans {
     left: f64,
     right: f64,
@@ -71,13 +73,13 @@ impl Spans {
         }
     }
 
-    /// Adds where a flank is at or above a level.
+    /// Adds the values at which a flank is at or above a level.
     fn add(&mut self, section: &Section, flank: &Flank, level: f64) {
         let (summit, high) = flank.summit();
         if flank.is_level() {
             self.left = section.to;
         } else if high <= level {
-            // Nowhere but at the summit, however many digits of the degree beside it are the same.
+            // Only the summit counts, even if the degrees of neighbouring values round to the same number.
             self.at_beginning |= summit == section.from && high >= level * (1.0 - TIE);
             self.at_end |= summit == section.to && high >= level * (1.0 - TIE);
         } else {
@@ -114,15 +116,15 @@ impl Spans {
     }
 }
 
-/// The values where a set is highest, from left to right.
+/// The values at which a set is highest, added from left to right.
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Maxima {
     smallest: Option<f64>,
     largest: f64,
-    /// The length of all plateaus, and the mean of the values on them.
+    /// The total length of all plateaus, and the mean of the values on them.
     length: f64,
     mean_of_plateaus: f64,
-    /// The number of single values, and their mean.
+    /// The number of single points, and their mean.
     points: f64,
     mean_of_points: f64,
 }
@@ -144,13 +146,13 @@ impl Maxima {
             self.smallest = self.smallest.or(Some(from));
             self.largest = to;
             self.length += width;
-            // Sums of lengths times values are no numbers where the range is very wide or narrow.
+            // Sums of lengths times values would overflow or underflow for extreme ranges.
             let middle = from + 0.5 * width;
             self.mean_of_plateaus += (middle - self.mean_of_plateaus) * (width / self.length);
         }
     }
 
-    /// The value; `None` of a set that is 0 everywhere.
+    /// Returns the selected value; `None` for a set that is 0 everywhere.
     pub(crate) fn value(self, which: OfMaxima) -> Option<f64> {
         let smallest = self.smallest?;
         Some(match which {
