@@ -6,6 +6,7 @@
 import sys
 
 try:
+    from .changes import Change, find_changes
     from .compaction import compact
     from .errors import DamagedError, FleetError
     from .process import Outcome, process
@@ -32,6 +33,7 @@ __all__ = [
     "STEPS",
     "VERSION",
     "Assessed",
+    "Change",
     "DamagedError",
     "FleetError",
     "Job",
@@ -43,6 +45,7 @@ __all__ = [
     "ask",
     "assess",
     "compact",
+    "find_changes",
     "open_dataset",
     "open_place",
     "plan",
