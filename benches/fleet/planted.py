@@ -63,6 +63,11 @@ def write(out: Path, seed: int, is_planted: bool) -> None:
     if is_planted:
         mean = mean + np.where(vehicle == WORN, SLOPE_PCT_WEEK * week, 0)
     mean = np.clip(mean, 1, 95)
+    # Motor 3 of the worn vehicle gives less thrust from week to week.
+    commands = 0.45 + 0.004 * wind[:, None] + chance.normal(0, 0.01, (len(key), 4))
+    if is_planted:
+        commands[:, 2] += np.where(vehicle == WORN, 0.004 * week, 0)
+    margins = np.minimum(commands, 1 - commands) - 0.1
     highest = np.where(is_warned, chance.uniform(67, 98, len(key)), np.minimum(mean * chance.uniform(1.2, 2.5, len(key)), 66.9))
     synthetic.write_rows(
         out,
@@ -74,6 +79,10 @@ def write(out: Path, seed: int, is_planted: bool) -> None:
             "wind_m_s": wind,
             "risk_mean_pct": mean,
             "risk_max_pct": highest,
+            "motor_commands": commands.tolist(),
+            "motor_margins": margins.tolist(),
+            "weakest_motor": margins.argmin(axis=1) + 1,
+            "weakest_margin": margins.min(axis=1),
             "verdict": np.where(highest > 90, "FAIL", np.where(highest > 67, "WARN", "GOOD")),
         },
     )

@@ -11,7 +11,7 @@ try:
     from .errors import DamagedError, FleetError
     from .process import Outcome, process
     from .questions import QUESTIONS, ask, open_dataset
-    from .report import rising, write_report
+    from .report import Report, write_report
     from .run import Assessed, Plan, Watcher, assess, plan
     from .schema import FINDINGS, FLIGHTS, STEPS, VERSION
     from .shards import Job, Shard
@@ -40,6 +40,7 @@ __all__ = [
     "Log",
     "Outcome",
     "Plan",
+    "Report",
     "Shard",
     "Watcher",
     "ask",
@@ -50,6 +51,5 @@ __all__ = [
     "open_place",
     "plan",
     "process",
-    "rising",
     "write_report",
 ]

@@ -15,7 +15,7 @@ import numpy as np
 
 from .history import MEASURES, History, Reals, histories, marks
 
-__all__ = ["LEVEL", "Change", "find_changes"]
+__all__ = ["LEVEL", "Change", "find_changes", "student"]
 
 LEVEL = 0.01
 """The probability that a fleet without any change has a change found."""
@@ -252,7 +252,7 @@ def _counts(spans: Sequence[tuple[History, int, int, int]]) -> tuple[tuple[int, 
         parts = [(of, slice(span[late], span[late + 1])) for of, *span in spans]
         count = sum(int(of.flights[part].sum()) for of, part in parts)
         flights.append(count)
-        shares.append(float(sum((of.flights[part] * of.values[part, WARNED]).sum() for of, part in parts) / max(1, count)))
+        shares.append(100 * float(sum(of.warned[part].sum() for of, part in parts)) / max(1, count))
     return (flights[0], flights[1]), (shares[0], shares[1])
 
 
@@ -269,11 +269,11 @@ def _pooled(splits: Sequence[_Split], measure: int) -> tuple[float, float, float
     between = max(0.0, (spread - len(d) + 1) / (w.sum() - (w**2).sum() / w.sum())) if len(d) > 1 else 0.0
     w = 1 / (v + between)
     mean = float((w * d).sum() / w.sum())
-    half = _student(freedom) * float(np.sqrt(1 / w.sum()))
+    half = student(freedom) * float(np.sqrt(1 / w.sum()))
     return mean, mean - half, mean + half
 
 
-def _student(freedom: int) -> float:
+def student(freedom: int) -> float:
     """The 97.5 % quantile of Student's t, after Cornish and Fisher."""
     return 1.959964 + 2.372271 / freedom + 2.822553 / freedom**2 + 2.555497 / freedom**3
 
@@ -342,7 +342,7 @@ def _of_vehicle(history: History, measure: int, p: float, of: Sequence[tuple[int
     of_vehicle = (history.vehicle,)
     if criterion(left, 2) <= quality:
         span = float(history.weeks[-1] - history.weeks[0])
-        half = _student(n - 2) * float(np.sqrt(left / (n - 2) / (weeks**2).sum()))
+        half = student(n - 2) * float(np.sqrt(left / (n - 2) / (weeks**2).sum()))
         third = n // 3
         (early, _), (late, _) = (_counts([(history, begin, begin + third, n)])[1] for begin in (0, n - third))
         ends = (slope * span, (slope - half) * span, (slope + half) * span)

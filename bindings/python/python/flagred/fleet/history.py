@@ -36,6 +36,8 @@ class History:
     """The ``MEASURES``, a row a day: means of its flights, adjusted to the mean wind and time in the air of the fleet."""
     flights: NDArray[np.int64]
     """How many flights each row stands for."""
+    warned: NDArray[np.float64]
+    """How many of them warned."""
     firmware: NDArray[np.object_]
 
     def __len__(self) -> int:
@@ -54,6 +56,7 @@ def histories(connection: Any) -> tuple[list[History], bool]:
         return [], False
     columns = {name: table[name].to_numpy() for name in table.column_names}
     vehicle, start_s = columns["vehicle"], columns["start_s"]
+    is_warned = columns["warned_pct"] / 100
     values = np.column_stack([columns[name] for name in MEASURES])
     influences = _influences(columns["wind_m_s"], columns["in_air_s"])
     same = vehicle[1:] == vehicle[:-1]
@@ -69,12 +72,13 @@ def histories(connection: Any) -> tuple[list[History], bool]:
     begins = np.flatnonzero(is_new)
     flights = np.diff([*begins, len(vehicle)])
     means = np.add.reduceat(values, begins, axis=0) / flights[:, None]
+    warned = np.add.reduceat(is_warned, begins)
     names, firmware, start_s = vehicle[begins], columns["firmware"][begins], start_s[begins]
     ends = [*(np.flatnonzero(names[1:] != names[:-1]) + 1), len(names)]
     found = []
     for begin, end in zip([0, *ends], ends):
         part = slice(begin, end)
-        found.append(History(names[begin], start_s[part], means[part], flights[part], firmware[part]))
+        found.append(History(names[begin], start_s[part], means[part], flights[part], warned[part], firmware[part]))
     return found, is_adjusted
 
 
