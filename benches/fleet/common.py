@@ -124,7 +124,7 @@ def driver(arguments: list[str], shard_bytes: int | None = None) -> list[str]:
     """The command line of fleets as a process; smaller shards make more moments at which something can be killed."""
     if shard_bytes is None:
         return [sys.executable, "-m", "flagred.fleet", *arguments]
-    program = f"import sys, flagred.fleet.run as run; run.SHARD_BYTES = {shard_bytes}\n"
+    program = f"import sys, flagred.fleet.shards as shards; shards.MOST_BYTES = {shard_bytes}\n"
     program += "from flagred.fleet.__main__ import main; sys.exit(main(sys.argv[1:]))"
     return [sys.executable, "-c", program, *arguments]
 

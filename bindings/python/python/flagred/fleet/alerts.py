@@ -49,7 +49,7 @@ def sentence(change: Change) -> str:
         since = f" since {day}" if change.cause else ""
         others = ""
         if change.others is not None:
-            others = f" Vehicles without it changed by {change.others[0]:.1f} ({change.others[1]:.1f} to {change.others[2]:.1f}) in the same time."
+            others = f" Vehicles without it changed by {_signed(change.others[0])} ({_signed(change.others[1])} to {_signed(change.others[2])}) in the same time."
         return f"{when} the {OF[change.measure]} of {of} {rises} by {by}{since}, each vehicle compared with itself ({counts}).{warned}{others}"
     with_cause = f" with {change.cause}" if change.cause else ""
     return f"{change.vehicles[0]} changed once, on {day}{with_cause}: its {OF[change.measure]} {rises} by {by}. It does not rise steadily ({counts}).{warned}"
@@ -106,6 +106,10 @@ def _day(at_s: float) -> str:
 
 def _count(flights: int) -> str:
     return f"{flights:,} flight" + ("" if flights == 1 else "s")
+
+
+def _signed(value: float) -> str:
+    return f"{value:.1f}".replace("-", "\u2212")
 
 
 def _range(change: Change) -> str:

@@ -33,7 +33,7 @@ class Mark(NamedTuple):
 
 
 def chart(caption: str, points: Sequence[Point], marks: Sequence[Mark] = (), line: Sequence[tuple[float, float]] = (), large: bool = True) -> str:
-    """Points over days, each with its interval as a bar, with marks and a line."""
+    """Points over days, each with its interval as a bar; marks, whose names only a large chart has room for; a line."""
     if not points:
         return ""
     first, last = min(point.at_s for point in points), max(point.at_s for point in points)
@@ -61,7 +61,7 @@ def chart(caption: str, points: Sequence[Point], marks: Sequence[Mark] = (), lin
         parts.append(f"<g class={point.kind}><path class=line d='{bar}' /><path class='dot under' d='{dot}' /><path class=dot d='{dot}'>{title}</path></g>")
     labels = "".join(f"<span class=y style='bottom:{100 * level / top:.4g}%'>{level:g}</span>" for level in levels)
     names = []
-    for mark in marks:
+    for mark in marks if large else ():
         share = x(mark.at_s) / 10
         side = f"left:{share:.1f}%" if share < 60 else f"right:{100 - share:.1f}%;padding-right:.25rem"
         names.append(f"<span class=mark style='{side}'>{escape(mark.name)}</span>")

@@ -41,7 +41,7 @@ FROM findings WHERE motor IS NOT NULL AND severity IN ('WARN', 'FAIL') GROUP BY 
 
 -- name: causes
 -- What happened in findings that warn, and what to do; the text is that of the worst one, without its numbers.
-SELECT code, regexp_replace(arg_max(text, value_pct), ' (Motor [0-9]+ was closest to|The (elevated )?risk reached) .*$', '') AS what,
+SELECT code, regexp_replace(arg_max(text, value_pct), ' (Motor [0-9]+ was closest to|The (elevated )?risk( `[^`]*`)? reached) .*$', '') AS what,
   arg_max(advice, value_pct) AS advice, count(*) AS findings, 1e2 * count(*) / sum(count(*)) OVER () AS share_pct,
   wilson_low(count(*), sum(count(*)) OVER ()) AS low_pct, wilson_high(count(*), sum(count(*)) OVER ()) AS high_pct,
   count(DISTINCT flight_id) AS flights, count(DISTINCT vehicle) AS vehicles

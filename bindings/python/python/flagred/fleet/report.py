@@ -249,7 +249,7 @@ def _vehicles(rows: Sequence[Row], changes: Sequence[Change], at: Mapping[str, s
         number("Mean risk, %", "risk_mean_pct", 1),
         ("Change", "", lambda row: escape(trends.get(row["vehicle"], ""))),
         ("Weakest motor", "n", lambda row: "NA" if row["weakest_motor"] is None else f"{row['weakest_motor']}<small>margin {known(row['weakest_margin'], 2)}</small>"),
-        day("Last flight", "last_utc"),
+        day("Last", "last_utc"),
     ]
     search = "<p><input type=search id=find placeholder='Find a vehicle, site or pilot' aria-label='Find a vehicle, site or pilot'></p>" if len(rows) > 10 else ""
     return search + table(rows[:SHOWN_VEHICLES], columns, "No judged flight names its vehicle.", "vehicles") + (SEARCH if search else "")

@@ -8,13 +8,14 @@ import re
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 
 from .._core import _page
 from .alerts import advice, sentence
-from .changes import Change, student
+from .changes import LEVEL, Change, student
 from .charts import Mark, Point, chart
 from .tables import STYLE, Column, Row, date, day, figures, known, link, log_link, number, table, verdict
 
@@ -59,7 +60,7 @@ def write_vehicle_pages(
     written = {vehicle: f"vehicles/{_file(vehicle)}" for vehicle in flights}
     for vehicle, rows in flights.items():
         of = [change for change in changes if vehicle in change.vehicles]
-        body = _body(vehicle, rows, of, parts.get(vehicle, ()), {id: f"../{file}" for id, file in reports.items()}, f"../../{back}")
+        body = _body(vehicle, rows, len(flights), of, parts.get(vehicle, ()), {id: f"../{file}" for id, file in reports.items()}, f"../../{back}")
         path = files / written[vehicle]
         unfinished = path.with_name(f".{path.name}.unfinished")
         unfinished.write_text(_page(vehicle, body), encoding="utf-8")
@@ -76,7 +77,7 @@ def _file(vehicle: str) -> str:
 
 
 def _body(
-    vehicle: str, rows: Sequence[Row], changes: Sequence[Change], parts: Sequence[tuple[float, str]], reports: Mapping[str, str], back: str
+    vehicle: str, rows: Sequence[Row], vehicles: int, changes: Sequence[Change], parts: Sequence[tuple[float, str]], reports: Mapping[str, str], back: str
 ) -> str:
     last = rows[-1]
     warned = [row for row in rows if row["verdict"] in ("WARN", "FAIL")]
@@ -100,7 +101,7 @@ def _body(
             f"<ul class=act>{acts}</ul>" if acts else "<p>The risk of this vehicle did not change more than by chance.</p>",
             _over_time(rows, parts),
             "<h2>Motors</h2>",
-            _motors(rows),
+            _motors(rows, vehicles),
             f"<h2>Flights that warned</h2>{_warned(warned[::-1], reports)}",
             f"<p class=soft>The latest {MOST_FLIGHTS} judged flights are shown.</p>" if len(rows) == MOST_FLIGHTS else "",
         ]
@@ -133,7 +134,8 @@ def _over_time(rows: Sequence[Row], parts: Sequence[tuple[float, str]]) -> str:
     )
 
 
-def _motors(rows: Sequence[Row]) -> str:
+def _motors(rows: Sequence[Row], vehicles: int) -> str:
+    """The motors; one is named if no motor of so many vehicles would drift as much by chance, with a probability of 1 - ``LEVEL``."""
     counts = [len(row["motor_margins"] or ()) for row in rows]
     motors = max(counts)
     of = [row for row, count in zip(rows, counts) if count == motors]
@@ -155,8 +157,9 @@ def _motors(rows: Sequence[Row]) -> str:
         ("Command against the others, % a week", "n", lambda row: "NA" if row["drift"] is None else f"{row['drift'][0]:+.2f}<small>{row['drift'][1]:.2f} to {row['drift'][2]:.2f}</small>"),
     )
     note = "<p class=soft>A motor whose command rises against the others gives less thrust than before: propeller, motor, speed controller.</p>"
-    worst = max(found, key=lambda row: row["drift"][1] if row["drift"] else -np.inf)
-    if worst["drift"] is None or worst["drift"][1] <= 0:
+    surely = NormalDist().inv_cdf(1 - LEVEL / (motors * vehicles)) / NormalDist().inv_cdf(0.975)
+    worst = max(found, key=lambda row: row["drift"][0] if row["drift"] else -np.inf)
+    if worst["drift"] is None or worst["drift"][0] - surely * (worst["drift"][0] - worst["drift"][1]) <= 0:
         return table(found, columns, "") + note
     slope, low, high = worst["drift"]
     rises = f"The command of motor {worst['motor']} rises against the others by {slope:.2f} % of its range a week ({low:.2f} to {high:.2f}). Check it first."
