@@ -1,10 +1,10 @@
 """Whether changes that are planted in a fleet are found, and how often a calm fleet raises a false alert: python benches/fleet/planted.py
 
 The rows are made up: 12 vehicles fly 48 times in 24 weeks, on 24 to 48 different days. The risk depends on the wind, which is stronger
-in the second half, on the time in the air and on the day. Three kinds of fleets:
+in the second half, on the time in the air and on the day. Two kinds of fleets:
 
-- planted: half of the vehicles get a firmware that raises the share of flights that warn from 5 % to 25 %, and one vehicle wears out,
-  by 0.76 % of mean risk a week. Its firmware was rolled out when each of them has flown 20 times with it.
+- planted: half of the vehicles have flown 20 times each with a firmware that raises the share of flights that warn from 5 % to 25 %. Of
+  the others one wears out, by 0.76 % of mean risk a week, and the risk of one jumps once, by 10 %.
 - calm: the same weather and firmware, without any effect.
 """
 
@@ -25,6 +25,7 @@ from flagred import fleet
 VEHICLES, FLIGHTS, WEEKS = 12, 48, 24
 WITH_FIRMWARE = range(0, VEHICLES, 2)
 WORN, SLOPE_PCT_WEEK = 5, 0.76
+JUMPED, JUMP_PCT, JUMP_WEEK = 9, 10, 10
 WARNED_BEFORE, WARNED_AFTER = 0.05, 0.25
 AFTER = 20
 """Flights of a vehicle with the new firmware."""
@@ -61,7 +62,7 @@ def write(out: Path, seed: int, is_planted: bool) -> None:
     day_effect = chance.normal(0, 2, of_day.max() + 1)[of_day]
     mean = 14 + vehicle % 5 + 1.2 * wind + 2 * np.log(in_air_s / 600) + day_effect + chance.normal(0, 3, len(key)) + 6 * is_warned
     if is_planted:
-        mean = mean + np.where(vehicle == WORN, SLOPE_PCT_WEEK * week, 0)
+        mean = mean + np.where(vehicle == WORN, SLOPE_PCT_WEEK * week, 0) + np.where((vehicle == JUMPED) & (week >= JUMP_WEEK), JUMP_PCT, 0)
     mean = np.clip(mean, 1, 95)
     # Motor 3 of the worn vehicle gives less thrust from week to week.
     commands = 0.45 + 0.004 * wind[:, None] + chance.normal(0, 0.01, (len(key), 4))
@@ -103,18 +104,22 @@ def main() -> int:
     parser.add_argument("--calm", type=int, default=20, help="calm fleets (20)")
     given = parser.parse_args()
     begin_s = time.perf_counter()
-    found_firmware = found_worn = false = wrong = 0
+    found_firmware = found_worn = found_jump = grows = wrong = false = 0
     for seed in range(given.planted):
         found = changes(seed, True)
         firmware = [change for change in found if change.cause == "firmware ArduCopter V4.6.1" and change.change_pct > 0]
         of_vehicles = [change for change in found if not change.is_fleet and change.change_pct > 0]
         found_firmware += bool(firmware)
         found_worn += bool(of_vehicles) and of_vehicles[0].vehicles == (f"v{WORN}",) and of_vehicles[0].kind == "slope"
-        wrong += sum(change not in firmware and change.vehicles != (f"v{WORN}",) for change in found)
+        of_jumped = [change.kind for change in of_vehicles if change.vehicles == (f"v{JUMPED}",)]
+        found_jump += of_jumped == ["step"]
+        grows += "slope" in of_jumped
+        wrong += sum(change not in firmware and change.vehicles not in ((f"v{WORN}",), (f"v{JUMPED}",)) for change in found)
     for seed in range(given.calm):
-        false += bool(changes(10_000 + seed, False))
+        false += any(change.low_pct > 0 for change in changes(10_000 + seed, False))
     print(f"firmware found within {AFTER} flights a vehicle: {found_firmware} of {given.planted} fleets")
     print(f"worn vehicle named first, as one that grows riskier: {found_worn} of {given.planted} fleets")
+    print(f"jump of a vehicle found as a jump: {found_jump} of {given.planted} fleets, called growing riskier: {grows}")
     print(f"other changes named in these fleets: {wrong}")
     print(f"calm fleets with a false alert: {false} of {given.calm}")
     print(f"{(time.perf_counter() - begin_s) / max(1, given.planted + given.calm):.2f} s a fleet")

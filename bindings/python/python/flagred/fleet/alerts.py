@@ -44,7 +44,7 @@ def sentence(change: Change) -> str:
     counts = f"{_count(change.flights[0])} before, {_count(change.flights[1])} after"
     warned = f" Flights that warned: {before:.0f} % before, {after:.0f} % after." if change.measure != "warned_pct" else f" It was {before:.0f} % and is {after:.0f} %."
     if change.is_fleet:
-        of = "one vehicle" if len(change.vehicles) == 1 else f"{len(change.vehicles)} vehicles"
+        of = f"{len(change.vehicles)} vehicles"
         when = f"With {change.cause}" if change.cause else f"In the week of {day}"
         since = f" since {day}" if change.cause else ""
         others = ""

@@ -14,8 +14,9 @@ from typing import Any, Literal
 import numpy as np
 
 from .history import MEASURES, History, Reals, histories, marks
+from .permutation import Sum, p_values, shuffled, student
 
-__all__ = ["LEVEL", "Change", "find_changes", "student"]
+__all__ = ["LEVEL", "Change", "find_changes"]
 
 LEVEL = 0.01
 """The probability that a fleet without any change has a change found."""
@@ -23,6 +24,8 @@ FAMILIES = 3
 """Marks, weeks and vehicles are three families of tests; each gets a third of ``LEVEL``."""
 SIDE = 4
 """The fewest days of a vehicle before and after a change."""
+AGREEMENT = 2 / 3
+"""The least share of vehicles that must change in the same direction for a change of the fleet."""
 MOST_WEEKS = 104
 """The latest weeks in which a change of the whole fleet is sought."""
 SHUFFLES, FEWER_SHUFFLES, MANY_DAYS = 999, 399, 50_000
@@ -118,7 +121,8 @@ Splits = dict[tuple[float, str | None], list[_Split]]
 
 
 def _by_mark(fleet: Sequence[History], parts: dict[str, list[tuple[float, str]]]) -> Splits:
-    """Firmware and parts: a vehicle counts from the change before to the next."""
+    """Firmware and parts of at least two vehicles: each counts from the change before to the next. What one vehicle alone has is not
+    told from its wear here, but by the model of its risk."""
     splits: Splits = defaultdict(list)
     for history in fleet:
         rows = marks(history, parts)
@@ -126,7 +130,7 @@ def _by_mark(fleet: Sequence[History], parts: dict[str, list[tuple[float, str]]]
         for (row, name), begin, end in zip(rows, ends, ends[2:]):
             if row - begin >= SIDE and end - row >= SIDE:
                 splits[0.0, name].append(_Split(history, begin, end, row))
-    return splits
+    return {key: of for key, of in splits.items() if len({split.history.vehicle for split in of}) >= 2}
 
 
 def _by_week(fleet: Sequence[History]) -> Splits:
@@ -153,72 +157,24 @@ def _of_fleet(
     """The changes that are significant, with the days that show them; of weeks only the one that shows it best."""
     if not splits:
         return []
-    sums = {key: _Sum(shuffles + 1) for key in splits}
-    by_days: dict[tuple[int, int, int], list[tuple[_Sum, _Split]]] = defaultdict(list)
+    sums = {key: Sum(shuffles + 1, len(of)) for key, of in splits.items()}
+    by_days: dict[tuple[int, int, int], list[tuple[Sum, _Split]]] = defaultdict(list)
     for key, of in splits.items():
         for split in of:
             by_days[id(split.history), split.begin, split.end].append((sums[key], split))
     for some in by_days.values():
-        total = _shuffled(some[0][1].values, shuffles, chance)
+        total = shuffled(some[0][1].values, shuffles, chance)
         for sum, split in some:
-            sum.add(total[:, split.before - 1], split)
+            sum.add(total[:, split.before - 1], split.values, split.before)
     scores = np.stack([sum.scores() for sum in sums.values()])
     found = []
-    for (key, of), p, score in zip(splits.items(), _p(scores), scores[:, 0]):
+    for (key, of), p, score in zip(splits.items(), FAMILIES * p_values(scores), scores[:, 0]):
         measure = int(score.argmax())
-        if p[measure] <= level:
-            found.append((float(score[measure]), _step(of, key, measure, float(p[measure]), fleet), of))
+        if p[measure] <= level and sums[key].agreement(measure) >= AGREEMENT:
+            found.append((sums[key].fit(), _step(of, key, measure, float(p[measure]), fleet), of))
     if found and found[0][1].cause is None:
         found = [max(found, key=lambda one: one[0])]
     return [(change, of) for _, change, of in found]
-
-
-class _Sum:
-    """The statistic of a change over its vehicles, for the data and each shuffling."""
-
-    def __init__(self, rows: int) -> None:
-        self._rise = np.zeros((rows, len(MEASURES)))
-        self._variance = np.zeros(len(MEASURES))
-        self._ends = np.zeros((2, rows, len(MEASURES)))
-        self._of_ends = np.zeros((2, rows, len(MEASURES)))
-        self._vehicles = 0
-
-    def add(self, before: Reals, split: _Split) -> None:
-        """Adds a vehicle by the sum of its centred values before the change."""
-        values = split.values
-        n = len(values)
-        variance = split.before * split.after / n * values.var(axis=0, ddof=1)
-        self._rise -= before
-        self._variance += variance
-        self._vehicles += 1
-        for end, sign in enumerate((-1, 1)):
-            is_larger = sign * -before > self._ends[end]
-            self._ends[end][is_larger] = (sign * -before)[is_larger]
-            self._of_ends[end] = np.where(is_larger, variance, self._of_ends[end])
-
-    def scores(self) -> Reals:
-        """The rise in standard errors, without its sign. Of three vehicles and more that without the one that shows it most."""
-        rise, variance = np.abs(self._rise), np.broadcast_to(self._variance, self._rise.shape)
-        if self._vehicles >= 3:
-            is_up = self._rise > 0
-            rise = np.maximum(rise - np.where(is_up, self._ends[1], self._ends[0]), 0)
-            variance = variance - np.where(is_up, self._of_ends[1], self._of_ends[0])
-        return np.divide(rise, np.sqrt(np.maximum(variance, 0)), out=np.zeros_like(rise), where=variance > 1e-12)
-
-
-def _shuffled(values: Reals, shuffles: int, chance: np.random.Generator) -> Reals:
-    """Running sums of the centred values: as they are, and then shuffled so many times."""
-    order = np.tile(np.arange(len(values)), (shuffles + 1, 1))
-    order[1:] = chance.permuted(order[1:], axis=1)
-    sums: Reals = np.cumsum((values - values.mean(axis=0))[order], axis=1)
-    return sums
-
-
-def _p(scores: Reals) -> Reals:
-    """By tests (row), shufflings (the first is the data) and measures: p values of the data, for all tests together."""
-    highest = scores[:, 1:].max(axis=(0, 2))
-    p: Reals = FAMILIES * (1 + (highest[:, None, None] >= scores[:, 0]).sum(axis=0)) / (1 + len(highest))
-    return np.minimum(p, 1)
 
 
 def _step(splits: Sequence[_Split], key: tuple[float, str | None], measure: int, p: float, fleet: Sequence[History]) -> Change:
@@ -273,11 +229,6 @@ def _pooled(splits: Sequence[_Split], measure: int) -> tuple[float, float, float
     return mean, mean - half, mean + half
 
 
-def student(freedom: int) -> float:
-    """The 97.5 % quantile of Student's t, after Cornish and Fisher."""
-    return 1.959964 + 2.372271 / freedom + 2.822553 / freedom**2 + 2.555497 / freedom**3
-
-
 def _without(fleet: Sequence[History], explained: Sequence[Sequence[_Split]]) -> list[History]:
     """The fleet without the steps that were found, each as large as it is on the mean of its vehicles."""
     values = {history.vehicle: history.values.copy() for history in fleet}
@@ -296,7 +247,7 @@ def _of_vehicles(
         return []
     scores = np.stack([_vehicle_scores(history, shuffles, chance) for history in fleet])
     found = []
-    for history, p, score in zip(fleet, _p(scores), scores[:, 0]):
+    for history, p, score in zip(fleet, FAMILIES * p_values(scores), scores[:, 0]):
         measure = int(score.argmax())
         if p[measure] <= level:
             found.append(_of_vehicle(history, measure, float(p[measure]), marks(history, parts)))
@@ -308,7 +259,7 @@ def _vehicle_scores(history: History, shuffles: int, chance: np.random.Generator
     a few warned flights of one vehicle are too coarse."""
     values = history.values[:, :WARNED]
     n = len(values)
-    total = _shuffled(values, shuffles, chance)
+    total = shuffled(values, shuffles, chance)
     before = np.arange(SIDE, n - SIDE + 1)
     squares = np.maximum(((values - values.mean(axis=0)) ** 2).sum(axis=0), 1e-12)
     steps = (total[:, before - 1] ** 2 * (n / (before * (n - before)))[:, None]).max(axis=1)

@@ -15,8 +15,9 @@ import numpy as np
 
 from .._core import _page
 from .alerts import advice, sentence
-from .changes import LEVEL, Change, student
+from .changes import LEVEL, Change
 from .charts import Mark, Point, chart
+from .permutation import student
 from .tables import STYLE, Column, Row, date, day, figures, known, link, log_link, number, table, verdict
 
 __all__ = ["write_vehicle_pages"]
