@@ -3,6 +3,7 @@
 import datetime
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -87,6 +88,9 @@ def test_a_jump_is_not_called_growing_riskier_and_wear_is_not_called_a_jump(tmp_
     assert (jumped.vehicles, jumped.kind, jumped.cause) == (("v2",), "step", None)
     assert week_of(jumped) == pytest.approx(9, abs=1)
     assert "v2 changed once" in sentence(jumped) and "riskier" not in sentence(jumped)
+    assert worn.is_clear and jumped.is_clear
+    assert "v5 grows riskier, gradually or at once: " in sentence(replace(worn, is_clear=False))
+    assert "the flights do not show which" in sentence(replace(jumped, is_clear=False))
 
 
 def test_wear_of_one_vehicle_is_not_blamed_on_a_firmware_of_all(tmp_path):

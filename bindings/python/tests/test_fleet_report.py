@@ -229,6 +229,9 @@ def test_reports_of_the_worst_flights(tmp_path, capsys):
     assert "a.csv" in written.read_text() and flagred.assess(logs / "a.csv").verdict in written.read_text()
     assert f"href='fleet.files/flights/{written.name}'" in page.read_text()
     (vehicle,) = (tmp_path / "fleet.files/vehicles").glob("one-*.html")
+    # Two flights on one day do not show that nothing changed.
+    assert "0 of 1 vehicles have flights on at least 8 days" in page.read_text()
+    assert "Whether the risk of this vehicle changes is unknown: it has flights on fewer than 8 days." in vehicle.read_text()
     assert f"href='../flights/{written.name}'" in vehicle.read_text() and "href='../../fleet.html'" in vehicle.read_text()
     # It is not made again.
     (logs / "a.csv").unlink()

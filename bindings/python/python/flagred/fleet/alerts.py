@@ -36,6 +36,7 @@ def sentence(change: Change) -> str:
     before, after = change.warned_pct
     if change.kind == "slope":
         grows = "grows riskier" if change.change_pct > 0 else "becomes safer"
+        grows += "" if change.is_clear else ", gradually or at once"
         per_week = abs(change.slope_pct_week or 0.0)
         return (
             f"{change.vehicles[0]} {grows}: its {OF[change.measure]} {rises} by {per_week:.2f} percentage points a week, by {abs(change.change_pct):.1f} ({_range(change)}) since {day}. "
@@ -51,8 +52,9 @@ def sentence(change: Change) -> str:
         if change.others is not None:
             others = f" Vehicles without it changed by {_signed(change.others[0])} ({_signed(change.others[1])} to {_signed(change.others[2])}) in the same time."
         return f"{when} the {OF[change.measure]} of {of} {rises} by {by}{since}, each vehicle compared with itself ({counts}).{warned}{others}"
+    steadily = "It does not change steadily" if change.is_clear else "It may also change gradually: the flights do not show which"
     with_cause = f" with {change.cause}" if change.cause else ""
-    return f"{change.vehicles[0]} changed once, on {day}{with_cause}: its {OF[change.measure]} {rises} by {by}. It does not rise steadily ({counts}).{warned}"
+    return f"{change.vehicles[0]} changed once, on {day}{with_cause}: its {OF[change.measure]} {rises} by {by}. {steadily} ({counts}).{warned}"
 
 
 def advice(change: Change) -> str:

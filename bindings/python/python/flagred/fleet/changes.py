@@ -16,7 +16,7 @@ import numpy as np
 from .history import MEASURES, History, Reals, histories, marks
 from .permutation import Sum, p_values, shuffled, student
 
-__all__ = ["LEVEL", "Change", "find_changes"]
+__all__ = ["LEAST_DAYS", "LEVEL", "Change", "find_changes"]
 
 LEVEL = 0.01
 """The probability that a fleet without any change has a change found."""
@@ -24,10 +24,14 @@ FAMILIES = 3
 """Marks, weeks and vehicles are three families of tests; each gets a third of ``LEVEL``."""
 SIDE = 4
 """The fewest days of a vehicle before and after a change."""
+LEAST_DAYS = 2 * SIDE
+"""The fewest days of a vehicle that is compared with itself."""
 AGREEMENT = 2 / 3
 """The least share of vehicles that must change in the same direction for a change of the fleet."""
 MOST_WEEKS = 104
 """The latest weeks in which a change of the whole fleet is sought."""
+CLEAR = 6.0
+"""The difference of the Bayesian information criterion from which on a step is told from a slope: odds of 20 to 1."""
 SHUFFLES, FEWER_SHUFFLES, MANY_DAYS = 999, 399, 50_000
 SEED = 20_260_105
 MEAN, HIGHEST, WARNED = range(len(MEASURES))
@@ -39,6 +43,8 @@ class Change:
 
     kind: Literal["step", "slope"]
     """A step at a time, or a steady slope."""
+    is_clear: bool
+    """Whether the other kind explains the days much worse."""
     cause: str | None
     """The firmware or part that was changed then; None where nothing is known."""
     is_fleet: bool
@@ -79,7 +85,7 @@ def find_changes(connection: Any, parts: Mapping[str, Sequence[tuple[float, str]
         The probability that a fleet without any change has a change found.
     """
     fleet, _ = histories(connection)
-    fleet = [history for history in fleet if len(history) >= 2 * SIDE]
+    fleet = [history for history in fleet if len(history) >= LEAST_DAYS]
     chance = np.random.default_rng(SEED)
     shuffles = SHUFFLES if sum(map(len, fleet)) <= MANY_DAYS else FEWER_SHUFFLES
     of_parts = {vehicle: list(some) for vehicle, some in (parts or {}).items()}
@@ -186,6 +192,7 @@ def _step(splits: Sequence[_Split], key: tuple[float, str | None], measure: int,
     others = [_Split(history, 0, len(history), row) for history, row in rest if SIDE <= row <= len(history) - SIDE]
     return Change(
         "step",
+        True,
         key[1],
         True,
         tuple(sorted(with_it)),
@@ -291,15 +298,17 @@ def _of_vehicle(history: History, measure: int, p: float, of: Sequence[tuple[int
     steps = [(criterion(squares(best), 3), best, None)] + [(criterion(squares(row), 2), row, name) for row, name in of if row in rows]
     quality, row, cause = min(steps, key=lambda step: step[0])
     of_vehicle = (history.vehicle,)
-    if criterion(left, 2) <= quality:
+    of_slope = criterion(left, 2)
+    is_clear = abs(of_slope - quality) >= CLEAR
+    if of_slope <= quality:
         span = float(history.weeks[-1] - history.weeks[0])
         half = student(n - 2) * float(np.sqrt(left / (n - 2) / (weeks**2).sum()))
         third = n // 3
         (early, _), (late, _) = (_counts([(history, begin, begin + third, n)])[1] for begin in (0, n - third))
         ends = (slope * span, (slope - half) * span, (slope + half) * span)
         counts = ((0, int(history.flights.sum())), (early, late))
-        return Change("slope", None, False, of_vehicle, float(history.start_s[0]), MEASURES[measure], *ends, slope, p, *counts, None)
+        return Change("slope", is_clear, None, False, of_vehicle, float(history.start_s[0]), MEASURES[measure], *ends, slope, p, *counts, None)
     split = _Split(history, 0, n, row)
     since_s = float(history.start_s[row])
     effect, counts = _pooled([split], measure), _counts([(history, 0, row, n)])
-    return Change("step", cause, False, of_vehicle, since_s, MEASURES[measure], *effect, None, p, *counts, None)
+    return Change("step", is_clear, cause, False, of_vehicle, since_s, MEASURES[measure], *effect, None, p, *counts, None)

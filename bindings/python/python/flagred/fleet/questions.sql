@@ -26,7 +26,7 @@ FROM judged WHERE start_utc IS NOT NULL GROUP BY week HAVING count(*) >= 5 ORDER
 
 -- name: vehicles
 -- Each vehicle: how often it warned, its mean risk, and the motor that has the least margin in most flights.
-SELECT vehicle, any_value(site) AS site, any_value(pilot) AS pilot, count(*) AS flights,
+SELECT vehicle, any_value(site) AS site, any_value(pilot) AS pilot, count(*) AS flights, count(DISTINCT start_utc::DATE) AS days,
   count(*) FILTER (WHERE verdict IN ('WARN', 'FAIL')) AS warned, count(*) FILTER (WHERE verdict = 'FAIL') AS failed,
   wilson_low(warned, count(*)) AS low_pct, wilson_high(warned, count(*)) AS high_pct, avg(risk_mean_pct) AS risk_mean_pct,
   sum(in_air_s) / 3600 AS in_air_h, mode(weakest_motor) AS weakest_motor, avg(weakest_margin) AS weakest_margin,

@@ -12,7 +12,7 @@ from typing import Any
 
 from .._core import _page
 from .alerts import advice, alerts, key, run_command, sentence, to_json
-from .changes import LEVEL, Change, find_changes
+from .changes import LEAST_DAYS, LEVEL, Change, find_changes
 from .charts import Point, chart
 from .flight_reports import write_flight_reports
 from .names import EMPTY, read_names, read_parts
@@ -24,7 +24,7 @@ from .vehicle_pages import write_vehicle_pages
 
 __all__ = ["Report", "write_report"]
 
-SHOWN_FLIGHTS, SHOWN_NEW, SHOWN_VEHICLES = 10, 10, 500
+SHOWN_FLIGHTS, SHOWN_NEW, SHOWN_VEHICLES = 10, 5, 500
 
 
 @dataclass(frozen=True)
@@ -110,6 +110,8 @@ def _document(name: str, changes: Sequence[Change], found: Sequence[Change], ans
         "written_utc": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
         "last_report_utc": news.last_utc,
         "flights": sum(row["flights"] for row in answers["verdicts"]),
+        "vehicles": len(answers["vehicles"]),
+        "vehicles_compared": sum(row["days"] >= LEAST_DAYS for row in answers["vehicles"]),
         "new_flights": news.flights,
         "new_warned": news.warned,
         "level": LEVEL,
@@ -153,6 +155,7 @@ def _body(
         ),
         "<h2>What to act on</h2>",
         _to_act_on(found, news, at),
+        _compared(vehicles),
         _news(news, at, of_flights),
         "<h2>Worst flights</h2>",
         table(answers["worst"][:SHOWN_FLIGHTS], _flight_columns(at, of_flights), "No flight was judged."),
@@ -175,7 +178,7 @@ def _body(
 
 def _to_act_on(found: Sequence[Change], news: News, at: Mapping[str, str]) -> str:
     if not found:
-        return "<p>No firmware, part, week or vehicle changed the risk for the worse.</p>"
+        return "<p>No change for the worse was found.</p>"
     lines = []
     for change in found:
         title = change.cause or ("The whole fleet" if change.is_fleet else "")
@@ -185,6 +188,14 @@ def _to_act_on(found: Sequence[Change], news: News, at: Mapping[str, str]) -> st
         new = " <span class=new>new</span>" if news.is_new(key(change)) and news.last_utc else ""
         lines.append(f"<li class=fail><b>{head}</b>{new}<br>{escape(sentence(change))}<span class=advice>{escape(advice(change))}</span></li>")
     return f"<ul class=act>{''.join(lines)}</ul>"
+
+
+def _compared(vehicles: Sequence[Row]) -> str:
+    """Of how many vehicles a change could be found: silence about the others is not good news."""
+    count = sum(row["days"] >= LEAST_DAYS for row in vehicles)
+    if count == len(vehicles) > 0:
+        return ""
+    return f"<p class=soft>{count:,} of {len(vehicles):,} vehicles have flights on at least {LEAST_DAYS} days. Of the others no change can be found yet.</p>"
 
 
 def _others(changes: Sequence[Change]) -> str:
@@ -209,7 +220,7 @@ def vehicle_column(at: Mapping[str, str]) -> Column:
         vehicle = row["vehicle"]
         return "<span class=soft>not named in the log</span>" if vehicle is None else link(vehicle, at.get(vehicle))
 
-    return "Vehicle", "", cell
+    return "Vehicle", "name", cell
 
 
 def _flight_columns(at: Mapping[str, str], reports: Mapping[str, str]) -> Sequence[Column]:
@@ -217,7 +228,7 @@ def _flight_columns(at: Mapping[str, str], reports: Mapping[str, str]) -> Sequen
         what = "" if row["what"] is None else escape(row["what"])
         advice = "" if row["advice"] is None else f"<small>{escape(row['advice'])}</small>"
         report = reports.get(row["flight_id"])
-        return f"{what}{advice}<small>{link('report of the flight', report) if report else log_link(row['log'])}</small>"
+        return f"{what}{advice}<small>{link('report of ' + Path(row['log']).name, report) if report else log_link(row['log'])}</small>"
 
     return (
         verdict("Verdict", "verdict"),

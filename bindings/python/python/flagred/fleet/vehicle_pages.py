@@ -15,7 +15,7 @@ import numpy as np
 
 from .._core import _page
 from .alerts import advice, sentence
-from .changes import LEVEL, Change
+from .changes import LEAST_DAYS, LEVEL, Change
 from .charts import Mark, Point, chart
 from .permutation import student
 from .tables import STYLE, Column, Row, date, day, figures, known, link, log_link, number, table, verdict
@@ -99,7 +99,7 @@ def _body(
             STYLE,
             f"<p class=soft>{link('Back to the fleet', back)}</p><h1>{escape(vehicle)}</h1><p class=soft>{escape(', '.join(about))}</p>",
             figures(shown),
-            f"<ul class=act>{acts}</ul>" if acts else "<p>The risk of this vehicle did not change more than by chance.</p>",
+            f"<ul class=act>{acts}</ul>" if acts else f"<p>{_calm(rows)}</p>",
             _over_time(rows, parts),
             "<h2>Motors</h2>",
             _motors(rows, vehicles),
@@ -107,6 +107,13 @@ def _body(
             f"<p class=soft>The latest {MOST_FLIGHTS} judged flights are shown.</p>" if len(rows) == MOST_FLIGHTS else "",
         ]
     )
+
+
+def _calm(rows: Sequence[Row]) -> str:
+    days = {date(row["start_utc"]) for row in rows if row["start_utc"] is not None}
+    if len(days) < LEAST_DAYS:
+        return f"Whether the risk of this vehicle changes is unknown: it has flights on fewer than {LEAST_DAYS} days."
+    return "The risk of this vehicle did not change more than by chance."
 
 
 def _over_time(rows: Sequence[Row], parts: Sequence[tuple[float, str]]) -> str:
@@ -155,7 +162,7 @@ def _motors(rows: Sequence[Row], vehicles: int) -> str:
         number("Motor", "motor"),
         number("Least margin, flights", "least"),
         number("Mean margin, %", "margin", 1),
-        ("Command against the others, % a week", "n", lambda row: "NA" if row["drift"] is None else f"{row['drift'][0]:+.2f}<small>{row['drift'][1]:.2f} to {row['drift'][2]:.2f}</small>"),
+        ("Command against the others, % a week", "n", lambda row: "NA" if row["drift"] is None else f"{known(row['drift'][0], 2)}<small>{known(row['drift'][1], 2)} to {known(row['drift'][2], 2)}</small>"),
     )
     note = "<p class=soft>A motor whose command rises against the others gives less thrust than before: propeller, motor, speed controller.</p>"
     surely = NormalDist().inv_cdf(1 - LEVEL / (motors * vehicles)) / NormalDist().inv_cdf(0.975)
@@ -183,7 +190,7 @@ def _warned(rows: Sequence[Row], reports: Mapping[str, str]) -> str:
     def words(row: Row) -> str:
         what = escape(row["what"] or "")
         advice = f"<small>{escape(row['advice'])}</small>" if row["advice"] else ""
-        to = link("report of the flight", reports[row["flight_id"]]) if row["flight_id"] in reports else log_link(row["log"])
+        to = link(f"report of {Path(row['log']).name}", reports[row["flight_id"]]) if row["flight_id"] in reports else log_link(row["log"])
         return f"{what}{advice}<small>{to}</small>"
 
     columns: Sequence[Column] = (
