@@ -80,8 +80,8 @@ def test_a_stronger_wind_is_not_a_change(tmp_path):
 
 
 def test_a_jump_is_not_called_growing_riskier_and_wear_is_not_called_a_jump(tmp_path):
-    rise = lambda vehicle, week, wind: np.where((vehicle == 2) & (week >= 9), 10, 0) + np.where(vehicle == 5, 0.8 * week, 0)
-    worn, jumped = changes(tmp_path, rows(3, rise))
+    rise = lambda vehicle, week, wind: np.where((vehicle == 2) & (week >= 9), 14, 0) + np.where(vehicle == 5, 0.8 * week, 0)
+    worn, jumped = sorted(changes(tmp_path, rows(3, rise)), key=lambda change: change.kind)
     assert (worn.vehicles, worn.kind, worn.is_fleet) == (("v5",), "slope", False)
     assert worn.slope_pct_week == pytest.approx(0.8, abs=0.2) and worn.change_pct == pytest.approx(16, abs=4)
     assert "v5 grows riskier" in sentence(worn)
