@@ -190,7 +190,7 @@ def test_names_sites_and_pilots(dataset, tmp_path, capsys):
         ("", "has no column `vehicle`"),
     ],
 )
-def test_mistakes_in_names_are_told_with_their_line(text, message, dataset, tmp_path):
+def test_mistakes_in_names_are_reported_with_their_line(text, message, dataset, tmp_path):
     (tmp_path / "names.csv").write_text(text)
     with pytest.raises(fleet.FleetError, match=re.escape(message)):
         fleet.open_dataset(str(dataset), tmp_path / "names.csv")

@@ -1,4 +1,4 @@
-"""What an operator must act on: changes in words, as a JSON document, and for a command that sends them."""
+"""Alerts: changes in words, as a JSON document, and passed to a command that sends them."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def find_changes(connection: Any, parts: Mapping[str, Sequence[tuple[float, str]
     for cut in (lambda fleet: _by_mark(fleet, of_parts), _by_week):
         changes = _of_fleet(cut(fleet), fleet, shuffles, chance, level)
         found += [change for change, _ in changes]
-        # What is explained does not count again, as a change of each vehicle.
+        # A change of the fleet is not reported again for each of its vehicles.
         fleet = _without(fleet, [of for _, of in changes])
     found.sort(key=lambda change: -change.change_pct)
     of_vehicles = _of_vehicles(fleet, of_parts, shuffles, chance, level)
@@ -127,8 +127,10 @@ Splits = dict[tuple[float, str | None], list[_Split]]
 
 
 def _by_mark(fleet: Sequence[History], parts: dict[str, list[tuple[float, str]]]) -> Splits:
-    """Firmware and parts of at least two vehicles: each counts from the change before to the next. What one vehicle alone has is not
-    told from its wear here, but by the model of its risk."""
+    """Firmware and parts of at least two vehicles, each with its days from the previous change to the next.
+
+    The change of a single vehicle is left to the models of its risk, which distinguish a step from wear.
+    """
     splits: Splits = defaultdict(list)
     for history in fleet:
         rows = marks(history, parts)

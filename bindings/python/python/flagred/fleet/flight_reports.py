@@ -15,11 +15,14 @@ from .storage import open_place
 __all__ = ["write_flight_reports"]
 
 
-def write_flight_reports(files: Path, worst: Sequence[dict[str, Any]]) -> tuple[dict[str, str], list[str]]:
+def write_flight_reports(files: Path, worst: Sequence[dict[str, Any]], dataset: str) -> tuple[dict[str, str], list[str]]:
     """Writes the report of each flight, unless it is there already. Returns their files by flight, and the flights without one and why.
 
-    A log that is gone, or a profile that is a file of its own, leaves a flight without a report.
+    A log that is gone, or a profile that is a file of its own, leaves a flight without a report. Rows have no options of the storage: those
+    of the dataset are used.
     """
+    address, mark, options = dataset.partition("?")
+    scheme = address.partition("://")[0] + "://"
     written: dict[str, str] = {}
     missing: list[str] = []
     for row in worst:
@@ -29,7 +32,7 @@ def write_flight_reports(files: Path, worst: Sequence[dict[str, Any]]) -> tuple[
         path = files / name
         if not path.exists():
             try:
-                _write(path, row["log"], Profile(row["profile"]))
+                _write(path, row["log"], mark + options if row["log"].startswith(scheme) else "", Profile(row["profile"]))
             except (FlagredError, OSError, ValueError) as error:
                 missing.append(f"{row['log']}: {str(error).partition(chr(10))[0]}")
                 continue
@@ -43,10 +46,10 @@ class _Named(io.BytesIO):
     name: str
 
 
-def _write(path: Path, log: str, profile: Profile) -> None:
+def _write(path: Path, log: str, options: str, profile: Profile) -> None:
     source: str | _Named = log
     if not log.startswith("/"):
-        place = open_place(log)
+        place = open_place(log + options)
         source = _Named(place.read(place.root)[0])
         source.name = log
     page = assess(source, profile).html()

@@ -50,7 +50,7 @@ class History:
 
 
 def histories(connection: Any) -> tuple[list[History], bool]:
-    """The history of each vehicle, and whether it is adjusted: a small fleet does not show what wind and time in the air do."""
+    """The history of each vehicle, and whether it is adjusted: a small fleet has too few flights to estimate the influence of the wind."""
     table = connection.sql(QUERY).to_arrow_table()
     if not len(table):
         return [], False
@@ -83,7 +83,7 @@ def histories(connection: Any) -> tuple[list[History], bool]:
 
 
 def _influences(wind_m_s: Reals, in_air_s: Reals) -> Reals:
-    """What the risk of a flight depends on beside the vehicle: wind, its square, whether it is known, and time in the air."""
+    """The covariates of a flight: wind, its square, whether the wind is known, and time in the air."""
     is_known = np.isfinite(wind_m_s)
     wind = np.where(is_known, wind_m_s, 0)
     air = np.log(np.maximum(np.where(np.isfinite(in_air_s), in_air_s, 1), 1))
@@ -91,9 +91,9 @@ def _influences(wind_m_s: Reals, in_air_s: Reals) -> Reals:
 
 
 def marks(history: History, parts: dict[str, list[tuple[float, str]]]) -> list[tuple[int, str]]:
-    """What was changed about a vehicle: the first row after the change, and its name. Firmware, and parts by their list.
+    """The changes of firmware and parts of a vehicle: the first row after each, and its name.
 
-    A firmware that came back is not a mark again.
+    A return to an earlier firmware is not a mark.
     """
     found, known = [], ""
     seen: set[str] = set()

@@ -85,7 +85,7 @@ def write_report(
     changes = find_changes(connection, of_parts)
     found = alerts(changes, least_pct)
     news = known_before(files, connection, [key(change) for change in found])
-    reports, missing = write_flight_reports(files, answers["worst"][:worst])
+    reports, missing = write_flight_reports(files, answers["worst"][:worst], dataset)
     answers["vehicles"] = _ordered(answers["vehicles"], changes)
     shown = [row["vehicle"] for row in answers["vehicles"][:SHOWN_VEHICLES]]
     pages = write_vehicle_pages(files, connection, shown, changes, of_parts, reports, page.name)
@@ -191,7 +191,7 @@ def _to_act_on(found: Sequence[Change], news: News, at: Mapping[str, str]) -> st
 
 
 def _compared(vehicles: Sequence[Row]) -> str:
-    """Of how many vehicles a change could be found: silence about the others is not good news."""
+    """How many vehicles have enough flights to find a change; whether the others changed is unknown."""
     count = sum(row["days"] >= LEAST_DAYS for row in vehicles)
     if count == len(vehicles) > 0:
         return ""
