@@ -31,7 +31,7 @@ def flight_csv(seed: int, seconds: int = 60) -> str:
 
 
 def make_logs(folder: Path, count: int, own: int = 40) -> None:
-    """So many logs in folders of vehicles: links of the shipped flight and of some others, three of them no logs."""
+    """So many logs in folders of vehicles: copies of the shipped flight and of some others, three of them no logs."""
     shutil.rmtree(folder, ignore_errors=True)
     originals = folder.with_name(folder.name + "-originals")
     shutil.rmtree(originals, ignore_errors=True)
@@ -48,7 +48,8 @@ def make_logs(folder: Path, count: int, own: int = 40) -> None:
         of.mkdir(parents=True, exist_ok=True)
         special = {count // 4: "damaged.BIN", count // 2: "noise.BIN", count * 3 // 4: "empty.BIN"}.get(number)
         name = special or ("steady.BIN" if number % 2 or own == 0 else f"{number // 2 % own}.csv")
-        os.link(originals / name, of / f"{number:06}{Path(name).suffix}")
+        # Copies: hard links to one file count once.
+        shutil.copyfile(originals / name, of / f"{number:06}{Path(name).suffix}")
 
 
 def rows(dataset: Path, kind: str) -> list[str]:
@@ -124,7 +125,7 @@ def driver(arguments: list[str], shard_bytes: int | None = None) -> list[str]:
     """The command line of fleets as a process; smaller shards make more moments at which something can be killed."""
     if shard_bytes is None:
         return [sys.executable, "-m", "flagred.fleet", *arguments]
-    program = f"import sys, flagred.fleet.run as run; run.SHARD_BYTES = {shard_bytes}\n"
+    program = f"import sys, flagred.fleet.shards as shards; shards.MOST_BYTES = {shard_bytes}\n"
     program += "from flagred.fleet.__main__ import main; sys.exit(main(sys.argv[1:]))"
     return [sys.executable, "-c", program, *arguments]
 

@@ -34,9 +34,9 @@ def main() -> int:
         slowest_s = max(slowest_s, spent_s)
         print(f"{question}: {spent_s:.2f} s, {rows} rows")
     begin_s = time.perf_counter()
-    found = fleet.write_report(str(out), given.folder / "fleet.html", 0.5)
+    found = fleet.write_report(str(out), given.folder / "fleet.html", least_pct=0.5).alerts
     print(f"report: {time.perf_counter() - begin_s:.2f} s, {(given.folder / 'fleet.html').stat().st_size / 1e3:.0f} kB")
-    assert [row["vehicle"] for row in found] == ["v00007"], found
+    assert [change.vehicles for change in found] == [("v00007",)], found
     print(f"peak memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")
     shutil.rmtree(given.folder)
     return 0 if slowest_s < 5 else 1

@@ -103,7 +103,8 @@ def check(given: argparse.Namespace) -> int:
     assert flights(out) == rows and run().assessed == 0
     assert fleet.ask(out, "verdicts").num_rows >= 1
     page = given.folder / "fleet.html"
-    fleet.write_report(out, page)
+    report = fleet.write_report(out, page, worst=2)
+    assert not report.missing_reports and len(list((given.folder / "fleet.files/flights").iterdir())) == 2, report.missing_reports
     print(f"right: {len(rows)} rows; the report has {page.stat().st_size / 1e3:.0f} kB")
     return 0
 

@@ -12,7 +12,11 @@ from flagred import fleet
 
 WEEK_S = 604_800
 START_S = 1_767_571_200  # Monday, 5 January 2026.
-RULES = [f"IF margin IS low AND spread IS {term} THEN risk IS high" for term in ("low", "medium", "high")]
+CAUSES = [
+    ("fighting_gusts", "Over 20 s the motors changed strongly to hold attitude, as in gusts. A stronger gust may be too much.", "Reduce speed and height, or land."),
+    ("thrust_surges", "The thrust of all motors together rose and fell strongly, as in turbulence or fast climbs and descents.", "Climb and descend more slowly."),
+    ("motor_at_limit", "Over 2 s, 12 % of the motor commands were at a limit, where a motor cannot correct anything.", "Land now and gently."),
+]
 
 
 def write(out: Path, flights: int, vehicles: int, weeks: int = 26, rising: dict[str, float] | None = None, seed: int = 1) -> None:
@@ -66,6 +70,31 @@ def write(out: Path, flights: int, vehicles: int, weeks: int = 26, rising: dict[
         _by_month(out / "findings", findings, month[warned], part)
 
 
+def write_rows(out: Path, columns: dict[str, np.ndarray]) -> None:
+    """A dataset of assessed flights with these columns and ``start_s``; the others are made up."""
+    count = len(columns["start_s"])
+    ids = [f"{i:020x}" for i in range(count)]
+    made_up = {
+        "log": [f"/logs/vehicle={name}/{id}.BIN" for name, id in zip(columns["vehicle"], ids)],
+        "bytes": np.full(count, 4_400_000),
+        "identity": np.full(count, "4400000-0"),
+        "deleted": np.zeros(count, bool),
+        "flight_id": ids,
+        "status": np.full(count, "assessed"),
+        "start_utc": (columns["start_s"] * 1e6).astype("int64"),
+        "assessed_s": columns["in_air_s"],
+        "findings": (columns["verdict"] != "GOOD").astype(int),
+        "profile": np.full(count, "flagred"),
+        "settings": np.full(count, "made up"),
+        "flagred": np.full(count, "0.0.0"),
+    }
+    flights = pa.table([_column((made_up | columns).get(f.name), f, count) for f in fleet.FLIGHTS], fleet.FLIGHTS)
+    months = made_up["start_utc"].astype("datetime64[us]").astype("datetime64[M]").astype(str)
+    _by_month(out / "flights", flights, months, 0)
+    warned = np.flatnonzero(columns["verdict"] != "GOOD")
+    _by_month(out / "findings", _findings(flights.take(warned), np.random.default_rng(1)), months[warned], 0)
+
+
 def _known(values: np.ndarray, known: np.ndarray) -> pa.Array:
     return pa.array(values, mask=~known)
 
@@ -79,6 +108,8 @@ def _column(values: object, field: pa.Field, count: int) -> pa.Array:
 def _findings(flights: pa.Table, chance: np.random.Generator) -> pa.Table:
     count = len(flights)
     begin = chance.uniform(0, 100, count)
+    cause = chance.choice(3, count, p=[0.6, 0.25, 0.15])
+    peak = flights["risk_max_pct"].to_pylist()
     columns = {
         "flight_id": flights["flight_id"].combine_chunks(),
         "vehicle": flights["vehicle"].combine_chunks(),
@@ -91,8 +122,10 @@ def _findings(flights: pa.Table, chance: np.random.Generator) -> pa.Table:
         "motor": chance.integers(1, 5, count),
         "side": np.where(chance.random(count) < 0.8, "upper", "lower"),
         "margin_mean": chance.uniform(0, 0.2, count),
-        "rule": np.array(RULES)[chance.integers(0, 3, count)],
-        "text": np.full(count, "made up"),
+        "rule": np.full(count, "IF margin IS low THEN risk IS high"),
+        "code": [CAUSES[i][0] for i in cause],
+        "text": [f"{CAUSES[i][1]} The risk reached {value:.0f} %." for i, value in zip(cause, peak)],
+        "advice": [CAUSES[i][2] for i in cause],
     }
     return pa.table([_column(columns.get(f.name), f, count) for f in fleet.FINDINGS], fleet.FINDINGS)
 

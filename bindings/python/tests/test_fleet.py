@@ -20,7 +20,7 @@ from flagred import fleet
 from flagred.fleet import engine, run, takeover
 from flagred.fleet.__main__ import main
 from flagred.fleet.catalog import Catalog
-from flagred.fleet.shards import shards
+from flagred.fleet.shards import largest, shards
 from flagred.fleet.storage import absolute, matcher, open_place
 
 
@@ -55,7 +55,7 @@ def here(monkeypatch: pytest.MonkeyPatch) -> None:
         return done
 
     monkeypatch.setattr(run, "_work", work)
-    monkeypatch.setattr(run, "SHARD_BYTES", 100_000)
+    monkeypatch.setattr(fleet.shards, "MOST_BYTES", 100_000)
 
 
 def table(out: Path, kind: str) -> pa.Table:
@@ -98,11 +98,46 @@ def test_months_and_units(logs, tmp_path, here):
     out = tmp_path / "out"
     fleet.assess([str(logs)], str(out), recursive=True)
     months = {path.parent.name for path in (out / "flights").rglob("*.parquet")}
-    assert {"month=2026-09", "month=2026-10", "month=__HIVE_DEFAULT_PARTITION__"} < months
+    assert {"month=2026-09", "month=2026-10", "month=unknown"} < months
     file = next((out / "flights").rglob("*.parquet"))
     schema = pq.read_schema(file)
     assert schema.metadata[b"flagred.fleet"] == fleet.VERSION.encode()
     assert schema.field("in_air_s").metadata[b"unit"] == b"s"
+
+
+@pytest.mark.parametrize("kind", ["flights", "steps"])
+def test_five_libraries_read_a_dataset_also_of_logs_without_a_start_time(kind, logs, tmp_path, here):
+    pandas, polars, duckdb = (pytest.importorskip(name) for name in ("pandas", "polars", "duckdb"))
+    frame = pytest.importorskip("dask.dataframe")
+    out = tmp_path / "out"
+    (logs / "undated.csv").write_text("".join(line for line in csv(7).splitlines(True) if "utc_at_zero_s" not in line))
+    fleet.assess([str(logs)], str(out), recursive=True)
+    folder, rows = str(out / kind), len(table(out, kind))
+    assert (out / kind / "month=unknown").exists()
+    of_dask = frame.read_parquet(folder).compute()
+    tables = {
+        "pandas": pandas.read_parquet(folder)["month"].astype(str).tolist(),
+        "pyarrow": pq.read_table(folder)["month"].cast(pa.string()).to_pylist(),
+        "dask": of_dask["month"].astype(str).tolist(),
+        "polars": polars.read_parquet(folder)["month"].cast(polars.String).to_list(),
+        "duckdb": [month for (month,) in duckdb.sql(f"SELECT month FROM read_parquet('{folder}/*/*.parquet')").fetchall()],
+    }
+    for library, months in tables.items():
+        assert len(months) == rows and "unknown" in months and "2026-09" in months, library
+        assert sorted(months) == sorted(tables["pyarrow"]), library
+    if kind == "flights":
+        weakest = pandas.read_parquet(folder).set_index("vehicle")["weakest_motor"]
+        assert weakest["v0"] == of_dask.set_index("vehicle")["weakest_motor"]["v0"] == 1
+
+
+def test_motors_have_their_mean_margin(logs, tmp_path, here):
+    out = tmp_path / "out"
+    fleet.assess([str(logs)], str(out), recursive=True)
+    row = flights(out)["4.csv"]
+    assert row["motor_commands"] == pytest.approx([0.44, 0.4, 0.41, 0.41])
+    assert row["motor_margins"] == pytest.approx([0.44, 0.4, 0.41, 0.41])
+    assert row["weakest_motor"] == 2 and row["weakest_margin"] == pytest.approx(0.4)
+    assert flights(out)["noise.bin"]["motor_margins"] is None
 
 
 def test_only_what_is_missing_or_changed(logs, tmp_path, here):
@@ -325,6 +360,16 @@ def test_shards_are_cut_by_size_and_source():
     assert one.halves()[0].logs + one.halves()[1].logs == one.logs
 
 
+def test_a_small_fleet_employs_all_cores():
+    logs = [("a", fleet.Log(str(i), 3_000_000, 0)) for i in range(108)]
+    parts = list(shards(logs, *largest(108, 324_000_000, 16)))
+    assert len(parts) >= 54 and max(len(part.logs) for part in parts) <= 2
+    assert len(list(shards(logs, *largest(108, 324_000_000, 1)))) == 4
+    # A large fleet keeps the largest shards, and small logs do not make one shard.
+    assert largest(1_000_000, 4 << 40, 16) == (128 << 20, 1000)
+    assert largest(40, 40_000, 2)[1] == 5
+
+
 def test_names_of_logs():
     wanted = matcher(fleet.storage.LOGS)
     assert wanted("/a/b/FLIGHT.BIN") and wanted("x.ulg.gz") and not wanted("a.bin/readme.md")
@@ -370,6 +415,45 @@ def test_a_log_that_ends_its_worker_is_found(logs, tmp_path, monkeypatch):
     assert len(rows) == 9
     monkeypatch.delenv("PYTHONPATH")
     assert fleet.assess([str(logs)], str(out), recursive=True, workers=2).assessed == 0
+
+
+def test_a_full_disk_stops_the_run_before_logs_are_read_again(logs, tmp_path, monkeypatch, capsys):
+    """Workers have a disk that takes no steps any more. Each log is read at most once."""
+    plugin = tmp_path / "plugin"
+    plugin.mkdir()
+    (plugin / "sitecustomize.py").write_text(
+        "import errno, flagred\n"
+        "import flagred.fleet.rows as rows\n"
+        "from flagred.fleet.storage import Place\n"
+        "assess, write = rows.assess, Place.write\n"
+        "def counted(log, *arguments, **named):\n"
+        f"    open({str(tmp_path / 'read')!r}, 'a').write(f'{{log}}\\n')\n"
+        "    return assess(log, *arguments, **named)\n"
+        "def full(place, path, content):\n"
+        "    if '/steps/' in path:\n"
+        "        raise OSError(errno.ENOSPC, 'No space left on device')\n"
+        "    write(place, path, content)\n"
+        "rows.assess, Place.write = counted, full\n"
+    )
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [str(plugin), os.environ.get("PYTHONPATH")])))
+    arguments = ["assess", str(logs), "--recursive", "--out", str(tmp_path / "out"), "--workers", "2"]
+    assert main(arguments) == 2
+    assert "the dataset cannot be written: [Errno 28] No space left on device" in capsys.readouterr().err
+    read = (tmp_path / "read").read_text().splitlines()
+    assert 0 < len(read) == len(set(read)) <= 9
+    monkeypatch.delenv("PYTHONPATH")
+    assert main(arguments) == 0 and len(flights(tmp_path / "out")) == 9
+
+
+def test_a_disk_without_space_is_noticed_before_logs_are_read(logs, tmp_path, monkeypatch):
+    out = tmp_path / "out"
+    job = fleet.Job.of(str(out), flagred.Profile(), 1.0, False).of_run(takeover.take_over(open_place(str(out))))
+    listed = [(str(logs), log) for log in open_place(str(logs)).logs(False, fleet.storage.LOGS)]
+    (shard,) = shards(listed, 1 << 30)
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(10**9, 10**9 - 5000, 5000))
+    monkeypatch.setattr("flagred.fleet.rows.assess", lambda *arguments, **named: pytest.fail("a log was read"))
+    with pytest.raises(OSError, match="only 5000 bytes are left on the disk"):
+        fleet.process(shard, job)
 
 
 def test_a_worker_that_dask_gave_up_is_replaced(monkeypatch):

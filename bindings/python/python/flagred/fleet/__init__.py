@@ -6,11 +6,12 @@
 import sys
 
 try:
+    from .changes import Change, find_changes
     from .compaction import compact
     from .errors import DamagedError, FleetError
     from .process import Outcome, process
     from .questions import QUESTIONS, ask, open_dataset
-    from .report import rising, write_report
+    from .report import Report, write_report
     from .run import Assessed, Plan, Watcher, assess, plan
     from .schema import FINDINGS, FLIGHTS, STEPS, VERSION
     from .shards import Job, Shard
@@ -32,21 +33,23 @@ __all__ = [
     "STEPS",
     "VERSION",
     "Assessed",
+    "Change",
     "DamagedError",
     "FleetError",
     "Job",
     "Log",
     "Outcome",
     "Plan",
+    "Report",
     "Shard",
     "Watcher",
     "ask",
     "assess",
     "compact",
+    "find_changes",
     "open_dataset",
     "open_place",
     "plan",
     "process",
-    "rising",
     "write_report",
 ]

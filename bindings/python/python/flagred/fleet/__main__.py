@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import time
 from collections.abc import Sequence
+from pathlib import Path
 
 from .. import FlagredError
+from .alerts import sentence
 from .catalog import Counts
 from .compaction import compact
 from .errors import DamagedError, FleetError
@@ -16,6 +19,8 @@ from .run import Assessed, assess
 from .storage import LOGS
 
 __all__ = ["main"]
+
+MOST_REPORTS = 1000
 
 
 class Progress:
@@ -101,7 +106,13 @@ def parser() -> argparse.ArgumentParser:
     one = commands.add_parser("report", help="write a page about a dataset")
     one.add_argument("dataset", metavar="DATASET")
     one.add_argument("-o", "--out", required=True, metavar="FILE", help="the page, such as fleet.html")
-    one.add_argument("--alert", type=float, metavar="PCT", help="exit with 1 where a vehicle's risk surely rises by more per cent a week")
+    one.add_argument("--alert", nargs="?", type=float, const=0.0, metavar="PCT", help="exit with 1 if the risk rose for sure, by more than so many percentage points (0)")
+    one.add_argument("--alert-json", metavar="FILE", help="write changes and alerts as JSON; - for standard output")
+    one.add_argument("--alert-command", metavar="COMMAND", help="a command to run for new alerts, with the JSON on its standard input")
+    one.add_argument("--names", metavar="FILE", help="a CSV file of vehicles: vehicle (or serial, id), name, site, pilot")
+    one.add_argument("--only", action="append", type=_filter, metavar="KEY=VALUE", help="keep these vehicles: vehicle=, site= or pilot=")
+    one.add_argument("--parts", metavar="FILE", help="a CSV file of changed parts: vehicle, day, part")
+    one.add_argument("--reports", type=_worst, default=0, metavar="worst:N", help="write the reports of the N worst flights")
     one = commands.add_parser("compact", help="join the small files of a dataset")
     one.add_argument("dataset", metavar="DATASET")
     return parser
@@ -144,11 +155,44 @@ def _assess(given: argparse.Namespace) -> int:
 
 
 def _report(given: argparse.Namespace) -> int:
-    alerts = write_report(given.dataset, given.out, given.alert)
-    for row in alerts:
-        low, high = row["low_pct_week"], row["high_pct_week"]
-        print(f"{row['vehicle']} rises by {row['slope_pct_week']:.2f} % a week ({low:.2f} to {high:.2f}), by {row['flights']} flights")
-    return 1 if alerts else 0
+    only = dict(given.only or ())
+    if len(only) < len(given.only or ()):
+        raise FleetError("a filter is given twice", "give each of vehicle=, site= and pilot= at most once")
+    report = write_report(
+        given.dataset,
+        given.out,
+        least_pct=given.alert or 0.0,
+        names=given.names,
+        only=only,
+        parts=given.parts,
+        worst=given.reports,
+        alert_command=given.alert_command,
+    )
+    for missing in report.missing_reports:
+        print(f"warning: no report of {missing}", file=sys.stderr)
+    if given.alert_json == "-":
+        print(json.dumps(report.document, indent=2))
+    else:
+        for change in report.alerts:
+            print(sentence(change))
+        if given.alert_json:
+            Path(given.alert_json).write_text(json.dumps(report.document, indent=2) + "\n", encoding="utf-8")
+    wants_alert = given.alert is not None or given.alert_command is not None
+    return 1 if wants_alert and report.alerts else 0
+
+
+def _worst(text: str) -> int:
+    kind, _, count = text.partition(":")
+    if kind != "worst" or not count.isdigit() or not 1 <= int(count) <= MOST_REPORTS:
+        raise argparse.ArgumentTypeError(f"`{text}` is not `worst:N` with N from 1 to {MOST_REPORTS}")
+    return int(count)
+
+
+def _filter(text: str) -> tuple[str, str]:
+    key, sign, value = text.partition("=")
+    if not sign:
+        raise argparse.ArgumentTypeError(f"`{text}` is not KEY=VALUE, such as site=North")
+    return key, value
 
 
 def _compact(given: argparse.Namespace) -> int:

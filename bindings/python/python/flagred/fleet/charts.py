@@ -1,4 +1,4 @@
-"""Pictures of the fleet report: values over weeks with their intervals, as SVG."""
+"""Charts of the fleet's pages: values over days, in the frame that the report of a flight has."""
 
 from __future__ import annotations
 
@@ -8,45 +8,65 @@ from collections.abc import Sequence
 from html import escape
 from typing import NamedTuple
 
-__all__ = ["Point", "intervals"]
-
-WIDTH, HEIGHT = 320, 150
-LEFT, RIGHT, TOP, BOTTOM = 34, 8, 10, 20
+__all__ = ["Mark", "Point", "chart"]
 
 
 class Point(NamedTuple):
-    """A value with its interval."""
+    """A value at a time, with its interval or range."""
 
-    day: datetime.date
+    at_s: float
+    """Seconds since 1970."""
     value: float
     low: float
     high: float
-    flights: int
-    """How many flights it stands on."""
+    kind: str
+    """A class of the style sheet, which gives the colour."""
+    words: str
+    """What is shown under the pointer."""
 
 
-def intervals(points: Sequence[Point], title: str, kind: str) -> str:
-    """Values in per cent over days, each with its interval as a bar. ``kind`` is a class of the style sheet, which gives the colour."""
-    first, last = points[0].day.toordinal(), points[-1].day.toordinal()
-    top = min(100, 10 * math.ceil(max(point.value for point in points) * 0.13 + 0.1))
+class Mark(NamedTuple):
+    """A change at a time, such as a new firmware."""
 
-    def x(day: datetime.date) -> float:
-        return LEFT + 6 + (day.toordinal() - first) / max(1, last - first) * (WIDTH - LEFT - RIGHT - 12)
+    at_s: float
+    name: str
+
+
+def chart(caption: str, points: Sequence[Point], marks: Sequence[Mark] = (), line: Sequence[tuple[float, float]] = (), large: bool = True) -> str:
+    """Points over days, each with its interval as a bar; marks, whose names only a large chart has room for; a line."""
+    if not points:
+        return ""
+    first, last = min(point.at_s for point in points), max(point.at_s for point in points)
+    span = max(last - first, 1.0)
+    highest = max(max(point.high, point.value) for point in points)
+    step = next(step for step in (1, 2, 5, 10, 25, 50, 1e9) if step * 4 >= min(highest, 100))
+    top = step * math.ceil(min(highest, 100) / step) or step
+
+    def x(at_s: float) -> float:
+        return 15 + 970 * (at_s - first) / span
 
     def y(value: float) -> float:
-        return TOP + (1 - min(max(value, 0.0), top) / top) * (HEIGHT - TOP - BOTTOM)
+        return 100 - 100 * min(max(value, 0.0), top) / top
 
-    parts = [f"<svg class={kind} viewBox='0 0 {WIDTH} {HEIGHT}' role=img><title>{escape(title)}</title>"]
-    for share in (0.0, 0.5, 1.0):
-        level = y(share * top)
-        parts.append(f"<line class=grid x1={LEFT} x2={WIDTH - RIGHT} y1={level:.1f} y2={level:.1f} />")
-        parts.append(f"<text x={LEFT - 5} y={level + 4:.1f} text-anchor=end>{share * top:g}</text>")
+    levels = [step * i for i in range(round(top / step) + 1)]
+    parts = [f"<path class=grid d='M0 {y(level):.1f}H1000' />" for level in levels]
+    for mark in marks:
+        parts.append(f"<path class=event d='M{x(mark.at_s):.1f} 0V100'><title>{escape(mark.name)}</title></path>")
+    if line:
+        parts.append("<path class='line mean' d='M" + "L".join(f"{x(at):.1f} {y(value):.1f}" for at, value in line) + "' />")
     for point in points:
-        at = x(point.day)
-        told = f"week of {point.day}: {point.value:.1f} % ({point.low:.1f} to {point.high:.1f}), {point.flights} flights"
-        bar = f"<line class=bar x1={at:.1f} x2={at:.1f} y1={y(point.low):.1f} y2={y(point.high):.1f} />"
-        dot = f"<circle class=dot cx={at:.1f} cy={y(point.value):.1f} r=2.6 />"
-        parts.append(f"<g>{bar}{dot}<title>{told}</title></g>")
-    parts.append(f"<text x={LEFT} y={HEIGHT - 5}>{points[0].day}</text>")
-    parts.append(f"<text x={WIDTH - RIGHT} y={HEIGHT - 5} text-anchor=end>{points[-1].day}</text></svg>")
-    return "".join(parts)
+        at, bar = x(point.at_s), f"M{x(point.at_s):.1f} {y(point.low):.1f}V{y(point.high):.1f}"
+        dot = f"M{at:.1f} {y(point.value):.1f}h0"
+        title = f"<title>{escape(point.words)}</title>"
+        parts.append(f"<g class={point.kind}><path class=line d='{bar}' /><path class='dot under' d='{dot}' /><path class=dot d='{dot}'>{title}</path></g>")
+    labels = "".join(f"<span class=y style='bottom:{100 * level / top:.4g}%'>{level:g}</span>" for level in levels)
+    names = []
+    for mark in marks if large else ():
+        share = x(mark.at_s) / 10
+        side = f"left:{share:.1f}%" if share < 60 else f"right:{100 - share:.1f}%;padding-right:.25rem"
+        names.append(f"<span class=mark style='{side}'>{escape(mark.name)}</span>")
+    begin, end = (datetime.datetime.fromtimestamp(at, datetime.timezone.utc).date() for at in (first, last))
+    times = f"<span style='left:0;transform:none'>{begin}</span>" + (f"<span class=end style='left:100%'>{end}</span>" if end != begin else "")
+    picture = f"<svg class=plot viewBox='0 0 1000 100' preserveAspectRatio=none role=img aria-label='{escape(caption, quote=True)}'>{''.join(parts)}</svg>"
+    frame = f"<div class=frame><div class=area>{picture}{''.join(names)}</div>{labels}</div><div class=times>{times}</div>"
+    return f"<figure{' class=large' if large else ''}><figcaption>{escape(caption)}</figcaption>{frame}</figure>"

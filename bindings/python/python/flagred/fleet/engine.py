@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 import time
 from collections import deque
@@ -21,7 +22,7 @@ from .process import Outcome, process
 from .shards import Job, Shard
 from .takeover import Superseded
 
-__all__ = ["cluster", "run"]
+__all__ = ["cluster", "cores", "run"]
 
 MOST_WORKER_BYTES = 2 << 30
 """The memory of a worker here; one that takes more is ended, and its log found."""
@@ -61,6 +62,12 @@ def cluster(scheduler: str | None, workers: int | None) -> Iterator[Client]:
         )
         with local, Client(local, set_as_default=False) as client:
             yield client
+
+
+def cores(client: Client) -> int:
+    """How many shards the cluster works on at a time; a cluster without workers counts as this machine."""
+    here = client.cluster
+    return len(here.worker_spec) if isinstance(here, LocalCluster) else sum(client.nthreads().values()) or CPU_COUNT
 
 
 def run(client: Client, shards: Iterator[Shard], job: Job, wait: Callable[[int], None]) -> Iterator[Outcome]:
@@ -108,7 +115,7 @@ def _under_way(
     def submit() -> None:
         most = 3 * max(1, sum(client.nthreads().values()))
         while len(waiting) < most and (shard := next(shards, None)) is not None:
-            future = client.submit(process, shard, job, key=f"flagred-{shard.id}-{time.monotonic_ns()}", pure=False, retries=RETRIES)
+            future = client.submit(_attempt, shard, job, key=f"flagred-{shard.id}-{time.monotonic_ns()}", pure=False, retries=RETRIES)
             waiting[future] = shard
             done.add(future)
 
@@ -159,11 +166,27 @@ class _Attendance:
         return workers
 
 
+IN_VAIN = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM)
+"""Errors of writing that the same write meets again: a full disk, an exhausted quota, a lack of permission."""
+
+
+def _attempt(shard: Shard, job: Job) -> Outcome | OSError:
+    """The outcome of a shard, or the error for which trying it again would read all its logs in vain: Dask retries what raises."""
+    try:
+        return process(shard, job)
+    except OSError as error:
+        if error.errno in IN_VAIN:
+            return error
+        raise
+
+
 def _result(future: Future) -> Outcome | BaseException:
     if future.status not in ("finished", "error"):
         raise _lost()
     try:
-        outcome: Outcome = future.result()
+        outcome: Outcome | OSError = future.result()
+        if isinstance(outcome, OSError):
+            raise outcome
         return outcome
     except (CancelledError, CommClosedError) as error:
         raise _lost() from error

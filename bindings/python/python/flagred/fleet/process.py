@@ -19,6 +19,8 @@ from .takeover import still_ours
 
 __all__ = ["Outcome", "process", "write"]
 
+LEAST_LOG_BYTES = 4096
+"""About the least that the rows of a log take on the disk of the dataset."""
 TRIES_S = (0.5, 2.0, 8.0)
 """How long to wait before an object is asked for again."""
 
@@ -48,6 +50,8 @@ def process(shard: Shard, job: Job) -> Outcome:
         The dataset cannot be written.
     """
     source, out = open_place(shard.source), open_place(job.out)
+    # A full disk is noticed before the logs are read.
+    out.require_space(LEAST_LOG_BYTES * len(shard.logs))
     rows: dict[str | None, Rows] = {}
     unchanged = 0
     for log in shard.logs:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import lru_cache
@@ -14,6 +15,7 @@ import pyarrow as pa
 
 from .catalog import READERS
 from .errors import DamagedError, FleetError
+from .names import EMPTY, read_names, view
 from .schema import FINDINGS, FLIGHTS, KINDS, STEPS
 from .storage import Place, absolute, open_place, parquet
 from .takeover import check
@@ -33,13 +35,23 @@ QUESTIONS: tuple[str, ...] = tuple(_parts()[1])
 """The names of the questions."""
 
 
-def open_dataset(dataset: str) -> Any:
+def open_dataset(dataset: str, names: str | os.PathLike[str] | None = None, only: Mapping[str, str] | None = None) -> Any:
     """A DuckDB connection with the views ``flights``, ``findings`` and ``steps`` of a dataset, here or on object storage.
+
+    Parameters
+    ----------
+    dataset
+        The dataset: a folder, or an address on object storage.
+    names
+        A CSV file with names, sites and pilots of vehicles: docs/fleet.md. ``vehicle`` is then the name, and ``flights`` has the
+        columns ``site`` and ``pilot``.
+    only
+        Keeps the flights of these vehicles, such as ``{"site": "North"}``: by ``vehicle``, ``site`` or ``pilot``.
 
     Raises
     ------
     FleetError
-        There is no dataset, or a file of it is damaged.
+        There is no dataset, a file of it is damaged, or the names or the filter fit none of its vehicles.
     """
     import duckdb  # Who only assesses does without it and its memory.
 
@@ -49,6 +61,10 @@ def open_dataset(dataset: str) -> Any:
     connection = duckdb.connect()
     with _reading(place):
         _views(connection, place)
+        connection.register("names", EMPTY if names is None else read_names(names))
+        view(connection, names, only or {})
+        connection.execute(_parts()[0])
+        _require_findings(connection, place)
         # Questions name a damaged file.
         connection.execute("SET VARIABLE flagred_dataset = ?", [uri])
     return connection
@@ -61,7 +77,7 @@ def _views(connection: Any, place: Place) -> None:
         if not paths:
             if kind == "flights":
                 raise FleetError(f"there are no flights in `{place.shown(place.root)}`", "make a dataset with `assess`")
-            connection.register(kind, schema.empty_table())
+            connection.register(f"stored_{kind}", schema.empty_table())
             continue
         with ThreadPoolExecutor(READERS) as readers:
             # DuckDB opens only the files that a question needs.
@@ -69,7 +85,7 @@ def _views(connection: Any, place: Place) -> None:
         if place.is_local:
             folder = place.file(kind).replace("'", "''")
             connection.execute(
-                f"CREATE VIEW {kind} AS FROM read_parquet('{folder}/*/*.parquet', hive_partitioning = true, hive_types = {{'month': VARCHAR}})"
+                f"CREATE VIEW stored_{kind} AS FROM read_parquet('{folder}/*/*.parquet', hive_partitioning = true, hive_types = {{'month': VARCHAR}})"
             )
         else:
             import pyarrow.dataset
@@ -78,9 +94,11 @@ def _views(connection: Any, place: Place) -> None:
             of = pyarrow.dataset.dataset(
                 paths, schema=pa.schema([*schema, ("month", pa.string())]), filesystem=place.fs, partitioning=month, format="parquet"
             )
-            connection.register(kind, of)
-    connection.execute(_parts()[0])
-    missing = "SELECT log FROM flights WHERE findings > 0 AND flight_id NOT IN (SELECT flight_id FROM findings) ORDER BY log LIMIT 1"
+            connection.register(f"stored_{kind}", of)
+
+
+def _require_findings(connection: Any, place: Place) -> None:
+    missing = "SELECT log FROM stored_flights WHERE findings > 0 AND flight_id NOT IN (SELECT flight_id FROM stored_findings) ORDER BY log LIMIT 1"
     if lost := connection.execute(missing).fetchone():
         raise DamagedError(f"the findings of `{lost[0]}` are missing in `{place.shown(place.root)}`", "run `assess` again: it reads the log again")
 

@@ -1,16 +1,11 @@
 -- Questions to a dataset, for DuckDB. The views `flights` and `findings` come first: see docs/fleet.md.
--- Intervals hold 95 %: of shares those of Wilson, of means and slopes those of Student (of few flights wider than the normal ones).
+-- Intervals hold 95 %; those of shares are Wilson's.
 
 -- Ends of Wilson's interval of k of n, in per cent.
 CREATE OR REPLACE MACRO wilson_low(k, n) AS
   CASE WHEN k = 0 THEN 0 ELSE 100 * (k + 1.920729 - 1.959964 * sqrt(k * (n - k) / n + 0.960365)) / (n + 3.841459) END;
 CREATE OR REPLACE MACRO wilson_high(k, n) AS
   CASE WHEN k = n THEN 100 ELSE 100 * (k + 1.920729 + 1.959964 * sqrt(k * (n - k) / n + 0.960365)) / (n + 3.841459) END;
--- The 97.5 % quantile of Student's t, after Cornish and Fisher: 3 % low at 2 degrees of freedom, within 0.1 % from 6 on.
-CREATE OR REPLACE MACRO student(freedom) AS 1.959964 + 2.372271 / freedom + 2.822553 / freedom ** 2 + 2.555497 / freedom ** 3;
--- The slope of y over x and half the width of its interval.
-CREATE OR REPLACE MACRO slope_error(y, x) AS student(regr_count(y, x) - 2)
-  * sqrt(greatest(regr_syy(y, x) - regr_sxy(y, x) ** 2 / regr_sxx(y, x), 0) / (regr_count(y, x) - 2) / regr_sxx(y, x));
 -- Flights that tell of the risk: judged for at least 10 s.
 CREATE OR REPLACE VIEW judged AS FROM flights WHERE status = 'assessed' AND verdict <> 'NA' AND assessed_s >= 10;
 
@@ -29,22 +24,14 @@ SELECT date_trunc('week', start_utc AT TIME ZONE 'UTC')::DATE AS week, count(*) 
   wilson_high(count(*) FILTER (WHERE verdict IN ('WARN', 'FAIL')), count(*)) AS high_pct, avg(risk_mean_pct) AS risk_mean_pct
 FROM judged WHERE start_utc IS NOT NULL GROUP BY week HAVING count(*) >= 5 ORDER BY week;
 
--- name: trends
--- Which vehicles grow riskier: the slope of the mean risk, in per cent a week, over at least 8 flights in at least 3 weeks.
-SELECT vehicle, count(*) AS flights, avg(risk_mean_pct) AS risk_mean_pct, min(start_utc) AS first_utc, max(start_utc) AS last_utc,
-  regr_slope(risk_mean_pct, epoch(start_utc) / 604800) AS slope_pct_week,
-  slope_pct_week - slope_error(risk_mean_pct, epoch(start_utc) / 604800) AS low_pct_week,
-  slope_pct_week + slope_error(risk_mean_pct, epoch(start_utc) / 604800) AS high_pct_week
-FROM judged WHERE vehicle IS NOT NULL AND start_utc IS NOT NULL AND risk_mean_pct IS NOT NULL GROUP BY vehicle
-HAVING count(*) >= 8 AND count(DISTINCT date_trunc('week', start_utc)) >= 3 ORDER BY low_pct_week DESC, vehicle;
-
--- name: vehicle_weeks
--- The mean risk of each vehicle and week with at least 3 flights.
-SELECT vehicle, date_trunc('week', start_utc AT TIME ZONE 'UTC')::DATE AS week, count(*) AS flights, avg(risk_mean_pct) AS mean_pct,
-  mean_pct - student(count(*) - 1) * stddev_samp(risk_mean_pct) / sqrt(count(*)) AS low_pct,
-  mean_pct + student(count(*) - 1) * stddev_samp(risk_mean_pct) / sqrt(count(*)) AS high_pct
-FROM judged WHERE vehicle IS NOT NULL AND start_utc IS NOT NULL AND risk_mean_pct IS NOT NULL
-GROUP BY vehicle, week HAVING count(*) >= 3 ORDER BY vehicle, week;
+-- name: vehicles
+-- Each vehicle: how often it warned, its mean risk, and the motor that has the least margin in most flights.
+SELECT vehicle, any_value(site) AS site, any_value(pilot) AS pilot, count(*) AS flights, count(DISTINCT start_utc::DATE) AS days,
+  count(*) FILTER (WHERE verdict IN ('WARN', 'FAIL')) AS warned, count(*) FILTER (WHERE verdict = 'FAIL') AS failed,
+  wilson_low(warned, count(*)) AS low_pct, wilson_high(warned, count(*)) AS high_pct, avg(risk_mean_pct) AS risk_mean_pct,
+  sum(in_air_s) / 3600 AS in_air_h, mode(weakest_motor) AS weakest_motor, avg(weakest_margin) AS weakest_margin,
+  arg_max(firmware, start_utc) AS firmware, min(start_utc) AS first_utc, max(start_utc) AS last_utc
+FROM judged WHERE vehicle IS NOT NULL GROUP BY vehicle ORDER BY low_pct DESC, risk_mean_pct DESC, vehicle;
 
 -- name: motors
 -- Which motor was at its limit, and at which, in findings that warn.
@@ -52,12 +39,13 @@ SELECT motor, side, count(*) AS findings, count(DISTINCT flight_id) AS flights, 
   quantile_cont(margin_mean, 0.5) AS margin_median, sum(to_s - from_s) / 60 AS minutes
 FROM findings WHERE motor IS NOT NULL AND severity IN ('WARN', 'FAIL') GROUP BY motor, side ORDER BY findings DESC, motor, side;
 
--- name: rules
--- What raised the risk, and by which rule, in findings that warn.
-SELECT code, rule, count(*) AS findings, 100.0 * count(*) / sum(count(*)) OVER () AS share_pct,
+-- name: causes
+-- What happened in findings that warn, and what to do; the text is that of the worst one, without its numbers.
+SELECT code, regexp_replace(arg_max(text, value_pct), ' (Motor [0-9]+ was closest to|The (elevated )?risk( `[^`]*`)? reached) .*$', '') AS what,
+  arg_max(advice, value_pct) AS advice, count(*) AS findings, 1e2 * count(*) / sum(count(*)) OVER () AS share_pct,
   wilson_low(count(*), sum(count(*)) OVER ()) AS low_pct, wilson_high(count(*), sum(count(*)) OVER ()) AS high_pct,
-  count(DISTINCT flight_id) AS flights
-FROM findings WHERE rule IS NOT NULL AND severity IN ('WARN', 'FAIL') GROUP BY code, rule ORDER BY findings DESC, rule LIMIT 20;
+  count(DISTINCT flight_id) AS flights, count(DISTINCT vehicle) AS vehicles
+FROM findings WHERE severity IN ('WARN', 'FAIL') GROUP BY code ORDER BY flights DESC, code LIMIT 20;
 
 -- name: firmware
 -- By firmware: the highest risk of a flight, and the share of flights that warned.
@@ -83,9 +71,13 @@ SELECT log, f.vehicle, start_utc, verdict, at_risk_s, in_air_s FROM flights AS f
 ORDER BY at_risk_s DESC, log LIMIT 10;
 
 -- name: worst
--- The ten worst flights.
-SELECT log, vehicle, start_utc, verdict, risk_max_pct, elevated_risk_max_pct, saturated_share, firmware FROM judged
-ORDER BY list_position(['FAIL', 'WARN', 'GOOD'], verdict), risk_max_pct DESC, elevated_risk_max_pct DESC, log LIMIT 10;
+-- The worst flights, with their gravest finding.
+SELECT flight_id, log, f.vehicle, start_utc, verdict, risk_max_pct, elevated_risk_max_pct, firmware, profile, settings, flagred, what, advice
+FROM judged AS f LEFT JOIN (
+  SELECT flight_id, arg_max(text, (severity = 'FAIL')::INT * 1000 + coalesce(value_pct, 0)) AS what,
+    arg_max(advice, (severity = 'FAIL')::INT * 1000 + coalesce(value_pct, 0)) AS advice
+  FROM findings WHERE severity IN ('WARN', 'FAIL') GROUP BY flight_id) USING (flight_id)
+ORDER BY list_position(['FAIL', 'WARN', 'GOOD'], verdict), risk_max_pct DESC, elevated_risk_max_pct DESC, log LIMIT 1000;
 
 -- name: no_verdict
 -- Why flights that were read have no verdict.

@@ -1,47 +1,58 @@
-"""The report of a fleet: one page that needs nothing beside it."""
+"""The report of a fleet: a page that says first what to act on, with a page for each vehicle and a report for each of the worst flights."""
 
 from __future__ import annotations
 
 import datetime
 import os
-from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from .._core import _page
-from .charts import Point, intervals
+from .alerts import advice, alerts, key, run_command, sentence, to_json
+from .changes import LEAST_DAYS, LEVEL, Change, find_changes
+from .charts import Point, chart
+from .flight_reports import write_flight_reports
+from .names import EMPTY, read_names, read_parts
+from .news import News, known_before, remember
 from .questions import QUESTIONS, ask, open_dataset
+from .sections import CAUSES, SECTIONS
+from .tables import STYLE, Column, Row, date, day, figures, known, link, log_link, number, section, table, text, verdict
+from .vehicle_pages import write_vehicle_pages
 
-__all__ = ["rising", "write_report"]
+__all__ = ["Report", "write_report"]
 
-SHOWN_VEHICLES = 12
-"""Vehicles with a picture of their own: those that rise most surely."""
-SHOWN_TRENDS = 50
-
-Row = dict[str, Any]
-
-
-def rising(dataset: str | Any, limit_pct_week: float = 0.0) -> list[Row]:
-    """The vehicles whose risk rises faster than a limit, as far as their flights can tell.
-
-    The whole 95 % interval of the slope lies above the limit. Of many vehicles whose risk does not rise at all, 2.5 % still pass a
-    limit of 0 by chance: choose one that matters.
-
-    Parameters
-    ----------
-    dataset
-        The dataset, or a connection that :func:`open_dataset` gave.
-    limit_pct_week
-        The limit, in per cent of risk a week.
-    """
-    rows: list[Row] = ask(dataset, "trends").to_pylist()
-    return [row for row in rows if row["low_pct_week"] is not None and row["low_pct_week"] > limit_pct_week]
+SHOWN_FLIGHTS, SHOWN_NEW, SHOWN_VEHICLES = 10, 5, 500
 
 
-def write_report(dataset: str, out: str | os.PathLike[str], limit_pct_week: float | None = None) -> list[Row]:
-    """Writes the report of a dataset as one HTML page. Gives the vehicles that :func:`rising` finds; none without a limit.
+@dataclass(frozen=True)
+class Report:
+    """What a report found."""
+
+    changes: list[Change]
+    """All changes: those of the fleet first, the largest rise first."""
+    alerts: list[Change]
+    """The rises above the limit, which an operator must act on."""
+    document: dict[str, Any]
+    """The same for programs: docs/fleet.md."""
+    missing_reports: list[str]
+    """Flights whose report could not be written, each with the reason."""
+
+
+def write_report(
+    dataset: str,
+    out: str | os.PathLike[str],
+    *,
+    least_pct: float = 0.0,
+    names: str | os.PathLike[str] | None = None,
+    only: Mapping[str, str] | None = None,
+    parts: str | os.PathLike[str] | None = None,
+    worst: int = 0,
+    alert_command: str | None = None,
+) -> Report:
+    """Writes the report of a dataset as an HTML page, and what it links to into the folder ``NAME.files`` beside it.
 
     Parameters
     ----------
@@ -49,248 +60,226 @@ def write_report(dataset: str, out: str | os.PathLike[str], limit_pct_week: floa
         The dataset: a folder, or an address on object storage.
     out
         The page.
-    limit_pct_week
-        From which slope on vehicles are listed as rising, in per cent of risk a week.
+    least_pct
+        The least rise that is an alert, in percentage points: of the risk or of the share of flights that warn. The whole 95 %
+        interval must be above it.
+    names, only
+        Names of vehicles, and the vehicles to keep, as :func:`open_dataset` takes them.
+    parts
+        A CSV file of parts that were changed: `vehicle`, `day`, `part`.
+    worst
+        For how many of the worst flights the report of the flight is written. Their logs are read again.
+    alert_command
+        A command of the shell that is run if there is an alert that the last report did not have. It reads the document as JSON.
+
+    Raises
+    ------
+    FleetError
+        There is no dataset, a file is damaged or cannot be understood, or the command failed.
     """
-    connection = open_dataset(dataset)
+    page = Path(out)
+    files = page.with_name(f"{page.stem}.files")
+    connection = open_dataset(dataset, names, only)
     answers: dict[str, list[Row]] = {question: ask(connection, question).to_pylist() for question in QUESTIONS}
-    alerts = [] if limit_pct_week is None else rising(connection, limit_pct_week)
+    of_parts = read_parts(parts, EMPTY if names is None else read_names(names)) if parts is not None else {}
+    changes = find_changes(connection, of_parts)
+    found = alerts(changes, least_pct)
+    news = known_before(files, connection, [key(change) for change in found])
+    reports, missing = write_flight_reports(files, answers["worst"][:worst], dataset)
+    answers["vehicles"] = _ordered(answers["vehicles"], changes)
+    shown = [row["vehicle"] for row in answers["vehicles"][:SHOWN_VEHICLES]]
+    pages = write_vehicle_pages(files, connection, shown, changes, of_parts, reports, page.name)
     name = dataset.rstrip("/").rpartition("/")[2].partition("?")[0] or "fleet"
-    page = _page(name, _body(name, answers, alerts, limit_pct_week))
-    path = Path(out)
+    document = _document(name, changes, found, answers, news)
+    _write(page, _page(name, _body(name, answers, changes, found, news, pages, reports, files.name)))
+    if alert_command is not None and any(news.is_new(key(change)) for change in found):
+        run_command(alert_command, document)
+    remember(files, connection, [key(change) for change in found])
+    return Report(changes, found, document, missing)
+
+
+def _write(path: Path, page: str) -> None:
     unfinished = path.with_name(f".{path.name}.unfinished")
     unfinished.write_text(page, encoding="utf-8")
     os.replace(unfinished, path)
-    return alerts
 
 
-STYLE = """<style>.charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(17rem,1fr));gap:.8rem}
-.charts figure{margin:0}.charts figcaption{margin:0 0 .2rem}.charts svg{width:100%;height:auto;display:block;background:var(--shade);border-radius:.4rem}
-.charts text{fill:var(--soft);font:11px system-ui,sans-serif}.charts .bar{stroke:var(--c);stroke-width:1.5}.charts .dot{fill:var(--c)}
-.charts .grid{stroke:var(--grid)}.charts .fit{stroke:var(--ink);stroke-dasharray:4 3}a{color:inherit}td.log{min-width:12rem}</style>"""
+def _document(name: str, changes: Sequence[Change], found: Sequence[Change], answers: Mapping[str, list[Row]], news: News) -> dict[str, Any]:
+    return {
+        "dataset": name,
+        "written_utc": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
+        "last_report_utc": news.last_utc,
+        "flights": sum(row["flights"] for row in answers["verdicts"]),
+        "vehicles": len(answers["vehicles"]),
+        "vehicles_compared": sum(row["days"] >= LEAST_DAYS for row in answers["vehicles"]),
+        "new_flights": news.flights,
+        "new_warned": news.warned,
+        "level": LEVEL,
+        "alerts": [to_json(change, news.is_new(key(change))) for change in found],
+        "other_changes": [to_json(change, False) for change in changes if change not in found],
+    }
 
 
-def _body(name: str, answers: dict[str, list[Row]], alerts: list[Row], limit: float | None) -> str:
-    verdicts = answers["verdicts"]
-    read = sum(row["flights"] for row in verdicts)
+def _body(
+    name: str,
+    answers: Mapping[str, list[Row]],
+    changes: Sequence[Change],
+    found: Sequence[Change],
+    news: News,
+    pages: Mapping[str, str],
+    reports: Mapping[str, str],
+    folder: str,
+) -> str:
+    vehicles, verdicts = answers["vehicles"], answers["verdicts"]
+    flights = sum(row["flights"] for row in verdicts)
+    warned = sum(row["flights"] for row in verdicts if row["verdict"] in ("WARN", "FAIL"))
     unread = sum(row["logs"] for row in answers["unread"])
     hours = sum(row["in_air_h"] or 0 for row in verdicts)
+    starts = [row["first_utc"] for row in vehicles] + [row["last_utc"] for row in vehicles]
+    starts = [start for start in starts if start is not None]
+    span = f"Flights from {date(min(starts))} to {date(max(starts))}. " if starts else ""
+    today = datetime.datetime.now(datetime.timezone.utc).date()
+    at = {vehicle: f"{folder}/{file}" for vehicle, file in pages.items()}
+    of_flights = {flight: f"{folder}/{file}" for flight, file in reports.items()}
     parts = [
         STYLE,
-        f"<h1>{escape(name)}</h1>",
-        _figures({"flights": f"{read:,}", "in the air": f"{hours:,.1f} h", "logs without an answer": f"{unread:,}"}),
-        _alerts(alerts, limit),
-        "<h2>Verdicts</h2>",
-        _table(verdicts, VERDICTS, "No flight was assessed."),
+        f"<h1>Fleet {escape(name)}</h1><p class=soft>{span}Written on {today}.</p>",
+        figures(
+            {
+                "flights": f"{flights:,}",
+                "flights that warned": f"{warned:,}",
+                "vehicles": f"{len(vehicles):,}",
+                "in the air": f"{hours:,.1f} h",
+                "logs not read": f"{unread:,}",
+            }
+        ),
+        "<h2>What to act on</h2>",
+        _to_act_on(found, news, at),
+        _compared(vehicles),
+        _news(news, at, of_flights),
+        "<h2>Worst flights</h2>",
+        table(answers["worst"][:SHOWN_FLIGHTS], _flight_columns(at, of_flights), "No flight was judged."),
+        "<h2>Causes</h2>",
+        table(answers["causes"], CAUSES, "No flight warned."),
+        "<h2>Vehicles</h2>",
+        _vehicles(vehicles, changes, at),
         _weeks(answers["weeks"]),
-        _trends(answers["trends"], answers["vehicle_weeks"]),
+        _others([change for change in changes if change not in found]),
+        "<h2>More</h2>",
     ]
-    for title, question, columns, none in SECTIONS:
-        parts += [f"<h2>{title}</h2>", _table(answers[question], columns, none)]
+    parts += [section(title, table(answers[question], columns, none)) for title, question, columns, none in SECTIONS]
     parts.append(
-        "<p class=soft>Intervals hold 95 %: of shares those of Wilson, of means and slopes those of Student. Flights of one vehicle are "
-        "taken as independent of each other. Trends take flights that were judged for at least 10 s.</p>"
+        "<p class=soft>Smaller numbers are 95 % intervals. Changes are those that a fleet without any shows with a probability of "
+        f"{100 * LEVEL:g} %; flights of one day and vehicle count as one, and are compared at equal wind and time in the air. Only flights that "
+        "were judged for at least 10 s count.</p>"
     )
     return "\n".join(parts)
 
 
-def _figures(figures: dict[str, str]) -> str:
-    return "<dl class=figures>" + "".join(f"<div><dt>{escape(key)}</dt><dd>{value}</dd></div>" for key, value in figures.items()) + "</dl>"
+def _to_act_on(found: Sequence[Change], news: News, at: Mapping[str, str]) -> str:
+    if not found:
+        return "<p>No change for the worse was found.</p>"
+    lines = []
+    for change in found:
+        title = change.cause or ("The whole fleet" if change.is_fleet else "")
+        of = [link(vehicle, at.get(vehicle)) for vehicle in change.vehicles[:20]]
+        who = ", ".join(of) + (f" and {len(change.vehicles) - 20} more" if len(change.vehicles) > 20 else "")
+        head = f"{escape(title[:1].upper() + title[1:])}: {who}" if change.is_fleet else who
+        new = " <span class=new>new</span>" if news.is_new(key(change)) and news.last_utc else ""
+        lines.append(f"<li class=fail><b>{head}</b>{new}<br>{escape(sentence(change))}<span class=advice>{escape(advice(change))}</span></li>")
+    return f"<ul class=act>{''.join(lines)}</ul>"
 
 
-def _alerts(alerts: list[Row], limit: float | None) -> str:
-    if limit is None:
+def _compared(vehicles: Sequence[Row]) -> str:
+    """How many vehicles have enough flights to find a change; whether the others changed is unknown."""
+    count = sum(row["days"] >= LEAST_DAYS for row in vehicles)
+    if count == len(vehicles) > 0:
         return ""
-    if not alerts:
-        return f"<p>No vehicle's risk rises surely by more than {limit:g} % a week.</p>"
-    lines = (
-        f"<li class=fail><b>{escape(row['vehicle'])}</b> rises by {_slope(row)} % a week, "
-        f"by {row['flights']} flights</li>"
-        for row in alerts
+    return f"<p class=soft>{count:,} of {len(vehicles):,} vehicles have flights on at least {LEAST_DAYS} days. Of the others no change can be found yet.</p>"
+
+
+def _others(changes: Sequence[Change]) -> str:
+    if not changes:
+        return ""
+    lines = "".join(f"<li class={'good' if change.change_pct < 0 else 'warn'}>{escape(sentence(change))}</li>" for change in changes)
+    return f"<h2>Other changes</h2><ul class=findings>{lines}</ul>"
+
+
+def _news(news: News, at: Mapping[str, str], reports: Mapping[str, str]) -> str:
+    if news.last_utc is None:
+        return ""
+    counts = f"{news.flights:,} new flights, {news.warned:,} of them warned."
+    vehicles = ", ".join(link(vehicle, at.get(vehicle)) for vehicle in news.vehicles[:20])
+    of = f" New vehicles: {vehicles}." if vehicles else ""
+    worst = table(news.worst[:SHOWN_NEW], _flight_columns(at, reports), "") if news.worst else ""
+    return f"<h2>New since the report of {escape(news.last_utc[:10])}</h2><p>{counts}{of}</p>{worst}"
+
+
+def vehicle_column(at: Mapping[str, str]) -> Column:
+    def cell(row: Row) -> str:
+        vehicle = row["vehicle"]
+        return "<span class=soft>not named in the log</span>" if vehicle is None else link(vehicle, at.get(vehicle))
+
+    return "Vehicle", "name", cell
+
+
+def _flight_columns(at: Mapping[str, str], reports: Mapping[str, str]) -> Sequence[Column]:
+    def words(row: Row) -> str:
+        what = "" if row["what"] is None else escape(row["what"])
+        advice = "" if row["advice"] is None else f"<small>{escape(row['advice'])}</small>"
+        report = reports.get(row["flight_id"])
+        return f"{what}{advice}<small>{link('report of ' + Path(row['log']).name, report) if report else log_link(row['log'])}</small>"
+
+    return (
+        verdict("Verdict", "verdict"),
+        vehicle_column(at),
+        day("Day", "start_utc"),
+        number("Highest risk, %", "risk_max_pct", 0),
+        ("What happened", "words", words),
     )
-    return f"<ul class=findings>{''.join(lines)}</ul>"
 
 
-def _weeks(rows: list[Row]) -> str:
+def _ordered(rows: Sequence[Row], changes: Sequence[Change]) -> list[Row]:
+    """Vehicles that changed for the worse first, then those that warn most."""
+    worse = {change.vehicles[0]: -change.change_pct for change in changes if not change.is_fleet and change.change_pct > 0}
+    return sorted(rows, key=lambda row: worse.get(row["vehicle"], 0.0))
+
+
+def _vehicles(rows: Sequence[Row], changes: Sequence[Change], at: Mapping[str, str]) -> str:
+    trends: dict[str, str] = {}
+    for change in changes:
+        if not change.is_fleet:
+            up = change.change_pct > 0
+            trends[change.vehicles[0]] = ("grows riskier" if up else "becomes safer") if change.kind == "slope" else f"{'rose' if up else 'fell'} once, {date(_at(change))}"
+    columns = [vehicle_column(at)]
+    columns += [text(name.capitalize(), name, "") for name in ("site", "pilot") if any(row[name] for row in rows)]
+    columns += [
+        number("Flights", "flights"),
+        ("Warned", "n", lambda row: f"{row['warned']:,}<small>{100 * row['warned'] / row['flights']:.0f} %</small>"),
+        number("FAIL", "failed"),
+        number("Mean risk, %", "risk_mean_pct", 1),
+        ("Change", "", lambda row: escape(trends.get(row["vehicle"], ""))),
+        ("Weakest motor", "n", lambda row: "NA" if row["weakest_motor"] is None else f"{row['weakest_motor']}<small>margin {known(row['weakest_margin'], 2)}</small>"),
+        day("Last", "last_utc"),
+    ]
+    search = "<p><input type=search id=find placeholder='Find a vehicle, site or pilot' aria-label='Find a vehicle, site or pilot'></p>" if len(rows) > 10 else ""
+    return search + table(rows[:SHOWN_VEHICLES], columns, "No judged flight names its vehicle.", "vehicles") + (SEARCH if search else "")
+
+
+SEARCH = """<script>document.getElementById("find").addEventListener("input",(event)=>{const wanted=event.target.value.toLowerCase();
+for(const row of document.querySelectorAll("#vehicles tbody tr"))row.hidden=!row.textContent.toLowerCase().includes(wanted)})</script>"""
+
+
+def _at(change: Change) -> datetime.datetime:
+    return datetime.datetime.fromtimestamp(change.since_s, datetime.timezone.utc)
+
+
+def _weeks(rows: Sequence[Row]) -> str:
     if len(rows) < 2:
         return ""
-    shares = [Point(row["week"], row["warned_pct"], row["low_pct"], row["high_pct"], row["flights"]) for row in rows]
-    picture = intervals(shares, "share of flights that warned, %", "risk")
-    return f"<h2>By week</h2><div class=charts>{_figure('Share of flights with WARN or FAIL, %', picture)}</div>"
-
-
-def _trends(trends: list[Row], weeks: list[Row]) -> str:
-    of = defaultdict(list)
-    for row in weeks:
-        of[row["vehicle"]].append(Point(row["week"], row["mean_pct"], row["low_pct"], row["high_pct"], row["flights"]))
-    pictures = []
-    for row in trends[:SHOWN_VEHICLES]:
-        if len(of[row["vehicle"]]) > 1:
-            caption = f"{row['vehicle']}: {_slope(row)} % a week"
-            pictures.append(_figure(caption, intervals(of[row["vehicle"]], f"mean risk of {row['vehicle']}, %", "value")))
-    charts = f"<p class=soft>Mean risk of a week in %, of the vehicles that rise most surely.</p><div class=charts>{''.join(pictures)}</div>"
-    none = "No vehicle has 8 judged flights in 3 weeks."
-    return f"<h2>Vehicles</h2>{charts if pictures else ''}{_table(trends[:SHOWN_TRENDS], TRENDS, none)}"
-
-
-def _figure(caption: str, picture: str) -> str:
-    return f"<figure><figcaption>{escape(caption)}</figcaption>{picture}</figure>"
-
-
-Cell = Callable[[Row], str]
-
-
-def _table(rows: Iterable[Row], columns: Sequence[tuple[str, str, Cell]], none: str) -> str:
-    """A table: columns by title, class and what stands in a row."""
-    body = "".join("<tr>" + "".join(f"<td class='{kind}'>{cell(row)}</td>" for _, kind, cell in columns) + "</tr>" for row in rows)
-    if not body:
-        return f"<p class=soft>{none}</p>"
-    head = "".join(f"<th class='{kind}'>{escape(title)}</th>" for title, kind, _ in columns)
-    return f"<div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
-
-
-def _known(value: float | None, digits: int) -> str:
-    # Without a minus before zeros alone.
-    return "NA" if value is None else f"{round(value, digits) + 0.0:,.{digits}f}"
-
-
-def _span(row: Row, value: str, low: str, high: str, digits: int = 1) -> str:
-    return f"{_known(row[value], digits)} ({_known(row[low], digits)} to {_known(row[high], digits)})"
-
-
-def _slope(row: Row) -> str:
-    return _span(row, "slope_pct_week", "low_pct_week", "high_pct_week", 2)
-
-
-def text(title: str, name: str) -> tuple[str, str, Cell]:
-    return title, "", lambda row: "NA" if row[name] is None else escape(str(row[name]))
-
-
-def number(title: str, name: str, digits: int = 0) -> tuple[str, str, Cell]:
-    return title, "n", lambda row: _known(row[name], digits)
-
-
-def span(title: str, value: str, low: str, high: str) -> tuple[str, str, Cell]:
-    return title, "n", lambda row: _span(row, value, low, high)
-
-
-def day(title: str, name: str) -> tuple[str, str, Cell]:
-    def cell(row: Row) -> str:
-        moment = row[name]
-        return "NA" if moment is None else moment.astimezone(datetime.timezone.utc).strftime("%Y-%m-%d")
-
-    return title, "n", cell
-
-
-def log(title: str, name: str) -> tuple[str, str, Cell]:
-    """A log, as a link where a browser could open it."""
-
-    def cell(row: Row) -> str:
-        path = row[name]
-        if not path.startswith("/"):
-            return escape(path)
-        return f"<a href='{escape(Path(path).as_uri(), quote=True)}'>{escape(path)}</a>"
-
-    return title, "log", cell
-
-
-def verdict(title: str, name: str) -> tuple[str, str, Cell]:
-    return title, "", lambda row: f"<span class='badge {row[name].lower()}'>{escape(row[name])}</span>"
-
-
-VERDICTS = (
-    verdict("Verdict", "verdict"),
-    number("Flights", "flights"),
-    span("Share, %", "share_pct", "low_pct", "high_pct"),
-    number("In the air, h", "in_air_h", 1),
-)
-TRENDS = (
-    text("Vehicle", "vehicle"),
-    number("Flights", "flights"),
-    number("Mean risk, %", "risk_mean_pct", 1),
-    ("Slope, % a week", "n", _slope),
-    day("First", "first_utc"),
-    day("Last", "last_utc"),
-)
-WARNED = span("Warned, %", "warned_pct", "low_pct", "high_pct")
-SECTIONS: tuple[tuple[str, str, Sequence[tuple[str, str, Cell]], str], ...] = (
-    (
-        "Motors",
-        "motors",
-        (
-            number("Motor", "motor"),
-            text("Limit", "side"),
-            number("Findings", "findings"),
-            number("Flights", "flights"),
-            number("Vehicles", "vehicles"),
-            number("Margin (median)", "margin_median", 3),
-            number("Minutes", "minutes", 1),
-        ),
-        "No finding names a motor.",
-    ),
-    (
-        "Rules",
-        "rules",
-        (text("Finding", "code"), text("Rule", "rule"), number("Findings", "findings"), span("Share, %", "share_pct", "low_pct", "high_pct"), number("Flights", "flights")),
-        "No finding names a rule.",
-    ),
-    (
-        "Firmware",
-        "firmware",
-        (
-            text("Firmware", "firmware"),
-            number("Flights", "flights"),
-            number("Vehicles", "vehicles"),
-            number("Highest risk (median), %", "risk_max_median_pct", 1),
-            number("95 % of flights below, %", "risk_max_p95_pct", 1),
-            WARNED,
-            day("First flight", "first_utc"),
-        ),
-        "No flight was judged.",
-    ),
-    (
-        "Wind",
-        "wind",
-        (
-            ("Wind, m/s", "n", lambda row: f"{row['from_m_s']} and more" if row["from_m_s"] == 12 else f"{row['from_m_s']} to {row['from_m_s'] + 3}"),
-            number("Flights", "flights"),
-            number("Mean risk, %", "risk_mean_pct", 1),
-            WARNED,
-        ),
-        "No log tells the wind.",
-    ),
-    (
-        "Longest at risk",
-        "time_at_risk",
-        (
-            log("Log", "log"),
-            text("Vehicle", "vehicle"),
-            day("Day", "start_utc"),
-            verdict("Verdict", "verdict"),
-            number("At risk, s", "at_risk_s", 1),
-            number("In the air, s", "in_air_s", 1),
-        ),
-        "No flight was at a risk that warns.",
-    ),
-    (
-        "Worst flights",
-        "worst",
-        (
-            verdict("Verdict", "verdict"),
-            log("Log", "log"),
-            text("Vehicle", "vehicle"),
-            day("Day", "start_utc"),
-            number("Highest risk, %", "risk_max_pct", 1),
-            number("Elevated risk, %", "elevated_risk_max_pct", 1),
-            text("Firmware", "firmware"),
-        ),
-        "No flight was judged.",
-    ),
-    ("Without a verdict", "no_verdict", (text("Reason", "reason"), number("Flights", "flights"), log("Such as", "example")), "Every flight has a verdict."),
-    (
-        "Without an answer",
-        "unread",
-        (text("What", "status"), text("Why", "error"), number("Logs", "logs"), log("Such as", "example")),
-        "Every log was read.",
-    ),
-)
+    points = []
+    for row in rows:
+        at = datetime.datetime.combine(row["week"], datetime.time(), datetime.timezone.utc).timestamp()
+        words = f"week of {row['week']}: {row['warned_pct']:.1f} % ({row['low_pct']:.1f} to {row['high_pct']:.1f}) of {row['flights']} flights"
+        points.append(Point(at, row["warned_pct"], row["low_pct"], row["high_pct"], "risk", words))
+    return "<h2>By week</h2>" + chart("Share of flights with WARN or FAIL in each week, %, with its 95 % interval", points)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from .. import Assessment, Profile, __version__, assess, loads
+from .. import Assessment, Flight, Profile, __version__, assess, loads
 from .schema import FINDINGS, FLIGHTS, STEPS
 from .shards import Job
 from .storage import Log
@@ -98,11 +98,35 @@ def _flight(assessment: Assessment) -> dict[str, Any]:
         "elevated_risk_max_pct": elevated and elevated.value_pct,
         "elevated_risk_max_s": elevated and elevated.t_s,
         "saturated_share": summary.saturated_share,
+        **_motors(flight),
         "messages": report.messages,
         "skipped_bytes": report.skipped_bytes,
         "bad_messages": report.bad_messages,
         "truncated": report.truncated,
         "damage": report.reason,
+    }
+
+
+def _motors(flight: Flight) -> dict[str, Any]:
+    """The mean command and margin of each motor in the air."""
+    times = flight.t_s
+    if flight.in_air is None or not flight.motors or len(times) == 0:
+        return {}
+    in_air = np.zeros(len(times), bool)
+    for span in flight.in_air.spans:
+        in_air[np.searchsorted(times, span.start_s) : np.searchsorted(times, span.end_s)] = True
+    commands = flight.commands[in_air]
+    known = np.isfinite(commands)
+    if not known.any(axis=0).all():
+        return {}
+    margins = np.minimum(commands, 1 - commands).mean(axis=0, where=known)
+    numbers = [motor.number for motor in flight.motors]
+    weakest = int(margins.argmin())
+    return {
+        "motor_commands": commands.mean(axis=0, where=known).tolist(),
+        "motor_margins": margins.tolist(),
+        "weakest_motor": numbers[weakest],
+        "weakest_margin": float(margins[weakest]),
     }
 
 

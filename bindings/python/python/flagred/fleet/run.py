@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -14,13 +15,11 @@ from .errors import DamagedError, FleetError
 from .listing import Listing
 from .process import Outcome
 from .repair import redo, repair
-from .shards import Job, Shard, shards
-from .storage import LOGS, Place, absolute, matcher, open_place
+from .shards import Job, Shard, largest, shards
+from .storage import LOGS, Log, Place, absolute, matcher, open_place
 from .takeover import check, take_over
 
 __all__ = ["Assessed", "Plan", "Watcher", "assess", "plan"]
-
-SHARD_BYTES = 128 << 20
 
 
 @dataclass(frozen=True)
@@ -126,7 +125,8 @@ def assess(
 def _work(planned: Plan, done: Assessed, told: Watcher, scheduler: str | None, workers: int | None) -> Assessed:
     with engine.cluster(scheduler, workers) as client:
         told.started(client.dashboard_link)
-        for outcome in engine.run(client, planned.shards, planned.job, lambda workers: told.went_on(done, workers)):
+        cores = engine.cores(client)
+        for outcome in engine.run(client, planned.shards_for(cores), planned.job, lambda workers: told.went_on(done, workers)):
             done = _sum(done, outcome)
             told.went_on(done, None)
     return done
@@ -137,9 +137,18 @@ class Plan:
     """What is to do: :func:`process` of each shard with the job, by whatever engine, in whatever order."""
 
     counts: Counts
-    shards: Iterator[Shard]
-    """The logs that are missing or changed. They are made one by one."""
     job: Job
+    _todo: Callable[[], Iterator[tuple[str, Log]]]
+
+    @property
+    def shards(self) -> Iterator[Shard]:
+        """The logs that are missing or changed, in shards for as many cores as this machine has. They are made one by one."""
+        return self.shards_for(os.cpu_count() or 1)
+
+    def shards_for(self, cores: int) -> Iterator[Shard]:
+        """The same for so many cores: a small fleet is cut finer, so that all of them work."""
+        counts = self.counts
+        return shards(self._todo(), *largest(counts.new + counts.changed, counts.todo_bytes, cores))
 
 
 @contextmanager
@@ -182,7 +191,7 @@ def plan(
         catalog.load(dataset)
         damaged += redo(dataset, catalog, dry_run)
         counts = replace(catalog.counts(), passed_over=listing.passed_over, damaged=damaged)
-        yield Plan(counts, shards(catalog.todo(), SHARD_BYTES), job)
+        yield Plan(counts, job, catalog.todo)
         if not dry_run:
             repair(dataset, catalog, is_listed)
 

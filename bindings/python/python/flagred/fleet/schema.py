@@ -6,14 +6,14 @@ import pyarrow as pa
 
 __all__ = ["FINDINGS", "FLIGHTS", "KINDS", "MEANINGS", "MONTH_UNKNOWN", "STEPS", "VERSION"]
 
-VERSION = "2"
+VERSION = "3"
 """The version of the tables; it grows when a column changes its meaning or goes."""
 
 KINDS = ("steps", "findings", "flights")
 """The tables in the order in which they are written: a flight counts when its row in ``flights`` is there."""
 
-MONTH_UNKNOWN = "__HIVE_DEFAULT_PARTITION__"
-"""How the folder of a month is called that is null, in all programs that read partitions."""
+MONTH_UNKNOWN = "unknown"
+"""The month in the name of the folder of logs without a start time. Hive's name for null stops pandas, pyarrow and Dask."""
 
 MEANINGS: dict[str, str] = {}
 """What the columns mean. A name means the same in all tables."""
@@ -66,6 +66,10 @@ FLIGHTS = _schema(
     ("elevated_risk_max_pct", _REAL, "%", "highest elevated risk"),
     ("elevated_risk_max_s", _REAL, "s", "when it was reached, on the clock of the log"),
     ("saturated_share", _REAL, "1", "share of motor commands in the air within 0.5 % of a limit"),
+    ("motor_commands", pa.list_(_REAL), "1", "mean command of each motor in the air, in the order of their numbers"),
+    ("motor_margins", pa.list_(_REAL), "1", "mean margin of each motor in the air, in the order of their numbers"),
+    ("weakest_motor", pa.int16(), "", "the number of the motor with the least mean margin in the air, from 1"),
+    ("weakest_margin", _REAL, "1", "the mean margin of that motor"),
     ("messages", pa.int64(), "", "messages that were read"),
     ("skipped_bytes", pa.int64(), "B", "bytes that do not belong to a message"),
     ("bad_messages", pa.int64(), "", "messages that were rejected as damaged"),

@@ -9,10 +9,14 @@ from dataclasses import dataclass, replace
 from .. import Profile
 from .storage import Log
 
-__all__ = ["Job", "Shard", "shards"]
+__all__ = ["Job", "Shard", "largest", "shards"]
 
+MOST_BYTES = 128 << 20
+"""The most bytes of a shard, unless it is one log."""
 MOST_LOGS = 1000
 """The most logs of a shard, where they are small."""
+PER_CORE = 4
+"""How many shards each core gets at least, if there are as many logs: the cores then finish at about the same time."""
 
 
 @dataclass(frozen=True)
@@ -67,13 +71,19 @@ class Shard:
         return replace(self, logs=self.logs[:middle]), replace(self, logs=self.logs[middle:])
 
 
-def shards(logs: Iterable[tuple[str, Log]], most_bytes: int) -> Iterator[Shard]:
+def largest(logs: int, bytes: int, cores: int) -> tuple[int, int]:
+    """The most bytes and the most logs of a shard, so that a small fleet employs all cores, too."""
+    parts = PER_CORE * max(1, cores)
+    return min(MOST_BYTES, -(-bytes // parts)), max(1, min(MOST_LOGS, -(-logs // parts)))
+
+
+def shards(logs: Iterable[tuple[str, Log]], most_bytes: int, most_logs: int = MOST_LOGS) -> Iterator[Shard]:
     """Logs with their sources, in their order, cut into shards. A log that is larger than a shard is one alone."""
     part: list[Log] = []
     size = 0
     of = ""
     for source, log in logs:
-        if part and (source != of or size + log.bytes > most_bytes or len(part) == MOST_LOGS):
+        if part and (source != of or size + log.bytes > most_bytes or len(part) >= most_logs):
             yield Shard(of, tuple(part))
             part, size = [], 0
         of = source

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import fnmatch
 import os
 import posixpath
 import re
+import shutil
 import uuid
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -120,6 +122,14 @@ class Place:
             os.fsync(entry)
         finally:
             os.close(entry)
+
+    def require_space(self, bytes: int) -> None:
+        """Raises :class:`OSError` (``ENOSPC``) where the disk of a local folder has not so many bytes left."""
+        if not self.is_local:
+            return
+        os.makedirs(self.root, exist_ok=True)
+        if (free := shutil.disk_usage(self.root).free) < bytes:
+            raise OSError(errno.ENOSPC, f"only {free} bytes are left on the disk", self.root)
 
     def delete(self, path: str) -> None:
         """Deletes a file; one that is gone is no error."""
