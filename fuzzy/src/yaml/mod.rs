@@ -21,7 +21,7 @@ mod cause;
 mod tests;
 mod write;
 #[doc(hidden)]
-pub use write::to_text;
+pub use write::{to_line, to_text};
 
 /// Bytes of a text; larger ones are refused. 100,000 short rules take less.
 pub const LARGEST_BYTES: usize = 4_000_000;

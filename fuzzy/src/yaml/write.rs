@@ -15,6 +15,14 @@ pub fn to_text(node: &Node) -> String {
     text
 }
 
+/// The tree on one line, as it stands behind a key.
+#[must_use]
+pub fn to_line(node: &Node) -> String {
+    let mut line = String::new();
+    flow(&mut line, node);
+    line
+}
+
 /// Writes what stands behind `key:` or `-`, with the line break behind it.
 fn block(out: &mut String, node: &Node, indent: usize) {
     match &node.value {
