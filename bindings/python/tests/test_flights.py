@@ -119,7 +119,7 @@ def test_findings_and_the_report():
     assert assessment.svg().startswith("<svg ")
     assert assessment._repr_html_().startswith("<iframe srcdoc=")
     assert len(flagred.assess(CSV.encode(), step_s=None).steps) == 0
-    with pytest.raises(flagred.DataError, match="a step of 0"):
+    with pytest.raises(flagred.DataError, match="`step_s` is 0"):
         flagred.assess(CSV.encode(), step_s=0)
 
 

@@ -55,15 +55,16 @@ def test_unknown_is_no_number(tip, gaps):
         (lambda tip: tip(servce=1, food=2), "there is no input `servce`\n  help: did you mean `service`?"),
         (lambda tip: tip(service=1), "input `food` has no value"),
         (lambda tip: tip(1, food=2), "values are given by place and by name"),
-        (lambda tip: tip("a", "b"), "holds no numbers"),
+        (lambda tip: tip("a", "b"), "text is not a number"),
         (lambda tip: tip([1, 2], [1, 2, 3]), "do not go together"),
         (lambda tip: tip([1], [2], threads=0), "at least 1"),
         (lambda tip: tip.map(bill=3), "there is no input `bill`"),
         (lambda tip: tip.map(points=1), "at least 2 points"),
         (lambda tip: tip.map(output="top"), "did you mean `tip`?"),
-        (lambda tip: tip.explain([1, 2], [3, 4]), "one point is explained at a time"),
+        (lambda tip: tip.explain([1, 2], [3, 4]), "arrays are not explained"),
         (lambda tip: tip.explain(1, math.nan), "not a finite number"),
-        (lambda tip: tip.check(monotone=["service"]), "increasing"),
+        (lambda tip: tip.check(rising=["servce"]), "did you mean `service`?"),
+        (lambda tip: tip.check(rising=3), "3 is not a list of inputs"),
     ],
 )
 def test_mistakes_are_told(tip, ask, message):
@@ -210,7 +211,7 @@ def test_findings_of_a_check(tip):
     codes = [finding.code for finding in tip.check()]
     assert "narrow-reach" in codes
     assert "not-monotone" not in codes
-    assert "not-monotone" in [finding.code for finding in tip.check(monotone=["service:decreasing"])]
+    assert "not-monotone" in [finding.code for finding in tip.check(falling="service")]
 
 
 def test_copies_are_apart(tip):
