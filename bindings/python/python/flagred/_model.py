@@ -327,7 +327,7 @@ class Model(RuleSet):
         >>> str(model.surface())[:4]
         '<svg'
         """
-        return plot_surface(self.map(points=points, output=output, **fixed), ax)
+        return plot_surface(self.map(points=points, output=output, threads=None, **fixed), ax)
 
     def plot(self) -> Picture:
         """Draws the terms of all variables.
