@@ -324,7 +324,7 @@ rules:
 
     #[test]
     fn comments_stay_where_entries_are_added_and_removed() {
-        let added = "IF heat IS VERY hot THEN speed IS fast";
+        let added = "IF heat IS very hot THEN speed IS fast";
         assert_eq!(
             changed(FAN, |model| model.rules.push(rule(added))),
             FAN.replace("# loud\n", &format!("# loud\n  - {added}\n"))
@@ -359,10 +359,10 @@ rules:
             one.ends_with("rules: [IF heat IS hot THEN speed IS fast] # both\n"),
             "{one}"
         );
-        let added = "IF heat IS VERY hot THEN speed IS fast";
+        let added = "IF heat IS very hot THEN speed IS fast";
         let three = changed(&flow, |model| model.rules.push(rule(added)));
         assert!(
-            three.contains("IS fast, IF heat IS VERY hot THEN speed IS fast] # both"),
+            three.contains("IS fast, IF heat IS very hot THEN speed IS fast] # both"),
             "{three}"
         );
     }

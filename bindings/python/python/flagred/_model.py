@@ -20,8 +20,7 @@ Partition = Sequence[str] | Mapping[str, float]
 Steps = Mapping[str, float | None]
 Terms = Mapping[str, Mapping[str, Any]]
 
-_Format = Literal["yaml", "fis", "fll", "fcl", "fml"]
-_ENDINGS: dict[str, _Format] = {
+_ENDINGS: dict[str, Literal["yaml", "fis", "fll", "fcl", "fml"]] = {
     ".yaml": "yaml",
     ".yml": "yaml",
     ".fis": "fis",
@@ -235,7 +234,7 @@ class Model(RuleSet):
 
     @property
     def text(self) -> str:
-        """The text it was read from; after an edit, the rule set in YAML."""
+        """The text it was read from; after edits, YAML with the comments of the lines that did not change."""
         return self._text()[0]
 
     def to_text(
