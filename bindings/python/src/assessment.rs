@@ -1,6 +1,6 @@
 //! Assessments of flights: verdict, findings, the risk over time, the report.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int32Array, RecordBatch};
 use arrow_schema::{Field, Schema};
@@ -9,9 +9,11 @@ use flagred::{
     loaded::Loaded,
     monitor::Estimate,
 };
+use flagred_flightlog::Flight;
 use flagred_report::{
     document::{FindingDocument, document},
     finding::Teller,
+    moment,
     page::{self, Subject},
 };
 use pyo3::prelude::*;
@@ -25,81 +27,115 @@ use crate::{
     threads::interruptible,
 };
 
-/// What is said of a flight; `flagred.Assessment` is made of it.
+/// What is said of a flight; `flagred.types.Assessment` is made of it.
 #[pyclass(frozen, subclass, module = "flagred._core")]
 pub(crate) struct AssessmentData {
-    subject: Arc<Subject>,
+    flight: Py<FlightData>,
     loaded: Arc<Loaded>,
+    step_s: Option<f64>,
+    /// Made again when it is first used, after it was unpickled.
+    subject: OnceLock<Arc<Subject>>,
+    /// Verdict, findings and summary in JSON, as they were pickled.
+    said: Option<String>,
 }
 
-#[pymethods]
 impl AssessmentData {
-    #[new]
-    fn new(
-        py: Python<'_>,
-        flight: &FlightData,
-        profile: &Profile,
-        step_s: Option<f64>,
-    ) -> PyResult<Self> {
-        if let Some(step_s) = step_s.filter(|step_s| step_s.is_nan() || *step_s <= 0.0) {
-            let help = "write a number of seconds above 0, or None for no steps".to_owned();
-            return Err(data_error(
-                format!("a step of {step_s} s is none"),
-                Some(help),
-            ));
+    fn subject(&self, py: Python<'_>) -> PyResult<&Arc<Subject>> {
+        if let Some(subject) = self.subject.get() {
+            return Ok(subject);
         }
-        let (name, loaded) = (flight.name.clone(), Arc::clone(&profile.loaded));
-        let (flight, of) = (Arc::clone(&flight.flight), Arc::clone(&loaded));
+        let flight = self.flight.get();
+        let (name, step_s) = (flight.name.clone(), self.step_s);
+        let (flight, of) = (Arc::clone(flight.flight(py)?), Arc::clone(&self.loaded));
         let subject = interruptible(py, move || Subject {
             assessed: flagred::log::assess(&flight, &of.estimator, step_s),
             name,
             flight,
         })?;
-        Ok(AssessmentData {
-            subject: Arc::new(subject),
-            loaded,
-        })
+        Ok(self.subject.get_or_init(|| Arc::new(subject)))
+    }
+
+    /// The name of the flight, the flight, and its assessment.
+    fn parts(&self, py: Python<'_>) -> PyResult<(&str, &Flight, &Assessment)> {
+        let subject = self.subject(py)?;
+        Ok((&subject.name, &subject.flight, &subject.assessed))
+    }
+}
+
+#[pymethods]
+impl AssessmentData {
+    #[new]
+    #[pyo3(signature = (flight, profile, step_s, said = None))]
+    fn new(
+        flight: &Bound<'_, FlightData>,
+        profile: &Profile,
+        step_s: Option<f64>,
+        said: Option<String>,
+    ) -> PyResult<Self> {
+        if let Some(step_s) = step_s.filter(|step_s| step_s.is_nan() || *step_s <= 0.0) {
+            let help = "write a number of seconds above 0, or None for no steps".to_owned();
+            let message = format!("`step_s` is {step_s}; it must be above 0");
+            return Err(data_error(message, Some(help)));
+        }
+        let new = AssessmentData {
+            flight: flight.clone().unbind(),
+            loaded: Arc::clone(&profile.loaded),
+            step_s,
+            subject: OnceLock::new(),
+            said,
+        };
+        if new.said.is_none() {
+            new.subject(flight.py())?;
+        }
+        Ok(new)
     }
 
     /// Verdict, findings and summary, in JSON.
-    fn _json(&self) -> String {
-        let Subject {
-            flight, assessed, ..
-        } = &*self.subject;
-        said(
-            assessed,
-            Teller {
-                estimator: &self.loaded.estimator,
-                motors: &flight.motors,
-            },
-        )
+    fn _json(&self, py: Python<'_>) -> PyResult<String> {
+        if let Some(said) = &self.said {
+            return Ok(said.clone());
+        }
+        let (_, flight, assessed) = self.parts(py)?;
+        let teller = Teller {
+            estimator: &self.loaded.estimator,
+            motors: &flight.motors,
+        };
+        Ok(said(assessed, teller))
+    }
+
+    /// The distance of the steps in seconds, as it was given.
+    fn _step_s(&self) -> Option<f64> {
+        self.step_s
     }
 
     /// All of it in JSON, as `flagred assess --json` prints it.
-    fn to_json(&self) -> PyResult<String> {
-        let Subject {
-            name,
-            flight,
-            assessed,
-        } = &*self.subject;
+    fn to_json(&self, py: Python<'_>) -> PyResult<String> {
+        let (name, flight, assessed) = self.parts(py)?;
         let document = document(name, flight, &self.loaded.estimator, assessed);
         serde_json::to_string(&document).map_err(|error| data_error(error, None))
     }
 
+    /// What was known at a time in seconds, and the rules that fired there, in JSON.
+    fn _moment(&self, py: Python<'_>, t_s: f64) -> PyResult<String> {
+        let (_, flight, assessed) = self.parts(py)?;
+        let moment = moment::moment(flight, &self.loaded.estimator, assessed, t_s);
+        serde_json::to_string(&moment).map_err(|error| data_error(error, None))
+    }
+
     /// The risk over time.
-    fn _steps(&self) -> PyResult<Table> {
-        steps(&self.subject.assessed)
+    fn _steps(&self, py: Python<'_>) -> PyResult<Table> {
+        steps(&self.subject(py)?.assessed)
     }
 
     /// The report as one HTML page that needs nothing beside it.
     fn html(&self, py: Python<'_>) -> PyResult<String> {
-        let (subject, loaded) = (Arc::clone(&self.subject), Arc::clone(&self.loaded));
+        let (subject, loaded) = (Arc::clone(self.subject(py)?), Arc::clone(&self.loaded));
         interruptible(py, move || page::report(&subject, &loaded))
     }
 
     /// The picture of the risk over time as SVG; None where no risk is known.
-    fn svg(&self) -> Option<String> {
-        page::svg(&self.subject, &self.loaded)
+    fn svg(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        Ok(page::svg(self.subject(py)?, &self.loaded))
     }
 }
 

@@ -9,7 +9,7 @@ use arrow_array::Array;
 use fuzzy::{
     Engine,
     diagnostic::suggest,
-    engine::{Outcome as Raw, Scratch},
+    engine::{EvaluateError, Outcome as Raw, Scratch},
 };
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::{
@@ -204,12 +204,16 @@ impl Compiled {
         with_reasons: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let expected = self.inputs.len();
+        let columns = match values {
+            [matrix] if expected > 1 => matrix_columns(py, matrix, expected)?,
+            _ => None,
+        };
+        let values = columns.as_deref().unwrap_or(values);
         if values.len() != expected {
-            let message = format!(
-                "the model has {expected} inputs, but {} values were given",
-                values.len()
-            );
-            return Err(data_error(message, None));
+            let got = values.len();
+            let help = "give a value for each input, or a matrix or a frame with a column for each";
+            let error = EvaluateError::WrongNumberOfInputs { expected, got };
+            return Err(data_error(error, Some(help.into())));
         }
         let arrays = Arrays::new(py, values)?;
         let rows = arrays.shape.iter().product();
@@ -287,6 +291,17 @@ fn number(value: &Bound<'_, PyAny>) -> Option<f64> {
         return value.extract().ok();
     }
     value.is_none().then_some(f64::NAN)
+}
+
+/// The columns of a matrix with a column for each input; `None` where it is not a matrix.
+fn matrix_columns<'py>(
+    py: Python<'py>,
+    matrix: &Bound<'py, PyAny>,
+    inputs: usize,
+) -> PyResult<Option<Vec<Bound<'py, PyAny>>>> {
+    static COLUMNS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let columns = COLUMNS.import(py, "flagred._arrays", "columns")?;
+    columns.call1((matrix, inputs))?.extract()
 }
 
 fn is_frame(py: Python<'_>, value: &Bound<'_, PyAny>) -> PyResult<bool> {

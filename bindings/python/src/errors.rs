@@ -46,7 +46,7 @@ pub(crate) fn os_error(
     path: &str,
     help: Option<&str>,
 ) -> PyResult<PyErr> {
-    let help = help.map_or(String::new(), |help| format!("\n  help: {help}"));
+    let help = help.map_or(String::new(), |help| format!(" ({help})"));
     Ok(match error.raw_os_error() {
         Some(number) => {
             let told = py.import("os")?.call_method1("strerror", (number,))?;
@@ -77,7 +77,7 @@ pub(crate) fn rule_set_error(py: Python<'_>, findings: &Findings, file: &str, te
     }
 }
 
-/// Findings as objects of `flagred.Diagnostic`.
+/// Findings as objects of `flagred.types.Diagnostic`.
 pub(crate) fn diagnostics<'py>(
     py: Python<'py>,
     findings: &Findings,

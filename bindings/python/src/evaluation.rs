@@ -28,7 +28,7 @@ use crate::{
     threads::{count, interruptible, pool},
 };
 
-/// What came of many flights; `flagred.Evaluation` is made of it.
+/// What came of many flights; `flagred.types.Evaluation` is made of it.
 #[pyclass(frozen, subclass, module = "flagred._core")]
 pub(crate) struct EvaluationData {
     evaluation: Arc<Evaluation>,
@@ -228,10 +228,13 @@ impl EvaluationData {
             }
             None => {
                 let logs = logs.into_iter().map(|log| match log {
-                    Log::Flight(log) => Source::Flight(log.name.clone(), Arc::clone(&log.flight)),
-                    Log::Path(path) => Source::Path(path),
+                    Log::Flight(log) => {
+                        let flight = Arc::clone(log.flight(py)?);
+                        Ok(Source::Flight(log.name.clone(), flight))
+                    }
+                    Log::Path(path) => Ok(Source::Path(path)),
                 });
-                let logs: Vec<Source> = logs.collect();
+                let logs: Vec<Source> = logs.collect::<PyResult<_>>()?;
                 let stop = Arc::new(AtomicBool::new(false));
                 let is_stopped = Arc::clone(&stop);
                 let done = interruptible(py, move || {

@@ -12,7 +12,7 @@ use pyo3::{prelude::*, types::PyDict};
 use crate::compiled::Compiled;
 
 /// Why outputs are what they are at one point.
-#[pyclass(frozen, module = "flagred")]
+#[pyclass(frozen, module = "flagred.types")]
 pub(crate) struct Explanation {
     /// The inputs, with the degree of each of their terms.
     #[pyo3(get)]
@@ -28,7 +28,7 @@ pub(crate) struct Explanation {
 }
 
 /// An input, and the degree of each of its terms.
-#[pyclass(frozen, get_all, module = "flagred")]
+#[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct ExplainedInput {
     /// Its name.
     name: String,
@@ -41,7 +41,7 @@ pub(crate) struct ExplainedInput {
 }
 
 /// A rule that fired.
-#[pyclass(frozen, get_all, module = "flagred")]
+#[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct FiredRule {
     /// Its number in the model, from 1.
     rule: usize,
@@ -54,7 +54,7 @@ pub(crate) struct FiredRule {
 }
 
 /// An output, and the rules that contribute to it.
-#[pyclass(frozen, get_all, module = "flagred")]
+#[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct ExplainedOutput {
     /// Its name.
     name: String,
@@ -75,7 +75,7 @@ pub(crate) struct ExplainedOutput {
 }
 
 /// What a rule contributes to an output.
-#[pyclass(frozen, get_all, module = "flagred")]
+#[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct Share {
     /// Its number in the model, from 1.
     rule: usize,

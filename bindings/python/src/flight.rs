@@ -1,43 +1,62 @@
 //! Flights: logs read, their commands and signals as arrays and tables.
 
-use std::{io, path::PathBuf, sync::Arc};
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    sync::{Arc, OnceLock},
+    time::SystemTime,
+};
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
 use arrow_schema::{DataType, Field, Schema};
-use flagred_flightlog::{Flight, Options, PulseRange, Series, Signal};
+use flagred_flightlog::{Flight, Options, PulseRange, Series};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::{exceptions::PyValueError, prelude::*, types::PyBytes};
 use serde_json::json;
 
 use crate::{
-    errors::{data_error, read_error},
+    errors::{data_error, os_error, read_error},
     table::{Table, known},
     threads::interruptible,
 };
 
-/// A flight; `flagred.Flight` is made of it.
+/// A flight; `flagred.types.Flight` is made of it.
 #[pyclass(frozen, subclass, module = "flagred._core")]
 pub(crate) struct FlightData {
-    pub(crate) flight: Arc<Flight>,
+    /// Read when it is first used, after it was unpickled.
+    flight: OnceLock<Arc<Flight>>,
     pub(crate) name: String,
+    source: Source,
+    signals: Option<Vec<String>>,
+    range: Option<(u16, u16)>,
 }
 
 /// Where a log is.
 enum Source {
-    Path(PathBuf),
-    Bytes(Vec<u8>),
+    Path(PathBuf, Option<Stamp>),
+    Bytes(Py<PyBytes>),
 }
+
+/// The size and modification time of a file when it was read.
+type Stamp = (u64, SystemTime);
+
+fn stamp(path: &Path) -> Option<Stamp> {
+    let file = fs::metadata(path).ok()?;
+    Some((file.len(), file.modified().ok()?))
+}
+
+/// Name, unit, source and rate of a signal, and the index of its time base.
+type SignalParts = (String, String, String, Option<f64>, usize);
 
 type Column<'py> = Bound<'py, PyArray1<f64>>;
 
-/// Reads a log while Ctrl-C is listened to.
-fn read(py: Python<'_>, source: Source, options: Options) -> PyResult<Flight> {
-    let flight = interruptible(py, move || match source {
-        Source::Path(path) => flagred_flightlog::open(path, &options),
-        Source::Bytes(bytes) => flagred_flightlog::read(io::Cursor::new(bytes), &options),
-    })?;
-    flight.map_err(|error| read_error(py, &error))
-}
+/// Arguments of [`FlightData::new`], as a pickle has them.
+type Parts<'py> = (
+    Bound<'py, PyBytes>,
+    String,
+    Option<Vec<String>>,
+    Option<(u16, u16)>,
+);
 
 /// Columns as a table; those after the first may be unknown here and there.
 fn table(columns: Vec<(String, &str, Vec<f64>)>) -> PyResult<Table> {
@@ -58,23 +77,69 @@ fn table(columns: Vec<(String, &str, Vec<f64>)>) -> PyResult<Table> {
 }
 
 impl FlightData {
-    fn signal(&self, name: &str) -> Option<Signal<'_>> {
-        self.flight.signal(name)
+    /// The flight. Its log is read while Ctrl-C is listened to, where that is not done yet.
+    pub(crate) fn flight(&self, py: Python<'_>) -> PyResult<&Arc<Flight>> {
+        if let Some(flight) = self.flight.get() {
+            return Ok(flight);
+        }
+        let range = self
+            .range
+            .map(|(low_us, high_us)| PulseRange::new(low_us, high_us));
+        let range = range.transpose().map_err(|error| {
+            PyValueError::new_err(format!("`range`: {error}; {}", error.help()))
+        })?;
+        let mut options = Options::default();
+        options.signals = self.signals.clone();
+        options.range = range;
+        let flight = match &self.source {
+            Source::Path(path, _) => {
+                let path = path.clone();
+                interruptible(py, move || flagred_flightlog::open(path, &options))?
+            }
+            Source::Bytes(bytes) => {
+                let bytes = bytes.as_bytes(py).to_vec();
+                interruptible(py, move || {
+                    flagred_flightlog::read(io::Cursor::new(bytes), &options)
+                })?
+            }
+        };
+        let flight = flight.map_err(|error| read_error(py, &error))?;
+        Ok(self.flight.get_or_init(|| Arc::new(flight)))
+    }
+
+    /// The bytes of the log as they were when it was read.
+    fn bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let (path, read) = match &self.source {
+            Source::Bytes(bytes) => return Ok(bytes.bind(py).clone()),
+            Source::Path(path, read) => (path, read),
+        };
+        let shown = path.display().to_string();
+        if stamp(path) != *read && path.exists() {
+            let help = "read it again, or pickle the flight before the file changes".to_owned();
+            let message =
+                format!("`{shown}` changed after it was read, so the flight cannot be pickled");
+            return Err(data_error(message, Some(help)));
+        }
+        let help = "a flight is pickled with the bytes of its log";
+        match fs::read(path) {
+            Ok(bytes) => Ok(PyBytes::new(py, &bytes)),
+            Err(error) => Err(os_error(py, &error, &shown, Some(help))?),
+        }
     }
 
     /// The commands of all motors, row by row.
     fn rows<'py>(
         &self,
         py: Python<'py>,
-        value: impl Fn(f64) -> f64,
+        value: impl Fn(&Flight, f64) -> f64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let (rows, motors) = (self.flight.commands.len(), self.flight.motors.len());
-        let all = self
-            .flight
+        let flight = self.flight(py)?;
+        let (rows, motors) = (flight.commands.len(), flight.motors.len());
+        let all = flight
             .commands
             .rows()
             .flat_map(|(_, row)| row.iter().copied());
-        let all: Vec<f64> = all.map(value).collect();
+        let all: Vec<f64> = all.map(|raw| value(flight, raw)).collect();
         all.into_pyarray(py).reshape([rows, motors])
     }
 }
@@ -82,27 +147,40 @@ impl FlightData {
 #[pymethods]
 impl FlightData {
     #[new]
-    #[pyo3(signature = (source, name, signals = None, range = None))]
+    #[pyo3(signature = (source, name, signals = None, range = None, lazy = false))]
     fn new(
         py: Python<'_>,
         source: &Bound<'_, PyAny>,
         name: String,
         signals: Option<Vec<String>>,
         range: Option<(u16, u16)>,
+        lazy: bool,
     ) -> PyResult<Self> {
-        let range = range.map(|(low_us, high_us)| PulseRange::new(low_us, high_us));
-        let range = range.transpose().map_err(|error| {
-            PyValueError::new_err(format!("`range`: {error}; {}", error.help()))
-        })?;
         let source = match source.cast::<PyBytes>() {
-            Ok(bytes) => Source::Bytes(bytes.as_bytes().to_vec()),
-            Err(_) => Source::Path(source.extract()?),
+            Ok(bytes) => Source::Bytes(bytes.clone().unbind()),
+            Err(_) => {
+                let path: PathBuf = source.extract()?;
+                let read = stamp(&path);
+                Source::Path(path, read)
+            }
         };
-        let mut options = Options::default();
-        options.signals = signals;
-        options.range = range;
-        let flight = Arc::new(read(py, source, options)?);
-        Ok(FlightData { flight, name })
+        let new = FlightData {
+            flight: OnceLock::new(),
+            name,
+            source,
+            signals,
+            range,
+        };
+        if !lazy {
+            new.flight(py)?;
+        }
+        Ok(new)
+    }
+
+    /// What makes the same flight: the bytes of the log, its name, the signals and the range that were given.
+    fn _parts<'py>(&self, py: Python<'py>) -> PyResult<Parts<'py>> {
+        let (name, signals) = (self.name.clone(), self.signals.clone());
+        Ok((self.bytes(py)?, name, signals, self.range))
     }
 
     /// What it was read from.
@@ -112,9 +190,9 @@ impl FlightData {
     }
 
     /// All but commands and signals, in JSON.
-    fn _json(&self) -> String {
-        let flight = &self.flight;
-        json!({
+    fn _json(&self, py: Python<'_>) -> PyResult<String> {
+        let flight = self.flight(py)?;
+        let json = json!({
             "format": flight.format,
             "vehicle": flight.vehicle,
             "motors": flight.motors,
@@ -133,36 +211,38 @@ impl FlightData {
             "header": flight.header,
             "report": flight.report,
             "gaps": flight.gaps(),
-        })
-        .to_string()
+        });
+        Ok(json.to_string())
     }
 
     /// The times of the motor commands, in seconds on the log's clock.
-    fn _command_times<'py>(&self, py: Python<'py>) -> Column<'py> {
-        PyArray1::from_slice(py, self.flight.commands.t_s())
+    fn _command_times<'py>(&self, py: Python<'py>) -> PyResult<Column<'py>> {
+        let flight = self.flight(py)?;
+        Ok(PyArray1::from_slice(py, flight.commands.t_s()))
     }
 
     /// The commands as they were logged, a column for each motor.
     fn _raw_commands<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, |raw| raw)
+        self.rows(py, |_, raw| raw)
     }
 
     /// The commands on the effective range, a column for each motor.
     fn _effective_commands<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.rows(py, |raw| {
-            self.flight.effective_command(raw).unwrap_or(f64::NAN)
+        self.rows(py, |flight, raw| {
+            flight.effective_command(raw).unwrap_or(f64::NAN)
         })
     }
 
     /// Time and effective command of each motor as a table.
-    fn _commands_table(&self) -> PyResult<Table> {
-        let times = self.flight.commands.t_s().to_vec();
+    fn _commands_table(&self, py: Python<'_>) -> PyResult<Table> {
+        let flight = self.flight(py)?;
+        let times = flight.commands.t_s().to_vec();
         let mut columns = vec![("t_s".to_owned(), "s", times)];
-        for (i, motor) in self.flight.motors.iter().enumerate() {
-            let rows = self.flight.commands.rows();
+        for (i, motor) in flight.motors.iter().enumerate() {
+            let rows = flight.commands.rows();
             let values = rows.map(|(_, row)| {
                 let raw = row.get(i).copied().unwrap_or(f64::NAN);
-                self.flight.effective_command(raw).unwrap_or(f64::NAN)
+                flight.effective_command(raw).unwrap_or(f64::NAN)
             });
             columns.push((format!("motor{}", motor.number), "1", values.collect()));
         }
@@ -170,8 +250,8 @@ impl FlightData {
     }
 
     /// Name, unit, source and rate of each signal, and the index of its time base.
-    fn _signals(&self) -> Vec<(String, String, String, Option<f64>, usize)> {
-        let series = self.flight.series.iter().enumerate();
+    fn _signals(&self, py: Python<'_>) -> PyResult<Vec<SignalParts>> {
+        let series = self.flight(py)?.series.iter().enumerate();
         let signals = series.flat_map(|(base, series)| {
             series.signals().map(move |signal| {
                 let label = signal.label;
@@ -179,18 +259,23 @@ impl FlightData {
                 (name, unit, label.source.clone(), signal.rate_hz(), base)
             })
         });
-        signals.collect()
+        Ok(signals.collect())
     }
 
     /// The times and values of a signal; NaN is unknown.
-    fn _signal<'py>(&self, py: Python<'py>, name: &str) -> Option<(Column<'py>, Column<'py>)> {
-        let signal = self.signal(name)?;
-        let arrays = [signal.t_s, signal.values].map(|values| PyArray1::from_slice(py, values));
-        Some(arrays.into())
+    fn _signal<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+    ) -> PyResult<Option<(Column<'py>, Column<'py>)>> {
+        let arrays = self.flight(py)?.signal(name).map(|signal| {
+            [signal.t_s, signal.values].map(|values| PyArray1::from_slice(py, values))
+        });
+        Ok(arrays.map(Into::into))
     }
 
     /// The signals of a time base as a table.
-    fn _series_table(&self, base: usize) -> PyResult<Option<Table>> {
+    fn _series_table(&self, py: Python<'_>, base: usize) -> PyResult<Option<Table>> {
         let of = |series: &Series| {
             let mut columns = vec![("t_s".to_owned(), "s", series.t_s().to_vec())];
             columns.extend(series.signals().map(|signal| {
@@ -203,6 +288,6 @@ impl FlightData {
             }));
             table(columns)
         };
-        self.flight.series.get(base).map(of).transpose()
+        self.flight(py)?.series.get(base).map(of).transpose()
     }
 }

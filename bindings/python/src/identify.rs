@@ -59,7 +59,7 @@ impl IdentifyOptions {
 /// A figure and its interval.
 type Figure = (f64, f64, f64);
 
-/// What `flagred.Identified` is made of.
+/// What `flagred.types.Identified` is made of.
 #[derive(IntoPyObject)]
 pub(crate) struct Identified {
     model: String,

@@ -6,12 +6,12 @@ use fuzzy::{
     Engine, Model,
     check::counterexamples,
     learn::{Direction, LearnError, Learner, Resolution, Settings, Unchained},
-    yaml,
+    model::Step,
 };
 use pyo3::prelude::*;
 
 use crate::{
-    rows::{Failed, Rows, choice, claims, directed},
+    rows::{Failed, Rows, choice, claims, directed, with_step},
     rule_set::RuleSet,
     threads::interruptible,
 };
@@ -29,7 +29,7 @@ pub(crate) struct LearnOptions {
     validation: bool,
 }
 
-/// What `flagred.Learned` is made of.
+/// What `flagred.types.Learned` is made of.
 #[derive(IntoPyObject)]
 pub(crate) struct Learned {
     model: String,
@@ -81,16 +81,17 @@ pub(crate) fn _learn(
     options: LearnOptions,
 ) -> PyResult<Learned> {
     let settings = options.settings()?;
-    let model = rule_set.model(Model::clone);
+    let (model, text) = (rule_set.model(Model::clone), rule_set.text());
     let (all, skip) = (rows.rows(), rows.skip_bad_rows);
     let learned = interruptible(py, move || {
-        learn_rules(model, all, skip, settings, &options)
+        learn_rules(model, &text, all, skip, settings, &options)
     })?;
     learned.map_err(|failed| failed.raise(py))
 }
 
 fn learn_rules(
     whole: Model,
+    text: &str,
     all: Vec<Row>,
     skip_bad_rows: bool,
     settings: Settings,
@@ -139,10 +140,20 @@ fn learn_rules(
             counterexamples(&engine, &claims).map_err(Failed::data)?
         }
     };
+    let rules = learned.model.rules.len() - model.rules.len();
+    let step = Step {
+        command: "flagred.learn".into(),
+        rows: Some(learned.samples),
+        note: Some(format!(
+            "{} resolution; {rules} rules learned, {} of them without samples",
+            options.resolve, learned.completed,
+        )),
+        ..Step::default()
+    };
     Ok(Learned {
         rows: learned.samples,
         refused,
-        rules: learned.model.rules.len() - model.rules.len(),
+        rules,
         conflicts: learned.conflicts,
         missing: learned.missing,
         left_out: learned.left_out,
@@ -156,6 +167,6 @@ fn learn_rules(
             mean_absolute: errors.mean_absolute,
             bias: errors.bias,
         }),
-        model: yaml::to_string(&whole),
+        model: with_step(text, &whole, step)?,
     })
 }

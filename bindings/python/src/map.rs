@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// One output of a rule set over a grid of its inputs.
-#[pyclass(frozen, module = "flagred")]
+#[pyclass(frozen, module = "flagred.types")]
 pub(crate) struct DecisionMap {
     map: map::DecisionMap,
     compiled: Arc<Compiled>,

@@ -19,7 +19,7 @@ use crate::{
 use flagred::loaded::Loaded;
 
 /// What a monitor knows after a sample.
-#[pyclass(frozen, get_all, module = "flagred")]
+#[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct Update {
     /// The time of the sample in seconds.
     t_s: f64,

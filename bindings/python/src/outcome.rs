@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::errors::data_error;
 
 /// What an evaluation says of one output at one point.
-#[pyclass(frozen, get_all, eq, module = "flagred")]
+#[pyclass(frozen, get_all, eq, module = "flagred.types")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Outcome {
     /// The value; None where it is unknown.
@@ -106,7 +106,7 @@ impl From<engine::Outcome> for Outcome {
 }
 
 /// What an evaluation says of one output at many points: an array each.
-#[pyclass(frozen, get_all, module = "flagred")]
+#[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct Outcomes {
     /// The values; NaN where they are unknown.
     value: Py<PyArrayDyn<f64>>,

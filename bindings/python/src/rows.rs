@@ -1,9 +1,11 @@
 //! Rows to learn from, and what `flagred.learn` and `flagred.tune` ask alike.
 
+use flagred_authoring::provenance;
 use flagred_evaluation::learning::Row;
 use fuzzy::{
-    Findings,
+    Findings, Model,
     check::{Direction, Monotone},
+    model::Step,
 };
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -71,6 +73,11 @@ impl Failed {
             }
         }
     }
+}
+
+/// The text of a rule set that a function made of another one, with the step that made it.
+pub(crate) fn with_step(begun_with: &str, model: &Model, step: Step) -> Result<String, Failed> {
+    provenance::rule_set(begun_with, model.clone(), step).map_err(Failed::Findings)
 }
 
 /// The choice that a word names.

@@ -2,23 +2,30 @@
 
 use std::sync::{Arc, PoisonError, RwLock};
 
+use flagred_authoring::rewrite::rewritten;
+use flagred_interchange::{Format, Losses};
 use fuzzy::{
-    Findings, Model,
+    Engine, Findings, Model,
     check::{self, Direction, Monotone},
-    diagnostic::suggest,
+    diagnostic::{Severity, quoted, suggest},
     drawing::variables_svg,
+    engine::EvaluateError,
     format,
     map::Grid,
+    model::MembershipFunction,
     rule,
     tree::Node,
     yaml,
 };
+use numpy::{IntoPyArray, PyArrayDyn, PyReadonlyArray1, PyReadonlyArrayDyn};
 use pyo3::{
-    exceptions::PyIndexError,
+    IntoPyObjectExt,
+    exceptions::{PyIndexError, PyKeyError},
     prelude::*,
     sync::PyOnceLock,
     types::{PyDict, PyTuple},
 };
+use rayon::prelude::*;
 
 use crate::{
     compiled::Asked,
@@ -53,10 +60,69 @@ impl RuleSet {
         of(&self.source().document.model)
     }
 
+    /// The text that it was read from, or that edits made of it.
+    pub(crate) fn text(&self) -> String {
+        self.source().text.clone()
+    }
+
     /// Compiles the rule set, where that is not done yet.
     pub(crate) fn compile(&self, py: Python<'_>) -> PyResult<()> {
         self.source().compiled(py).map(|_| ())
     }
+}
+
+/// A rule that contributes to an output at a row.
+struct Line {
+    row: usize,
+    output: usize,
+    rule: usize,
+    strength: f64,
+    share: f64,
+    dominant: Option<usize>,
+}
+
+/// What the outputs rest on at each row whose inputs are all known.
+fn explained(engine: &Engine, columns: &[Vec<f64>]) -> Result<Vec<Line>, EvaluateError> {
+    let rows = columns.first().map_or(0, Vec::len);
+    let lines = (0..rows).into_par_iter().map(|row| {
+        let values: Vec<f64> = columns.iter().map(|column| column[row]).collect();
+        if values.iter().any(|value| !value.is_finite()) {
+            return Ok(Vec::new());
+        }
+        let outcomes = engine.evaluate(&values)?;
+        let explanation = engine.explain(&values)?;
+        let outputs = explanation.outputs.iter().enumerate();
+        let lines = outputs.flat_map(|(output, explained)| {
+            let dominant = outcomes
+                .get(output)
+                .and_then(|outcome| outcome.dominant_rule);
+            explained.rules.iter().map(move |rule| Line {
+                row,
+                output,
+                rule: rule.rule,
+                strength: rule.strength,
+                share: rule.share,
+                dominant,
+            })
+        });
+        Ok(lines.collect())
+    });
+    let lines: Result<Vec<Vec<Line>>, EvaluateError> = lines.collect();
+    Ok(lines?.into_iter().flatten().collect())
+}
+
+/// Names of inputs: a list, or one name.
+fn names(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    if let Ok(one) = value.extract::<String>() {
+        return Ok(vec![one]);
+    }
+    value.extract().map_err(|_| {
+        let shown = value
+            .repr()
+            .map_or_else(|_| "?".into(), |text| text.to_string());
+        let message = format!("{} is not a list of inputs", quoted(&shown));
+        data_error(message, Some("write `rising=[\"service\"]`".into()))
+    })
 }
 
 /// The values at what Python gives, or the outcomes `with_reasons`.
@@ -177,12 +243,121 @@ impl RuleSet {
         json.map_err(|error| data_error(error, None))
     }
 
-    /// Puts a document, in JSON, in the place of the model. Nothing changes where it has errors.
+    /// Replaces the model by a document in JSON; comments of the text stay where they can. Nothing changes where the
+    /// document has errors.
     fn _edit(&self, py: Python<'_>, json: &str) -> PyResult<()> {
         let tree: Result<Node, _> = serde_json::from_str(json);
         let text = yaml::to_text(&tree.map_err(|error| data_error(error, None))?);
+        let (before, edited) = (self.source(), Source::read(py, text, "<model>", true)?);
+        let text = rewritten(&before.text, &before.document, &edited.document.model);
         self.replace(Source::read(py, text, "<model>", true)?);
         Ok(())
+    }
+
+    /// The text in a format, as it is saved, and warnings. In the format that it was read from, this is the text that was read.
+    #[pyo3(signature = (format, lossy = false))]
+    fn _to_text(
+        &self,
+        py: Python<'_>,
+        format: &str,
+        lossy: bool,
+    ) -> PyResult<(String, Vec<String>)> {
+        let source = self.source();
+        let known = Format::ALL
+            .into_iter()
+            .find(|known| known.ending() == format);
+        if Format::of(&source.text) == known && !source.text.is_empty() {
+            return Ok((source.text.clone(), Vec::new()));
+        }
+        let model = &source.document.model;
+        let Some(known) = known else {
+            return Ok((yaml::to_string(model), Vec::new()));
+        };
+        let losses = match lossy {
+            true => Losses::Accept,
+            false => Losses::Refuse,
+        };
+        match flagred_interchange::write(model, known, losses) {
+            Ok(written) => {
+                let warnings = written.findings.0.iter();
+                let warnings = warnings.filter(|finding| finding.severity == Severity::Warning);
+                Ok((written.text, warnings.map(|w| w.message.clone()).collect()))
+            }
+            Err(findings) => Err(rule_set_error(py, &findings, &source.file, &source.text)),
+        }
+    }
+
+    /// The names of the terms of a variable.
+    fn _term_names(&self, variable: &str) -> Vec<String> {
+        self.model(|model| {
+            let outputs = model.outputs.iter().map(|output| &output.variable);
+            let mut variables = model.inputs.iter().chain(outputs);
+            let terms = variables.find(|known| known.name == variable);
+            let terms = terms.into_iter().flat_map(|variable| &variable.terms);
+            terms.map(|term| term.name.clone()).collect()
+        })
+    }
+
+    /// The degrees of membership of values in a term. Outside the range of the variable they are those at its ends.
+    fn _degrees<'py>(
+        &self,
+        variable: &str,
+        term: &str,
+        values: PyReadonlyArrayDyn<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let py = values.py();
+        let source = self.source();
+        let model = &source.document.model;
+        let outputs = model.outputs.iter().map(|output| &output.variable);
+        let variable = model
+            .inputs
+            .iter()
+            .chain(outputs)
+            .find(|v| v.name == variable);
+        let variable = variable.ok_or_else(|| PyKeyError::new_err("there is no such variable"))?;
+        let found = variable.terms.iter().find(|known| known.name == term);
+        let function = &found
+            .ok_or_else(|| PyKeyError::new_err(term.to_owned()))?
+            .membership_function;
+        if matches!(function, MembershipFunction::Linear { .. }) {
+            let message = format!("the term `{term}` is a linear consequent and has no degrees");
+            return Err(data_error(message, None));
+        }
+        let (low, high, values) = (variable.low, variable.high, values.as_array());
+        let degree = |value: &f64| match value.is_nan() {
+            true => f64::NAN,
+            false => function.membership(value.clamp(low, high)),
+        };
+        Ok(values.map(degree).into_pyarray(py))
+    }
+
+    /// Rule by rule what each row rests on: the row, the output and the rule from 1, strength, share, and the dominant rule of
+    /// the row. `columns` are in the order of the inputs. A row with an unknown input has none.
+    fn _explain_rows<'py>(
+        &self,
+        py: Python<'py>,
+        columns: Vec<PyReadonlyArray1<'py, f64>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let source = self.source();
+        let compiled = Arc::clone(source.compiled(py)?);
+        let columns = columns.iter().map(|column| column.as_array().to_vec());
+        let columns: Vec<Vec<f64>> = columns.collect();
+        let pool = pool(None)?;
+        let rows = interruptible(py, move || {
+            pool.install(|| explained(&compiled.engine, &columns))
+        })?;
+        let rows = rows.map_err(|error| data_error(error, None))?;
+        let found = PyDict::new(py);
+        let number = |get: fn(&Line) -> i64| rows.iter().map(get).collect::<Vec<i64>>();
+        let float = |get: fn(&Line) -> f64| rows.iter().map(get).collect::<Vec<f64>>();
+        found.set_item("row", number(|line| line.row as i64).into_pyarray(py))?;
+        found.set_item("output", number(|line| line.output as i64).into_pyarray(py))?;
+        found.set_item("rule", number(|line| line.rule as i64 + 1).into_pyarray(py))?;
+        found.set_item("strength", float(|line| line.strength).into_pyarray(py))?;
+        found.set_item("share", float(|line| line.share).into_pyarray(py))?;
+        let dominant = number(|line| line.dominant.map_or(0, |rule| rule as i64 + 1));
+        found.set_item("dominant_rule", dominant.into_pyarray(py))?;
+        Ok(found)
     }
 
     /// Another model that is equal, and apart: an edit of one does not change the other.
@@ -276,38 +451,49 @@ impl RuleSet {
         compiled.table(frame, threads, with_reasons)
     }
 
-    /// Says why the outputs are what they are at one point.
+    /// Explains the outputs at a point, or at each row of a frame.
     ///
     /// Parameters
     /// ----------
     /// values
-    ///     A number for each input, in their order or by their names.
+    ///     A number for each input, in their order or by their names. Or one frame with a column for each input.
     ///
     /// Returns
     /// -------
-    /// Explanation
-    ///     The degree of each term, the rules that fired and their shares. Jupyter draws it, ``print`` writes it.
+    /// Explanation or frame
+    ///     Of a point the degree of each term, the rules that fired and their shares; Jupyter draws it, ``print`` writes it.
+    ///     Of a frame a frame of the same library with a row for each rule that contributes to an output of a row: ``row``,
+    ///     ``output``, ``rule``, ``strength``, ``share`` and the ``dominant_rule`` of that row and output. A row with an
+    ///     unknown input has none.
     ///
     /// Raises
     /// ------
     /// DataError
-    ///     An input has no value, or is no finite number.
+    ///     An input has no value, or is not a finite number.
     #[pyo3(signature = (*args, **named))]
     fn explain<'py>(
-        &self,
-        py: Python<'py>,
+        slf: &Bound<'py, Self>,
         args: &Bound<'py, PyTuple>,
         named: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Explanation> {
-        let source = self.source();
+    ) -> PyResult<Bound<'py, PyAny>> {
+        static EXPLAIN: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        let (py, source) = (slf.py(), slf.get().source());
         let compiled = source.compiled(py)?;
-        let Asked::Numbers(numbers) = compiled.asked(py, args, named)? else {
-            let help = "give a number for each input".to_owned();
-            return Err(data_error("one point is explained at a time", Some(help)));
+        let numbers = match compiled.asked(py, args, named)? {
+            Asked::Numbers(numbers) => numbers,
+            Asked::Frame(frame) => {
+                let explain = EXPLAIN.import(py, "flagred._frames", "explain")?;
+                return explain.call1((slf, frame));
+            }
+            Asked::Arrays(_) => {
+                let help = "give a number for each input, or a frame with a column for each input";
+                let message = "arrays are not explained";
+                return Err(data_error(message, Some(help.into())));
+            }
         };
         let explanation = compiled.engine.explain(&numbers);
         let explanation = explanation.map_err(|error| data_error(error, None))?;
-        Explanation::new(py, explanation, Arc::clone(compiled))
+        Explanation::new(py, explanation, Arc::clone(compiled))?.into_bound_py_any(py)
     }
 
     /// Evaluates an output over a grid of the inputs.
@@ -385,8 +571,8 @@ impl RuleSet {
         &self,
         py: Python<'py>,
         coverage: f64,
-        rising: Vec<String>,
-        falling: Vec<String>,
+        #[pyo3(from_py_with = names)] rising: Vec<String>,
+        #[pyo3(from_py_with = names)] falling: Vec<String>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let mut options = check::Options::default();
         options.coverage = coverage;

@@ -15,7 +15,7 @@ pub(crate) struct SimplifyOptions {
     seed: u64,
 }
 
-/// What `flagred.Simplified` is made of.
+/// What `flagred.types.Simplified` is made of.
 #[derive(IntoPyObject)]
 pub(crate) struct Simplified {
     model: String,

@@ -1,11 +1,19 @@
 //! A table that Arrow's C interface hands on: to pyarrow, polars, pandas, DuckDB.
 
-use std::sync::Arc;
+use std::{collections::HashMap, sync::Arc};
 
-use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int32Array, RecordBatch};
+use arrow_array::{
+    Array, ArrayRef, BooleanArray, Float64Array, Int32Array, RecordBatch,
+    cast::AsArray,
+    types::{Float64Type, Int32Type},
+};
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
-use numpy::IntoPyArray;
-use pyo3::{exceptions::PyKeyError, prelude::*, types::PyCapsule};
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::{
+    exceptions::PyKeyError,
+    prelude::*,
+    types::{PyCapsule, PyList},
+};
 
 use crate::{
     arrow::{self, numbers},
@@ -13,9 +21,49 @@ use crate::{
     outcome::{Columns, NO_RULE},
 };
 
+/// A column as a pickle has it: name, metadata, values, and which of them are known where not all are.
+type Column<'py> = (
+    String,
+    HashMap<String, String>,
+    Values<'py>,
+    Option<PyReadonlyArray1<'py, bool>>,
+);
+
+/// The values of a column. Those that are unknown may be anything.
+#[derive(FromPyObject)]
+enum Values<'py> {
+    Floats(PyReadonlyArray1<'py, f64>),
+    Integers(PyReadonlyArray1<'py, i32>),
+    Booleans(PyReadonlyArray1<'py, bool>),
+}
+
+impl Values<'_> {
+    fn into_array(self, known: Option<Vec<bool>>) -> ArrayRef {
+        fn some<T: Copy>(values: &[T], known: Option<&[bool]>) -> Vec<Option<T>> {
+            let is_known = |i: usize| known.is_none_or(|known| known.get(i) == Some(&true));
+            let values = values.iter().enumerate();
+            values
+                .map(|(i, value)| is_known(i).then_some(*value))
+                .collect()
+        }
+        let known = known.as_deref();
+        match self {
+            Values::Floats(values) => {
+                Arc::new(Float64Array::from(some(&values.as_array().to_vec(), known)))
+            }
+            Values::Integers(values) => {
+                Arc::new(Int32Array::from(some(&values.as_array().to_vec(), known)))
+            }
+            Values::Booleans(values) => {
+                Arc::new(BooleanArray::from(some(&values.as_array().to_vec(), known)))
+            }
+        }
+    }
+}
+
 /// Columns of numbers. Whatever takes Arrow streams takes it: ``pyarrow.table(t)``, ``polars.DataFrame(t)``; and
 /// ``pandas.DataFrame(dict(t))`` takes its NumPy columns.
-#[pyclass(frozen, mapping, module = "flagred")]
+#[pyclass(frozen, mapping, module = "flagred.types")]
 pub(crate) struct Table {
     pub(crate) batches: Vec<RecordBatch>,
     pub(crate) schema: SchemaRef,
@@ -59,6 +107,62 @@ impl Table {
             values.extend_from_slice(&numbers(name, batch.column(index))?);
         }
         Ok(values.into_pyarray(py).into_any())
+    }
+
+    /// A table of its columns, as a pickle has them.
+    #[staticmethod]
+    fn _of_columns(columns: Vec<Column<'_>>) -> PyResult<Self> {
+        let (mut fields, mut arrays) = (Vec::new(), Vec::new());
+        for (name, metadata, values, known) in columns {
+            let known = known.map(|known| known.as_array().to_vec());
+            let array = values.into_array(known);
+            let field = Field::new(&name, array.data_type().clone(), name != "t_s");
+            fields.push(field.with_metadata(metadata));
+            arrays.push(array);
+        }
+        let schema = Arc::new(Schema::new(fields));
+        let batch = RecordBatch::try_new(Arc::clone(&schema), arrays);
+        let batches = vec![batch.map_err(|error| data_error(error, None))?];
+        Ok(Table { batches, schema })
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyList>,))> {
+        let (py, table) = (slf.py(), slf.get());
+        let columns = PyList::empty(py);
+        for (index, field) in table.schema.fields().iter().enumerate() {
+            let parts = table.batches.iter().map(|batch| batch.column(index));
+            let known = parts
+                .clone()
+                .flat_map(|part| (0..part.len()).map(|i| part.is_valid(i)));
+            let known: Vec<bool> = known.collect();
+            let known = known.contains(&false).then(|| known.into_pyarray(py));
+            let values = match field.data_type() {
+                DataType::Int32 => {
+                    let values = parts.flat_map(|part| part.as_primitive::<Int32Type>().values());
+                    values
+                        .copied()
+                        .collect::<Vec<i32>>()
+                        .into_pyarray(py)
+                        .into_any()
+                }
+                DataType::Boolean => {
+                    let values = parts.flat_map(|part| part.as_boolean().values().iter());
+                    values.collect::<Vec<bool>>().into_pyarray(py).into_any()
+                }
+                _ => {
+                    let values = parts.flat_map(|part| part.as_primitive::<Float64Type>().values());
+                    values
+                        .copied()
+                        .collect::<Vec<f64>>()
+                        .into_pyarray(py)
+                        .into_any()
+                }
+            };
+            columns.append((field.name(), field.metadata().clone(), values, known))?;
+        }
+        Ok((slf.getattr("_of_columns")?, (columns,)))
     }
 
     fn __repr__(&self) -> String {

@@ -10,11 +10,15 @@ use std::{
 
 use flagred_evaluation::learning::Row;
 use flagred_tuning::{Data, Loss, Settings, TuneError, cross_validate};
-use fuzzy::{Model, yaml};
+use fuzzy::{
+    Model,
+    drawing::short,
+    model::{LossChange, Step},
+};
 use pyo3::prelude::*;
 
 use crate::{
-    rows::{Failed, Rows, choice, claims},
+    rows::{Failed, Rows, choice, claims, with_step},
     rule_set::RuleSet,
     threads::{count, pool, stoppable},
 };
@@ -37,7 +41,7 @@ pub(crate) struct TuneOptions {
     folds: Option<u32>,
 }
 
-/// What `flagred.Tuned` is made of.
+/// What `flagred.types.Tuned` is made of.
 #[derive(IntoPyObject)]
 pub(crate) struct Tuned {
     model: String,
@@ -104,20 +108,29 @@ pub(crate) fn _tune(
 ) -> PyResult<(Tuned, bool)> {
     rule_set.compile(py)?;
     let settings = options.settings()?;
-    let model = rule_set.model(Model::clone);
+    let (model, text) = (rule_set.model(Model::clone), rule_set.text());
     let (all, skip) = (rows.rows(), rows.skip_bad_rows);
     let pool = pool(threads)?;
     let stop = Arc::new(AtomicBool::new(false));
     let is_stopped = Arc::clone(&stop);
     let (tuned, was_interrupted) = stoppable(py, &stop, move || {
-        pool.install(|| tune_numbers(&model, all, skip, &settings, options.folds, &is_stopped))
+        pool.install(|| {
+            tune_numbers(
+                (&text, &model),
+                all,
+                skip,
+                &settings,
+                options.folds,
+                &is_stopped,
+            )
+        })
     })?;
     let tuned = tuned.map_err(|failed| failed.raise(py))?;
     Ok((tuned, was_interrupted))
 }
 
 fn tune_numbers(
-    model: &Model,
+    (text, model): (&str, &Model),
     all: Vec<Row>,
     skip_bad_rows: bool,
     settings: &Settings,
@@ -137,10 +150,37 @@ fn tune_numbers(
         Some(folds) => cross_validate(model, &data, settings, folds, &mut |_, _| flow())?,
         None => None,
     };
+    let loss = match settings.loss {
+        Loss::Squared => "RMS error",
+        Loss::Log => "log loss",
+        Loss::Ranking => "wrong pairs",
+    };
+    let left_out = validation.as_ref().map(|validation| {
+        let [before, after] = [&validation.before, &validation.after].map(|f| short(f.value));
+        let folds = validation.folds;
+        format!("on rows left out, in {folds} parts: {before} before, {after} after")
+    });
+    let moved = |one: &flagred_tuning::Moved| {
+        let [before, after] = [one.before, one.after].map(short);
+        format!("{} {} from {before} to {after}", one.of, one.name)
+    };
+    let step = Step {
+        command: "flagred.tune".into(),
+        rows: Some(data.len() as u64),
+        seed: Some(settings.seed),
+        loss: Some(LossChange {
+            name: loss.into(),
+            before: rounded(tuned.before),
+            after: rounded(tuned.after),
+        }),
+        moved: tuned.moved.iter().map(moved).collect(),
+        note: left_out,
+        ..Step::default()
+    };
     let interval = |figure: flagred_tuning::Interval| (figure.value, figure.low, figure.high);
     let moved = tuned.moved.into_iter();
     Ok(Tuned {
-        model: yaml::to_string(&tuned.model),
+        model: with_step(text, &tuned.model, step)?,
         rows: data.len(),
         refused,
         before: tuned.before,
@@ -157,6 +197,11 @@ fn tune_numbers(
             gain: interval(validation.gain),
         }),
     })
+}
+
+/// Six digits: authors read them.
+fn rounded(loss: f64) -> f64 {
+    format!("{loss:.5e}").parse().unwrap_or(loss)
 }
 
 /// The rows that can be used, as columns, and why others cannot.

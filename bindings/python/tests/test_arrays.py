@@ -1,6 +1,8 @@
 """NumPy arrays: any shape, any strides, any type of number."""
 
 import os
+import pathlib
+import threading
 
 import numpy as np
 import pytest
@@ -155,3 +157,29 @@ def test_numbers_at_odd_addresses_are_read():
     assert not odd.flags.aligned
     assert np.array_equal(MODEL(odd, 5.0), MODEL(odd.copy(), 5.0))
     assert flagred.learn(MODEL, {"service": odd, "food": odd, "tip": odd}).rows == 100
+
+
+def test_a_matrix_has_a_column_for_each_input(tip):
+    X = np.random.default_rng(2).uniform(0, 10, (50, 2))
+    expected = tip(X[:, 0], X[:, 1])
+    assert np.array_equal(tip(X), expected)
+    assert np.array_equal(tip(X.astype(np.float32).astype(float)), tip(*X.astype(np.float32).T))
+    assert np.array_equal(tip(X.tolist()), expected)
+    assert np.array_equal(tip(np.asfortranarray(X)), expected)
+    assert np.array_equal(tip.evaluate(X).coverage, tip.evaluate(X[:, 0], X[:, 1]).coverage)
+    assert tip(np.empty((0, 2))).shape == (0,)
+    with pytest.raises(flagred.DataError, match="the matrix has 3 columns, and the model has 2 inputs"):
+        tip(np.zeros((4, 3)))
+    with pytest.raises(flagred.DataError, match="but 1 value was given\n  help: give a value for each input, or a matrix"):
+        tip(np.zeros(2))
+
+
+def test_threads_are_bounded_by_the_cores(tip):
+    x = np.linspace(0, 10, 200_000)
+    before = threading.active_count()
+    expected = tip(x, 9, threads=1)
+    assert np.array_equal(tip(x, 9, threads=10**6), expected)
+    assert threading.active_count() == before
+    tasks = pathlib.Path("/proc/self/task")
+    if tasks.is_dir():
+        assert len(list(tasks.iterdir())) < 200 + 4 * (os.cpu_count() or 1)

@@ -46,7 +46,7 @@ def folder(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def evaluation(folder) -> flagred.Evaluation:
+def evaluation(folder) -> flagred.types.Evaluation:
     return flagred.evaluate(folder)
 
 

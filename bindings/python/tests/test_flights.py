@@ -2,7 +2,9 @@
 
 import io
 import json
+import multiprocessing
 import pickle
+from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import pytest
@@ -119,7 +121,7 @@ def test_findings_and_the_report():
     assert assessment.svg().startswith("<svg ")
     assert assessment._repr_html_().startswith("<iframe srcdoc=")
     assert len(flagred.assess(CSV.encode(), step_s=None).steps) == 0
-    with pytest.raises(flagred.DataError, match="a step of 0"):
+    with pytest.raises(flagred.DataError, match="`step_s` is 0"):
         flagred.assess(CSV.encode(), step_s=0)
 
 
@@ -231,3 +233,119 @@ def test_damaged_logs_are_read(steady, data):
         return
     assert flight.commands.shape == (len(flight.t_s), len(flight.motors))
     assert flagred.assess(flight).verdict in ("GOOD", "WARN", "FAIL", "NA")
+
+
+def test_a_flight_is_pickled_with_the_bytes_of_its_log(steady, flight, tmp_path):
+    part = flagred.read_log(steady, signals=["roll_deg"])
+    for one in (flight, part, flagred.read_log(steady.read_bytes())):
+        again = pickle.loads(pickle.dumps(one))
+        assert type(again) is flagred.types.Flight
+        assert again._data == one._data and again.name == one.name
+        assert np.array_equal(again.raw_commands, one.raw_commands, equal_nan=True)
+        assert list(again.signals) == list(one.signals)
+    log = tmp_path / "log.csv"
+    log.write_text("t_s,pwm1,pwm2,pwm3,pwm4\n0,1500,1500,1500,1500\n")
+    ranged = flagred.read_log(log, range=(1000, 2000))
+    again = pickle.loads(pickle.dumps(ranged))
+    assert again.range == ranged.range
+    pickled = pickle.dumps(ranged)
+    log.write_text("t_s,pwm1,pwm2,pwm3,pwm4\n0,1500,1500,1500,1500\n1,1,1,1,1\n")
+    with pytest.raises(flagred.DataError, match="changed after it was read"):
+        pickle.dumps(ranged)
+    log.unlink()
+    with pytest.raises(FileNotFoundError, match="pickled with the bytes"):
+        pickle.dumps(ranged)
+    assert pickle.loads(pickled).commands.tolist() == [[0.5, 0.5, 0.5, 0.5]]
+
+
+def test_an_assessment_is_pickled(steady):
+    for log, profile in ((CSV.encode(), "flagred-paper"), (steady, "flagred")):
+        one = flagred.assess(log, profile, step_s=0.5)
+        again = pickle.loads(pickle.dumps(one))
+        assert type(again) is flagred.types.Assessment
+        assert (again.verdict, again.findings, again.summary) == (one.verdict, one.findings, one.summary)
+        assert str(again) == str(one)
+        assert again.profile.name == one.profile.name and again.flight.name == one.flight.name
+        assert again.to_json() == one.to_json() and again.html() == one.html() and again.svg() == one.svg()
+        assert {name: again.steps[name].tolist() for name in again.steps}.keys() == {*one.steps}
+        for name in one.steps:
+            assert np.array_equal(again.steps[name], one.steps[name], equal_nan=True)
+        assert pickle.loads(pickle.dumps(again)).verdict == one.verdict
+
+
+def test_many_logs_are_assessed_by_processes(steady):
+    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
+        found = list(pool.map(flagred.assess, [str(steady), str(steady)]))
+    assert [one.verdict for one in found] == ["GOOD", "GOOD"]
+    assert len(found[0].steps) == len(flagred.assess(steady).steps)
+
+
+def test_a_table_is_pickled():
+    steps = flagred.assess(CSV.encode(), "flagred-paper").steps
+    again = pickle.loads(pickle.dumps(steps))
+    pyarrow = pytest.importorskip("pyarrow")
+    assert pyarrow.table(again).equals(pyarrow.table(steps), check_metadata=True)
+    assert pyarrow.table(steps)["dominant_rule"].null_count > 0
+
+
+def test_a_monitor_is_pickled_before_a_flight_and_refuses_during_one():
+    monitor = flagred.Monitor("flagred-paper", step_s=0.5)
+    other = pickle.loads(pickle.dumps(monitor))
+    for i in range(600):
+        update = [one.push(i * 0.04, [0.0, 1.0, 0.05, 1.0]) for one in (monitor, other)]
+        assert repr(update[0]) == repr(update[1])
+    with pytest.raises(TypeError, match="during a flight\n  help: pickle what `finish"):
+        pickle.dumps(monitor)
+    ended, again = monitor.finish(), other.finish()
+    carried = pickle.loads(pickle.dumps(ended))
+    assert carried[:4] == ended[:4] == again[:4] and len(carried.steps) == len(ended.steps) > 0
+    assert type(pickle.loads(pickle.dumps(monitor))) is flagred.Monitor
+
+
+def test_a_moment_tells_which_rules_fired():
+    assessment = flagred.assess(CSV.encode(), "flagred-paper")
+    moment = assessment.moment(20.04)
+    assert moment["t_s"] == 20.04
+    t_s = assessment.steps["t_s"]
+    place = np.searchsorted(t_s, 20.04, side="right") - 1
+    assert moment["step"]["t_s"] == t_s[place]
+    assert moment["step"]["risk"] == assessment.steps["risk"][place]
+    assert moment["rules"][0]["rule"] == moment["step"]["dominant_rule"] == assessment.steps["dominant_rule"][place]
+    assert {one["name"] for one in moment["inputs"]} == {"margin", "spread"}
+    assert assessment.moment(-5)["step"] is None
+
+
+def test_signals_are_arrays_and_frames(flight):
+    roll, height = flight.signals["roll_deg"], flight.signals["altitude_m"]
+    assert np.array_equal(np.asarray(roll), roll.values, equal_nan=True)
+    assert np.asarray(roll, dtype=np.float32).dtype == np.float32
+    table = flight.signals.table(["altitude_m", "roll_deg"])
+    assert list(table) == ["t_s", "altitude_m", "roll_deg"]
+    assert np.array_equal(table["altitude_m"], height.values, equal_nan=True)
+    for i in (0, 17, len(height) - 1):
+        before = roll.t_s <= height.t_s[i]
+        expected = roll.values[before][-1] if before.any() else np.nan
+        assert np.array_equal(table["roll_deg"][i], expected, equal_nan=True)
+    early = flight.signals.table("roll_deg", t_s=[roll.t_s[0] - 1, roll.t_s[0]])
+    assert np.isnan(early["roll_deg"][0]) and early["roll_deg"][1] == roll.values[0]
+    with pytest.raises(flagred.DataError, match="no signal `pitch`"):
+        flight.signals.table(["pitch"])
+    pandas = pytest.importorskip("pandas")
+    assert pandas.DataFrame(roll).shape == (len(roll), 1)
+    assert len(pandas.DataFrame(table)) == len(height)
+    polars = pytest.importorskip("polars")
+    assert polars.DataFrame(roll).columns == ["t_s", "roll_deg"]
+
+
+def test_what_is_not_a_log_is_told_with_the_remedy(steady):
+    with pytest.raises(flagred.DataError, match=r"`list` is not a flight log\n  help: take one log at a time: `\[flagred"):
+        flagred.assess([steady])
+    with pytest.raises(flagred.DataError, match="`int` is not a flight log\n  help: give a path"):
+        flagred.read_log(3)
+    monitor = flagred.Monitor("flagred-paper")
+    monitor.push(0, [0.5, 0.5, 0.5, 0.5])
+    with pytest.raises(flagred.DataError, match="4 commands are followed, and 3 were given"):
+        monitor.push(0.1, [0.5, 0.5, 0.5])
+    for bad in (1500, -3, 1.6):
+        with pytest.raises(flagred.DataError, match=f"the command of motor 2 is `{bad}`, and a command is a fraction"):
+            monitor.push(0.1, [0.5, bad, 0.5, 0.5])

@@ -102,7 +102,7 @@ def test_our_own_table():
     assert polars.DataFrame(table).equals(flagred.loads(GAPS)(polars.DataFrame({"heat": [1, 20, 30]})))
     again = flagred.Model("again").input("speed", range=(0, 9), partition=["a", "b"])
     again.output("out", range=(0, 1), partition=["c", "d"]).rule("IF speed IS a THEN out IS c")
-    assert isinstance(again(table), flagred.Table)
+    assert isinstance(again(table), flagred.types.Table)
 
 
 def test_a_kept_value_crosses_batches():
@@ -209,3 +209,30 @@ def test_a_column_that_is_there_twice_is_refused():
             flagred.learn(MODEL, table, columns={"tip": "service"})
     # One that no input needs may be.
     assert MODEL(twice.rename_columns(["service", "x", "x"]).append_column("food", pyarrow.array([1.0]))).num_rows == 1
+
+
+def test_a_frame_is_explained_rule_by_rule(tip, gaps):
+    pandas, polars, pyarrow = (pytest.importorskip(name) for name in ("pandas", "polars", "pyarrow"))
+    frame = pandas.DataFrame({"food": [9, 2, np.nan], "service": [8.0, 3.0, 5.0]}, index=["a", "b", "c"])
+    found = tip.explain(frame)
+    assert list(found.columns) == ["row", "output", "rule", "strength", "share", "dominant_rule"]
+    # The last row has an unknown input.
+    assert set(found["row"]) == {"a", "b"}
+    for row in ("a", "b"):
+        why = tip.explain(service=frame.loc[row, "service"], food=frame.loc[row, "food"]).outputs[0]
+        rows = found[found["row"] == row]
+        expected = [(one.rule, one.strength, one.share) for one in why.rules]
+        assert list(rows[["rule", "strength", "share"]].itertuples(index=False, name=None)) == expected
+        assert set(rows["output"]) == {"tip"}
+        outcome = tip.evaluate(service=frame.loc[row, "service"], food=frame.loc[row, "food"])
+        assert set(rows["dominant_rule"]) == {outcome.dominant_rule}
+    for again in (tip.explain(polars.from_pandas(frame)), tip.explain(pyarrow.table(frame.reset_index(drop=True)))):
+        columns = again.to_dict(as_series=False) if isinstance(again, polars.DataFrame) else again.to_pydict()
+        assert columns["row"] == [0 if row == "a" else 1 for row in found["row"]]
+        for name in ("output", "rule", "strength", "share", "dominant_rule"):
+            assert columns[name] == found[name].tolist()
+    several = gaps.explain(pandas.DataFrame({"heat": [5.0, 20.0]}))
+    assert several[["row", "output", "rule"]].values.tolist() == [[0, "speed", 1], [0, "lamp", 1]]
+    assert len(tip.explain(frame.iloc[:0])) == 0
+    with pytest.raises(flagred.DataError, match="no column `food`"):
+        tip.explain(frame[["service"]])

@@ -126,7 +126,7 @@ def test_bad_rows_are_refused_or_left_out(fan):
     [
         ({"heat": [1]}, {}, "no column `speed`\n  help: there are `heat`"),
         ({"heat": [1, 2], "speed": [1]}, {}, "not of one length: 1, 2"),
-        ({"heat": ["a"], "speed": [1]}, {}, "holds no numbers"),
+        ({"heat": ["a"], "speed": [1]}, {}, "text is not a number"),
         (7, {}, "`int` is not a table"),
         ({"heat": [1], "speed": [1]}, {"columns": {"spede": "x"}}, "not a variable of the rule set"),
         ({"heat": [1], "speed": [1]}, {"weight": "w"}, "no column `w`"),
@@ -282,3 +282,55 @@ def test_tuned_numbers_are_short_and_rows_must_count():
                 flagred.tune(fan, rows, weight=weight)
     with pytest.raises(flagred.DataError, match="row 80: the value 1e308 is outside the range"):
         flagred.tune(fan, rows | {"speed": np.append(rows["speed"][:-1], 1e308)})
+
+
+def test_what_data_made_is_written_into_the_rule_set():
+    text = """# The fan.
+fuzzy: 1
+name: fan
+inputs: {heat: {range: [0, 40], partition: {cool: 5, hot: 35}}} # sensor 1
+outputs: {speed: {range: [0, 10], terms: {slow: {singleton: 2}, fast: {singleton: 8}}}}
+rules:
+  - IF heat IS cool THEN speed IS slow # quiet
+  - IF heat IS hot THEN speed IS fast
+"""
+    rows = {"heat": HEAT, "speed": SPEED}
+    tuned = flagred.tune(flagred.loads(text), rows, folds=3)
+    step = tuned.model.to_dict()["provenance"][-1]
+    assert (step["command"], step["rows"], step["seed"]) == ("flagred.tune", len(HEAT), 0)
+    assert step["loss"]["after"] == pytest.approx(tuned.after, rel=1e-5, abs=1e-12)
+    assert len(step["moved"]) == len(tuned.moved) > 0 and "in 3 parts" in step["note"]
+    # Only numbers moved, so that comments stay.
+    assert "# sensor 1" in tuned.model.text and "# quiet" in tuned.model.text
+    assert not [finding for finding in tuned.model.check() if finding.code == "edited-since"]
+    learned = flagred.learn(flagred.loads(text), rows)
+    step = learned.model.to_dict()["provenance"][-1]
+    assert (step["command"], step["rows"]) == ("flagred.learn", learned.rows)
+    assert f"{learned.rules} rules learned" in step["note"]
+    assert learned.model.text.startswith("# The fan.")
+
+
+def test_terms_from_data_by_c_means():
+    found = flagred.c_means([-1, 0, 1], 2)
+    # By symmetry the centers are -c and c, with c = s / ((1 + s^2) / 2 + 1/4) and s = 2 c / (1 + c^2).
+    c = found.centers[1]
+    s = 2 * c / (1 + c * c)
+    assert found.centers[0] == pytest.approx(-c) and c == pytest.approx(s / ((1 + s * s) / 2 + 0.25), abs=1e-6)
+    assert found.degrees[1] == pytest.approx([0.5, 0.5]) and found.degrees.sum(axis=1) == pytest.approx(1)
+    heaps = np.random.default_rng(0).normal([[8, 0], [20, 5], [35, 9]], 0.5, (40, 3, 2)).reshape(-1, 2)
+    found = flagred.c_means(heaps, 3, seed=3)
+    assert found.centers.round(0).tolist() == [[8, 0], [20, 5], [35, 9]]
+    assert np.array_equal(found.degrees, flagred.c_means(heaps, 3, seed=3).degrees)
+    partition = flagred.c_means(heaps[:, 0], 3).partition(["cool", "warm", "hot"])
+    fan = flagred.Model("fan").input("heat", range=(0, 40), partition=partition)
+    assert list(fan.inputs["heat"]) == ["cool", "warm", "hot"] and fan.inputs["heat"]["warm"](partition["warm"]) == 1
+    for call, message in (
+        (lambda: flagred.c_means([1, 2], 1), "`clusters` is 1; it must be at least 2"),
+        (lambda: flagred.c_means([1, np.nan], 2), "row 1 has an unknown value"),
+        (lambda: flagred.c_means([1, 1], 2), "there are 1"),
+        (lambda: flagred.c_means([1, 2], 2, fuzzifier=1), "`fuzzifier` is 1"),
+        (lambda: found.partition(["a", "b", "c"]), "several columns"),
+        (lambda: flagred.c_means([1, 2, 3], 2).partition(["a"]), "2 clusters, and 1 names"),
+    ):
+        with pytest.raises(flagred.DataError, match=message):
+            call()

@@ -2,7 +2,9 @@
 
 import copy
 import math
+import os
 import pickle
+import shutil
 import subprocess
 import sys
 import threading
@@ -55,15 +57,16 @@ def test_unknown_is_no_number(tip, gaps):
         (lambda tip: tip(servce=1, food=2), "there is no input `servce`\n  help: did you mean `service`?"),
         (lambda tip: tip(service=1), "input `food` has no value"),
         (lambda tip: tip(1, food=2), "values are given by place and by name"),
-        (lambda tip: tip("a", "b"), "holds no numbers"),
+        (lambda tip: tip("a", "b"), "text is not a number"),
         (lambda tip: tip([1, 2], [1, 2, 3]), "do not go together"),
         (lambda tip: tip([1], [2], threads=0), "at least 1"),
         (lambda tip: tip.map(bill=3), "there is no input `bill`"),
         (lambda tip: tip.map(points=1), "at least 2 points"),
         (lambda tip: tip.map(output="top"), "did you mean `tip`?"),
-        (lambda tip: tip.explain([1, 2], [3, 4]), "one point is explained at a time"),
+        (lambda tip: tip.explain([1, 2], [3, 4]), "arrays are not explained"),
         (lambda tip: tip.explain(1, math.nan), "not a finite number"),
-        (lambda tip: tip.check(monotone=["service"]), "increasing"),
+        (lambda tip: tip.check(rising=["servce"]), "did you mean `service`?"),
+        (lambda tip: tip.check(rising=3), "3 is not a list of inputs"),
     ],
 )
 def test_mistakes_are_told(tip, ask, message):
@@ -210,7 +213,7 @@ def test_findings_of_a_check(tip):
     codes = [finding.code for finding in tip.check()]
     assert "narrow-reach" in codes
     assert "not-monotone" not in codes
-    assert "not-monotone" in [finding.code for finding in tip.check(monotone=["service:decreasing"])]
+    assert "not-monotone" in [finding.code for finding in tip.check(falling="service")]
 
 
 def test_copies_are_apart(tip):
@@ -317,3 +320,145 @@ def test_damaged_rule_sets_are_read_or_refused(data):
         model(*[1.0] * len(model.inputs))
     except (flagred.RuleSetError, flagred.DataError):
         pass
+
+
+COMMENTED = """# Why: the manual, page 3.
+fuzzy: 1
+name: fan # short
+inputs:
+  heat: {range: [0, 40], partition: {cool: 5, hot: 35}} # sensor 1
+outputs:
+  speed: {range: [0, 9], partition: [slow, fast]}
+rules:
+  - IF heat IS cool THEN speed IS slow # quiet
+  - IF heat IS hot THEN speed IS fast # loud
+"""
+
+
+def test_a_file_that_is_not_edited_is_saved_as_it_was(tmp_path):
+    path = tmp_path / "fan.yaml"
+    for text in (COMMENTED, COMMENTED.replace("\n", "\r\n")):
+        path.write_bytes(text.encode())
+        flagred.load(path).save(tmp_path / "again.yml")
+        assert (tmp_path / "again.yml").read_bytes() == text.encode()
+
+
+def test_edits_keep_comments():
+    fan = flagred.loads(COMMENTED)
+    fan.rules[1].weight = 0.5
+    fan.inputs["heat"].range = (0, 45)
+    fan.inputs["heat"].partition = {"cool": 6, "hot": 36}
+    fan.rules.append("IF heat IS very hot THEN speed IS fast")
+    fan.description = "cools the server room"
+    text = fan.to_text()
+    expected = COMMENTED.replace("IS fast #", "IS fast WITH 0.5 #").replace("[0, 40]", "[0, 45]")
+    expected = expected.replace("cool: 5, hot: 35", "cool: 6, hot: 36")
+    expected += "  - IF heat IS very hot THEN speed IS fast\n"
+    for line in expected.splitlines():
+        assert line in text.splitlines(), text
+    assert "description: cools the server room" in text
+    assert flagred.loads(text) == fan
+    del fan.rules[0]
+    assert "# quiet" not in fan.to_text() and "# loud" in fan.to_text()
+
+
+@pytest.mark.parametrize("ending", ["fis", "fll", "fcl", "fml", "xml", "yaml"])
+def test_the_ending_chooses_the_format(tip, ending, tmp_path):
+    path = tmp_path / f"tip.{ending}"
+    tip.save(path)
+    begins = {"fis": "[System]", "fll": "Engine:", "fcl": "FUNCTION_BLOCK", "yaml": "fuzzy: 1"}.get(ending, "<?xml")
+    text = path.read_text()
+    assert text.startswith(begins)
+    again = flagred.load(path)
+    assert again(8, 9) == pytest.approx(tip(8, 9), rel=1e-3)
+    again.save(tmp_path / f"again.{ending}")
+    assert (tmp_path / f"again.{ending}").read_text() == text
+
+
+def test_formats_are_those_of_the_command(tip, tmp_path):
+    command = os.environ.get("FLAGRED_COMMAND")
+    if command is None or shutil.which(command) is None:
+        pytest.skip("FLAGRED_COMMAND names no command `flagred`")
+    source = tmp_path / "tip.yaml"
+    tip.save(source)
+    for format in ("fis", "fll", "fcl", "fml"):
+        run = subprocess.run([command, "export", f"--{format}", source], capture_output=True, text=True)
+        assert run.stdout == tip.to_text(format), run.stderr
+
+
+def test_what_a_format_cannot_say_is_refused_or_dropped_with_a_warning(tmp_path):
+    lost = flagred.loads(COMMENTED.replace("name: fan # short", "name: fan")
+                         .replace("partition: [slow, fast]}", "partition: [slow, fast], when_no_rule_fires: previous}"))
+    refusing = []
+    for format in ("fis", "fll", "fcl", "fml"):
+        try:
+            lost.to_text(format)
+        except flagred.RuleSetError:
+            refusing.append(format)
+            with pytest.warns(UserWarning):
+                lost.to_text(format, lossy=True)
+    assert "fis" in refusing
+    with pytest.raises(flagred.RuleSetError):
+        lost.save(tmp_path / "lost.fis")
+    assert not (tmp_path / "lost.fis").exists()
+    with pytest.raises(flagred.DataError, match="the endings are `.yaml`"):
+        lost.save(tmp_path / "lost.txt")
+    with pytest.raises(flagred.DataError, match="`doc` is not a format"):
+        lost.to_text("doc")
+
+
+def test_texts_come_as_bytes_and_from_open_files(tmp_path):
+    fan = flagred.loads(COMMENTED)
+    assert flagred.loads(COMMENTED.encode()) == fan
+    path = tmp_path / "fan.yaml"
+    path.write_text(COMMENTED)
+    for mode in ("r", "rb"):
+        with open(path, mode) as file:
+            assert flagred.load(file) == fan
+    with pytest.raises(flagred.RuleSetError, match="not UTF-8: byte 1"):
+        flagred.loads(b"a\xff")
+    with pytest.raises(flagred.DataError, match="`int` is not a file"):
+        flagred.load(3)
+    with pytest.raises(flagred.DataError, match="`load` reads files"):
+        flagred.loads(path)
+
+
+def test_rules_are_counted_from_one_where_people_read(tip):
+    assert repr(tip.rules[0]).startswith("Rule(1: IF service IS poor")
+    assert tip.rules[2].number == 3
+    assert repr(tip.rules).splitlines()[2].startswith("3: ")
+    assert tip.evaluate(8, 9).dominant_rule == 3
+
+
+def test_degrees_of_a_term(tip):
+    good = tip.inputs["service"]["good"]
+    assert good(2.5) == 0.5 and isinstance(good(2.5), float)
+    assert good([[0, 2.5], [5, 10]]).tolist() == [[0, 0.5], [1, 0]]
+    assert math.isnan(good(None))
+    # Outside the range the ends count, as in an evaluation.
+    assert tip.inputs["service"]["excellent"](99) == tip.inputs["service"]["excellent"](10) == 1
+    why = tip.explain(3.25, 9)
+    assert why.inputs[0].terms == {term: tip.inputs["service"][term](3.25) for term in tip.inputs["service"]}
+    assert tip.outputs["tip"]["medium"](15) == 1
+    assert len(tip.inputs["service"]) == 3 and "good" in tip.inputs["service"]
+    with pytest.raises(KeyError, match="its terms are `poor`, `good`, `excellent`"):
+        tip.inputs["service"]["god"]
+
+
+def test_surface(tip):
+    assert str(tip.surface())[:4] == "<svg"
+    with pytest.raises(flagred.DataError, match="two axes"):
+        tip.surface(food=3)
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    figure = pyplot.figure()
+    ax = tip.surface(figure.add_subplot(projection="3d"), points=11)
+    assert (ax.get_xlabel(), ax.get_ylabel(), ax.get_zlabel()) == ("service", "food", "tip")
+    with pytest.raises(flagred.DataError, match="the axes are flat"):
+        tip.surface(figure.add_subplot())
+
+
+def test_help_names_what_matters_and_types_have_the_rest():
+    assert len(flagred.__all__) <= 22
+    assert not {"Cause", "Peak", "Share", "Step"} & set(flagred.__all__)
+    for name in flagred.types.__all__:
+        assert isinstance(getattr(flagred.types, name), type)

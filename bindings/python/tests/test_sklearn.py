@@ -16,10 +16,10 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
 import flagred
-from flagred.sklearn import FuzzyClassifier, FuzzyRegressor, FuzzyRiskClassifier
+from flagred.sklearn import ConformalRegressor, FuzzyClassifier, FuzzyRegressor, FuzzyRiskClassifier
 
 
-@parametrize_with_checks([FuzzyClassifier(), FuzzyRegressor(), FuzzyRiskClassifier()])
+@parametrize_with_checks([ConformalRegressor(), FuzzyClassifier(), FuzzyRegressor(), FuzzyRiskClassifier()])
 def test_scikit_learn_checks(estimator, check):
     check(estimator)
 
@@ -156,3 +156,51 @@ def test_many_classes_have_a_rule_set_each():
     with pytest.raises(ValueError, match="two classes"):
         FuzzyClassifier(monotonic_cst=[1, 0]).fit(X[:, 2:], names)
 
+
+
+def test_intervals_contain_the_promised_share_of_new_rows():
+    random = np.random.default_rng(4)
+    X = random.uniform(0, 6, (3000, 2))
+    y = np.sin(X[:, 0]) + 0.5 * X[:, 1] + random.normal(0, 0.3, 3000)
+    regressor = ConformalRegressor(random_state=0).fit(X[:1500], y[:1500])
+    widths = []
+    for coverage in (0.5, 0.8, 0.95):
+        low, high = regressor.predict_interval(X[1500:], coverage).T
+        share = np.mean((low <= y[1500:]) & (y[1500:] <= high))
+        # 375 errors and 1500 rows: the share varies by about 0.03 (one standard deviation at 0.5).
+        assert abs(share - coverage) < 0.08, (coverage, share)
+        widths.append(high[0] - low[0])
+    assert widths == sorted(widths)
+    assert widths[2] < 4 * 0.3 * 1.5
+    assert np.all(regressor.predict_interval(X[:9]).mean(axis=1).round(9) == regressor.predict(X[:9]).round(9))
+
+
+def test_intervals_by_hand():
+    class Zero(FuzzyRegressor):
+        def fit(self, X, y, sample_weight=None):
+            return self
+
+        def predict(self, X):
+            return np.zeros(len(X))
+
+    X, y = np.arange(40.0)[:, None], np.arange(40.0)
+    regressor = ConformalRegressor(Zero(), calibration_size=9 / 40, random_state=1).fit(X, y)
+    # Of 9 errors the 5th is the half width at 50 %: ceil(10 * 0.5) = 5; 90 % takes all 9.
+    assert len(regressor.errors_) == 9
+    assert regressor.predict_interval([[3]], 0.5).tolist() == [[-regressor.errors_[4], regressor.errors_[4]]]
+    assert regressor.predict_interval([[3]], 0.9)[0, 1] == regressor.errors_[8]
+    with pytest.raises(ValueError, match="intervals of 95% need 19 calibration rows, and there are 9"):
+        regressor.predict_interval([[3]], 0.95)
+
+
+def test_groups_are_on_one_side_of_the_calibration():
+    random = np.random.default_rng(5)
+    X = random.uniform(0, 1, (200, 1))
+    vehicle = np.repeat(np.arange(10), 20)
+    # Each vehicle has an offset of its own: errors on vehicles that were seen are smaller than those on others.
+    y = X[:, 0] + vehicle
+    with_vehicle = np.column_stack((X, vehicle))
+    plain = ConformalRegressor(FuzzyRegressor(n_terms=7), random_state=0).fit(with_vehicle, y)
+    grouped = ConformalRegressor(FuzzyRegressor(n_terms=7), random_state=0).fit(with_vehicle, y, groups=vehicle)
+    assert len(grouped.errors_) in (40, 60)
+    assert grouped.errors_.max() > plain.errors_.max()

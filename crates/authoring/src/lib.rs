@@ -35,6 +35,7 @@ pub mod layout;
 pub mod names;
 mod numbers;
 pub mod provenance;
+pub mod rewrite;
 pub mod slice;
 pub mod starter;
 

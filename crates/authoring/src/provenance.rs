@@ -9,7 +9,7 @@ use fuzzy::{
 };
 use sha2::{Digest as _, Sha256};
 
-use crate::{Edit, edited, numbers};
+use crate::{Edit, edited, numbers, rewrite::head};
 
 /// The text of a rule set that a command made, with the step that made it. Where only numbers differ from the text that the
 /// command began with, they change in that text; any other rule set is written anew, below the comments at the head of that text.
@@ -25,9 +25,7 @@ pub fn rule_set(begun_with: &str, mut model: Model, step: Step) -> Result<String
     if let Some(text) = in_place(begun_with, &model) {
         return Ok(text);
     }
-    let head = begun_with.split_inclusive('\n');
-    let head: String = head.take_while(|line| line.starts_with('#')).collect();
-    let text = head + &fuzzy::yaml::to_string(&model);
+    let text = head(begun_with) + &fuzzy::yaml::to_string(&model);
     match fuzzy::yaml::parse(&text)?.model == model {
         true => Ok(text),
         false => {

@@ -9,8 +9,10 @@
 //! consequents of a Takagi-Sugeno output are solved for at every step, as ANFIS does (Jang 1993). [`cross_validate`] tells
 //! what tuning is worth on rows that were left out.
 //!
-//! [`identify`] finds inputs, partitions and rules where none are known; [`simplify()`] says the same with fewer rules.
+//! [`identify`] finds inputs, partitions and rules where none are known; [`c_means`] finds groups of rows, which can be the terms
+//! of an input; [`simplify()`] says the same with fewer rules.
 
+pub mod c_means;
 mod confusion;
 mod consequents;
 mod data;

@@ -22,7 +22,7 @@ mod cause;
 mod tests;
 mod write;
 #[doc(hidden)]
-pub use write::to_text;
+pub use write::{to_line, to_text};
 
 /// The maximum size of a text in bytes; larger texts are rejected. 100,000 short rules fit.
 pub const LARGEST_BYTES: usize = 4_000_000;

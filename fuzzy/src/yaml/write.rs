@@ -15,6 +15,14 @@ pub fn to_text(node: &Node) -> String {
     text
 }
 
+/// Writes the tree on one line, as the value of a key.
+#[must_use]
+pub fn to_line(node: &Node) -> String {
+    let mut line = String::new();
+    flow(&mut line, node);
+    line
+}
+
 /// Writes the value after `key:` or `-`, including the line break.
 fn block(out: &mut String, node: &Node, indent: usize) {
     match &node.value {

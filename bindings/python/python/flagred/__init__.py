@@ -10,105 +10,37 @@
 ... ''')
 >>> fan(20)
 4.5
+
+Models are called like functions: :func:`load`, :func:`loads`, :class:`Model`. Logs are assessed by :func:`assess`, or sample by
+sample by a :class:`Monitor`. :func:`learn`, :func:`tune`, :func:`identify`, :func:`simplify` and :func:`c_means` work on data,
+:func:`evaluate` measures how well risks predict. ``flagred.types`` has the types of results, ``flagred.sklearn`` estimators,
+``flagred.testing`` helpers for tests, ``flagred.fleet`` many logs.
 """
 
-from ._core import (
-    VERSION as __version__,
-    DecisionMap,
-    ExplainedInput,
-    ExplainedOutput,
-    Explanation,
-    FiredRule,
-    Outcome,
-    Outcomes,
-    Profile,
-    Share,
-    Table,
-    Update,
-)
-from ._data import (
-    Cause,
-    Event,
-    Finding,
-    Gap,
-    Geometry,
-    Interval,
-    Intervals,
-    LeftOut,
-    Motor,
-    MotorFinding,
-    Parameter,
-    Peak,
-    Range,
-    Report,
-    Summary,
-    Vehicle,
-)
-from ._errors import DataError, Diagnostic, FlagredError, LogError, RuleSetError
-from ._flight import Assessment, Flight, Signal, assess, read_log
-from ._identify import Identified, IdentifyValidation, Step, identify
-from ._learning import Errors, Figure, Learned, Moved, Tuned, TuneInterrupted, TuneValidation, learn, tune
+from . import types
+from ._clusters import c_means
+from ._core import VERSION as __version__, Profile
+from ._errors import DataError, FlagredError, LogError, RuleSetError
+from ._flight import assess, read_log
+from ._identify import identify
+from ._learning import TuneInterrupted, learn, tune
 from ._model import Model, load, loads
-from ._monitor import Followed, Monitor
-from ._picture import Picture
-from ._simplify import Difference, Simplified, simplify
-from .evaluation import Evaluation, evaluate
+from ._monitor import Monitor
+from ._simplify import simplify
+from .evaluation import evaluate
 
 __all__ = [
-    "Assessment",
-    "Cause",
     "DataError",
-    "DecisionMap",
-    "Diagnostic",
-    "Difference",
-    "Errors",
-    "Evaluation",
-    "Event",
-    "ExplainedInput",
-    "ExplainedOutput",
-    "Explanation",
-    "Figure",
-    "Finding",
-    "FiredRule",
     "FlagredError",
-    "Flight",
-    "Followed",
-    "Gap",
-    "Geometry",
-    "Identified",
-    "IdentifyValidation",
-    "Interval",
-    "Intervals",
-    "Learned",
-    "LeftOut",
     "LogError",
     "Model",
     "Monitor",
-    "Motor",
-    "MotorFinding",
-    "Moved",
-    "Outcome",
-    "Outcomes",
-    "Parameter",
-    "Peak",
-    "Picture",
     "Profile",
-    "Range",
-    "Report",
     "RuleSetError",
-    "Share",
-    "Signal",
-    "Simplified",
-    "Step",
-    "Summary",
-    "Table",
     "TuneInterrupted",
-    "TuneValidation",
-    "Tuned",
-    "Update",
-    "Vehicle",
     "__version__",
     "assess",
+    "c_means",
     "evaluate",
     "identify",
     "learn",
@@ -117,4 +49,5 @@ __all__ = [
     "read_log",
     "simplify",
     "tune",
+    "types",
 ]

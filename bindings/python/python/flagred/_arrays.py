@@ -21,7 +21,8 @@ def array(value: Any) -> NDArray[np.float64]:
             value = value.to_numpy(dtype=np.float64, na_value=np.nan)
         found = np.asarray(value)
         if found.dtype.kind not in "biufO":
-            raise DataError(f"an array of {found.dtype} holds no numbers\n  help: convert it to numbers first")
+            what = "text" if found.dtype.kind in "UST" else f"an array of {found.dtype}"
+            raise DataError(f"{what} is not a number\n  help: convert it to numbers first")
         # The native half reads numbers at their natural addresses alone.
         return np.require(found.astype(np.float64, copy=False), requirements="A")
     except DataError:
@@ -40,3 +41,13 @@ def alike(values: list[Any]) -> list[NDArray[np.float64]]:
         raise DataError(f"arrays of the shapes {shapes} do not go together") from None
     # Not `ascontiguousarray`: it would give a number an axis.
     return [np.asarray(one, dtype=np.float64, order="C") for one in arrays]
+
+
+def columns(value: Any, inputs: int) -> list[NDArray[np.float64]] | None:
+    """The columns of a matrix; None for anything else."""
+    matrix = array(value)
+    if matrix.ndim != 2:
+        return None
+    if matrix.shape[1] != inputs:
+        raise DataError(f"the matrix has {matrix.shape[1]} columns, and the model has {inputs} inputs")
+    return [matrix[:, column] for column in range(inputs)]

@@ -6,10 +6,14 @@ import json
 from collections.abc import Callable, Iterator, MutableMapping, MutableSequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
+from ._arrays import array
 from ._core import RuleSet
 from ._errors import DataError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
     from ._model import Model
 
 Document = dict[str, Any]
@@ -63,8 +67,13 @@ class Rule:
 
     @property
     def index(self) -> int:
-        """Its index in the rules of the model."""
+        """Its index in ``model.rules``, from 0."""
         return self._index
+
+    @property
+    def number(self) -> int:
+        """Its number, from 1, as findings and explanations count rules."""
+        return self._index + 1
 
     @property
     def text(self) -> str:
@@ -119,7 +128,7 @@ class Rule:
         return self.text
 
     def __repr__(self) -> str:
-        return f"Rule({self._index}: {self.text})"
+        return f"Rule({self.number}: {self.text})"
 
 
 class Rules(MutableSequence[Rule]):
@@ -183,7 +192,7 @@ class Rules(MutableSequence[Rule]):
         edit(self._model, change)
 
     def __repr__(self) -> str:
-        return "\n".join(f"{rule.index}: {rule.text}" for rule in self)
+        return "\n".join(f"{rule.number}: {rule.text}" for rule in self)
 
 
 def _key(name: str, doc: str) -> Any:
@@ -198,10 +207,46 @@ def _key(name: str, doc: str) -> Any:
     return property(get, put, doc=doc)
 
 
+class Term:
+    """A term of a variable. It is called with values and returns their degrees of membership."""
+
+    __slots__ = ("_model", "_variable", "name")
+
+    name: str
+    """Its name in rules."""
+
+    def __init__(self, model: RuleSet, variable: str, name: str) -> None:
+        self._model, self._variable, self.name = model, variable, name
+
+    @overload
+    def __call__(self, value: float | None) -> float: ...
+    @overload
+    def __call__(self, value: ArrayLike) -> NDArray[np.float64]: ...
+    def __call__(self, value: Any) -> Any:
+        degrees = self._model._degrees(self._variable, self.name, array(value))
+        return degrees if degrees.ndim else float(degrees)
+
+    def __repr__(self) -> str:
+        return f"Term({self._variable} IS {self.name})"
+
+
 class Variable:
     """An input or output of a model. What is set here is set in the model.
 
-    Its attributes are the keys of the rule-set format; one that is not written is None.
+    Its attributes are the keys of the rule-set format; one that is not written is None. ``variable["hot"]`` is a term:
+    called with a number or an array, it returns degrees of membership. Values outside the range have the degrees of its
+    ends, and NaN has the degree NaN.
+
+    Examples
+    --------
+    >>> import flagred
+    >>> fan = flagred.Model("fan").input("heat", range=(0, 40), partition=["cool", "hot"])
+    >>> fan.inputs["heat"]["hot"](10)
+    0.25
+    >>> fan.inputs["heat"]["hot"]([10, 20, 50])
+    array([0.25, 0.5 , 1.  ])
+    >>> list(fan.inputs["heat"])
+    ['cool', 'hot']
     """
 
     __slots__ = ("_kind", "_model", "name")
@@ -215,6 +260,21 @@ class Variable:
     def _document(self) -> Document:
         found: Document = json.loads(self._model._json())[self._kind][self.name]
         return found
+
+    def __getitem__(self, term: str) -> Term:
+        if term not in self:
+            there = ", ".join(f"`{name}`" for name in self)
+            raise KeyError(f"`{self.name}` has no term `{term}`; its terms are {there}")
+        return Term(self._model, self.name, term)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._model._term_names(self.name))
+
+    def __len__(self) -> int:
+        return len(self._model._term_names(self.name))
+
+    def __contains__(self, term: object) -> bool:
+        return term in self._model._term_names(self.name)
 
     range: Any = _key("range", "The least and the greatest value.")
     unit: Any = _key("unit", "The unit of its values, for people.")

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import IO, TYPE_CHECKING, Any, Literal
+
+import numpy as np
 
 from . import _data
 from ._core import AssessmentData, FlightData, Profile, Table
 from ._data import Event, Finding, Gap, Geometry, Intervals, Motor, Parameter, Range, Report, Summary, Vehicle
+from ._errors import DataError
 from ._picture import framed
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 __all__ = ["Assessment", "Flight", "Signal", "assess", "read_log"]
 
@@ -23,7 +25,7 @@ __all__ = ["Assessment", "Flight", "Signal", "assess", "read_log"]
 class Signal:
     """A signal of a flight: values over time.
 
-    pyarrow, polars and others take it as a table of ``t_s`` and its name.
+    NumPy takes it as the array of its values; pyarrow, polars and others take it as a table of ``t_s`` and its name.
     """
 
     __slots__ = ("_base", "_flight", "name", "rate_hz", "source", "unit")
@@ -63,6 +65,20 @@ class Signal:
         assert table is not None
         return table
 
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        values = self.values
+        return values if dtype is None else values.astype(dtype, copy=False)
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        t_s, values = self._arrays()
+        unknown = np.isnan(values)
+        known = None if not unknown.any() else ~unknown
+        columns = [("t_s", {"unit": "s"}, t_s, None), (self.name, {"unit": self.unit}, values, known)]
+        return Table._of_columns(columns).__arrow_c_stream__(requested_schema)
+
+    def __iter__(self) -> Iterator[float]:
+        return iter(self.values.tolist())
+
     def __len__(self) -> int:
         return len(self.t_s)
 
@@ -71,7 +87,9 @@ class Signal:
         return f"Signal({self.name}: {len(self)} values{rate})"
 
 
-class _Signals(Mapping[str, Signal]):
+class Signals(Mapping[str, Signal]):
+    """The signals of a flight by their names."""
+
     def __init__(self, flight: FlightData) -> None:
         self._all = {signal[0]: Signal(flight, *signal) for signal in flight._signals()}
 
@@ -84,6 +102,36 @@ class _Signals(Mapping[str, Signal]):
     def __len__(self) -> int:
         return len(self._all)
 
+    def table(self, names: Iterable[str], t_s: ArrayLike | None = None) -> dict[str, NDArray[np.float64]]:
+        """Several signals at common times, as columns: ``pandas.DataFrame(flight.signals.table(["roll_deg", "altitude_m"]))``.
+
+        Parameters
+        ----------
+        names
+            The names of the signals.
+        t_s
+            The times in seconds, ascending. None: the times of the first signal.
+
+        Returns
+        -------
+        dict
+            ``t_s`` and a column for each signal: its latest value at or before each time; NaN before its first value and
+            where it is unknown.
+        """
+        names = [names] if isinstance(names, str) else list(names)
+        if not names:
+            raise DataError("a table needs the name of a signal")
+        for name in names:
+            if name not in self._all:
+                raise DataError(f"the flight has no signal `{name}`\n  help: there are {', '.join(self._all)}")
+        times = self[names[0]].t_s if t_s is None else np.asarray(t_s, dtype=np.float64)
+        columns = {"t_s": times}
+        for name in names:
+            at, values = self[name]._arrays()
+            latest = np.searchsorted(at, times, side="right") - 1
+            columns[name] = np.where(latest >= 0, values[np.maximum(latest, 0)], np.nan)
+        return columns
+
     def __repr__(self) -> str:
         return f"Signals({', '.join(self._all)})"
 
@@ -91,11 +139,14 @@ class _Signals(Mapping[str, Signal]):
 class Flight(FlightData):
     """A flight, read from a log by :func:`read_log`.
 
-    Times are in seconds on the log's own clock.
+    Times are in seconds on the log's own clock. A pickle of a flight contains the bytes of its log.
     """
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Flight:
         raise TypeError("a flight is read by `flagred.read_log`")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickled_flight, self._parts()
 
     @cached_property
     def _data(self) -> dict[str, Any]:
@@ -222,9 +273,9 @@ class Flight(FlightData):
         return self._commands_table()
 
     @cached_property
-    def signals(self) -> Mapping[str, Signal]:
+    def signals(self) -> Signals:
         """All other signals by their names."""
-        return _Signals(self)
+        return Signals(self)
 
     def __repr__(self) -> str:
         air = "unknown" if self.in_air is None else f"{self.in_air.duration_s:.1f} s"
@@ -232,7 +283,10 @@ class Flight(FlightData):
 
 
 class Assessment(AssessmentData):
-    """What is said of a flight; made by :func:`assess`."""
+    """The assessment of a flight, returned by :func:`assess`.
+
+    A pickle of it contains the flight, the profile and the findings. The rest is computed again when it is first used.
+    """
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Assessment:
         raise TypeError("an assessment is made by `flagred.assess`")
@@ -241,6 +295,9 @@ class Assessment(AssessmentData):
     """The flight."""
     profile: Profile
     """The profile it was assessed by."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickled_assessment, (self.flight, self.profile, self._step_s(), self._json())
 
     @cached_property
     def _data(self) -> dict[str, Any]:
@@ -291,6 +348,33 @@ class Assessment(AssessmentData):
         """The risk over time, a row each step: ``t_s``, ``risk`` and ``elevated_risk`` in %, ``coverage``, ``filled``,
         ``dominant_rule``, ``margin``, ``spread``, ``judged``, and ``input_NAME`` for each input of the profile."""
         return self._steps()
+
+    def moment(self, t_s: float) -> dict[str, Any]:
+        """What was known at a time of the flight, and the rules that fired.
+
+        Parameters
+        ----------
+        t_s
+            The time in seconds on the log's clock.
+
+        Returns
+        -------
+        dict
+            ``step`` is the latest step (None where none is near, as without steps), ``mode`` the flight mode, ``inputs`` the
+            inputs with the degrees of their terms, ``rules`` the rules that fired, the strongest first. The page and the
+            JavaScript package return the same.
+
+        Examples
+        --------
+        >>> import flagred
+        >>> log = "t_s,motor1,motor2,motor3,motor4,in_air\\n"
+        >>> log += "".join(f"{i / 50},0.45,0.5,0.55,0.5,1\\n" for i in range(1000))
+        >>> moment = flagred.assess(log.encode(), "flagred-paper").moment(10)
+        >>> moment["rules"][0]["rule"] == moment["step"]["dominant_rule"]
+        True
+        """
+        found: dict[str, Any] = json.loads(self._moment(float(t_s)))
+        return found
 
     def _repr_html_(self) -> str:
         return framed(self.html())
@@ -348,12 +432,29 @@ def read_log(
         return _flight(bytes(log), "<bytes>", signals, range)
     if isinstance(log, (str, os.PathLike)):
         return _flight(log, os.fspath(log), signals, range)
+    if not hasattr(log, "read"):
+        help_text = "give a path, the bytes of a log or an open file"
+        if isinstance(log, (list, tuple)):
+            help_text = "take one log at a time: `[flagred.assess(log) for log in logs]`"
+        raise DataError(f"`{type(log).__name__}` is not a flight log\n  help: {help_text}")
     name = getattr(log, "name", "<file>")
     return _flight(bytes(log.read()), name if isinstance(name, str) else "<file>", signals, range)
 
 
 def _flight(source: Any, name: str, signals: list[str] | None, range: tuple[int, int] | None) -> Flight:
     return FlightData.__new__(Flight, source, name, signals, range)
+
+
+def _unpickled_flight(
+    log: bytes, name: str, signals: list[str] | None, range: tuple[int, int] | None
+) -> Flight:
+    return FlightData.__new__(Flight, log, name, signals, range, True)
+
+
+def _unpickled_assessment(flight: Flight, profile: Profile, step_s: float | None, said: str) -> Assessment:
+    assessment: Assessment = AssessmentData.__new__(Assessment, flight, profile, step_s, said)
+    assessment.flight, assessment.profile = flight, profile
+    return assessment
 
 
 def assess(

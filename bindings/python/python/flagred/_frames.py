@@ -57,6 +57,39 @@ def evaluate(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: b
     return table
 
 
+def explain(rule_set: RuleSet, frame: Any) -> Any:
+    """What each row of a frame rests on, as a frame of the same library with a row for each contributing rule."""
+    import numpy as np
+
+    from ._arrays import array
+    from ._tables import column_of, table_of
+
+    library = _library(frame)
+    data = table_of(frame)
+    columns = [array(column_of(data, name)) for name in rule_set._input_names()]
+    found: dict[str, Any] = rule_set._explain_rows(columns)
+    found["output"] = np.asarray(rule_set._output_names(), dtype=object)[found["output"]]
+    if _is_pandas(frame):
+        import pandas
+
+        found["row"] = frame.index.take(found["row"])
+        return pandas.DataFrame(found)
+    if library == "polars":
+        import polars
+
+        return polars.DataFrame({**found, "output": found["output"].tolist()}, schema_overrides={"output": polars.String})
+    if library in ("pyarrow", "duckdb", "_duckdb"):
+        import pyarrow
+
+        made = pyarrow.table({**found, "output": pyarrow.array(found["output"].tolist(), pyarrow.string())})
+        if library == "pyarrow":
+            return made
+        import duckdb
+
+        return duckdb.from_arrow(made)
+    return found
+
+
 def _pandas(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: bool) -> Any:
     """By NumPy columns: this takes no pyarrow, and copies nothing that is float64."""
     import numpy as np

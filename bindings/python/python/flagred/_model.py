@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import IO, Any, Literal
 
 from ._core import RuleSet, _built_in
 from ._edit import Document, Operators, Output, Rules, Variable, Variables, edit, plain, rule_lists
 from ._errors import DataError, RuleSetError
-from ._picture import Picture
+from ._picture import Picture, plot_surface
 
 __all__ = ["Model", "load", "loads"]
 
@@ -18,6 +19,16 @@ __all__ = ["Model", "load", "loads"]
 Partition = Sequence[str] | Mapping[str, float]
 Steps = Mapping[str, float | None]
 Terms = Mapping[str, Mapping[str, Any]]
+
+_ENDINGS: dict[str, Literal["yaml", "fis", "fll", "fcl", "fml"]] = {
+    ".yaml": "yaml",
+    ".yml": "yaml",
+    ".fis": "fis",
+    ".fll": "fll",
+    ".fcl": "fcl",
+    ".fml": "fml",
+    ".xml": "fml",
+}
 
 _EMPTY = "fuzzy: 1\nname: model\ninputs: {}\noutputs: {}\nrules: []\n"
 
@@ -223,19 +234,99 @@ class Model(RuleSet):
 
     @property
     def text(self) -> str:
-        """The text it was read from; after an edit, the rule set in YAML."""
+        """The text it was read from; after edits, YAML with the comments of the lines that did not change."""
         return self._text()[0]
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the rule set in YAML.
+    def to_text(
+        self, format: Literal["yaml", "fis", "fll", "fcl", "fml"] = "yaml", *, lossy: bool = False
+    ) -> str:
+        """The rule set as text, as :meth:`save` writes it.
+
+        Parameters
+        ----------
+        format
+            ``yaml``; ``fis`` for MATLAB and Octave; ``fll`` for fuzzylite; ``fcl`` for programs of IEC 61131-7; ``fml`` for
+            programs of IEEE 1855. ``flagred export`` of the command also writes C, Rust and Lua.
+        lossy
+            Drop what the format cannot express, with a warning; results may differ.
+
+        Returns
+        -------
+        str
+            In the format that the rule set was read from, the text that was read, with its comments. Edits change the YAML
+            where they apply and keep the comments of other lines, as far as they can.
+
+        Raises
+        ------
+        RuleSetError
+            The format cannot express the rule set.
+
+        Examples
+        --------
+        >>> import flagred
+        >>> model = flagred.load("flagred")
+        >>> model.to_text("fll").splitlines()[0]
+        'Engine: flagred'
+        """
+        if format not in _ENDINGS.values():
+            known = ", ".join(f"`{known}`" for known in dict.fromkeys(_ENDINGS.values()))
+            raise DataError(f"`{format}` is not a format of rule sets\n  help: write one of {known}")
+        text, dropped = self._to_text(format, lossy)
+        for message in dropped:
+            warnings.warn(message, stacklevel=2)
+        return text
+
+    def save(self, path: str | os.PathLike[str], *, lossy: bool = False) -> None:
+        """Writes the rule set to a file, in the format of the file's ending.
 
         Parameters
         ----------
         path
-            The file.
+            The file: ``.yaml``, ``.yml``, ``.fis``, ``.fll``, ``.fcl``, ``.fml`` or ``.xml``.
+        lossy
+            As for :meth:`to_text`.
+
+        Raises
+        ------
+        DataError
+            The file has another ending.
+        RuleSetError
+            The format cannot express the rule set.
         """
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(self.to_yaml())
+        ending = os.path.splitext(os.fspath(path))[1].lower()
+        if ending not in _ENDINGS:
+            known = ", ".join(f"`{known}`" for known in _ENDINGS)
+            raise DataError(f"`{os.fspath(path)}` does not end like a rule set\n  help: the endings are {known}")
+        text = self.to_text(_ENDINGS[ending], lossy=lossy)
+        # Line breaks stay as they were read.
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+
+    def surface(
+        self, ax: Any | None = None, *, points: int = 31, output: str | None = None, **fixed: float
+    ) -> Any:
+        """Draws an output over two inputs in three dimensions.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Axes of matplotlib with ``projection="3d"`` to draw on.
+        points, output, fixed
+            As for :meth:`map`. A model with more than two inputs needs values for the others.
+
+        Returns
+        -------
+        Picture or matplotlib.axes.Axes
+            The axes; without them a picture in SVG, for which matplotlib is not needed.
+
+        Examples
+        --------
+        >>> import flagred
+        >>> model = flagred.load("flagred-paper")
+        >>> str(model.surface())[:4]
+        '<svg'
+        """
+        return plot_surface(self.map(points=points, output=output, threads=None, **fixed), ax)
 
     def plot(self) -> Picture:
         """Draws the terms of all variables.
@@ -278,13 +369,21 @@ def _read(text: str, file: str) -> Model:
     return RuleSet.__new__(Model, text, file, file == "<model>")
 
 
-def loads(text: str) -> Model:
+def _decoded(data: bytes, name: str) -> str:
+    encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+    try:
+        return data.decode(encoding)
+    except UnicodeDecodeError as error:
+        raise RuleSetError(f"`{name}` is not UTF-8: byte {error.start} is {data[error.start]:02X}") from None
+
+
+def loads(text: str | bytes) -> Model:
     """Reads a rule set from its text.
 
     Parameters
     ----------
     text
-        A rule set in YAML, or in a format of another program: FIS (MATLAB), FLL (fuzzylite), FCL or FML.
+        A rule set in YAML, or in a format of another program: FIS (MATLAB), FLL (fuzzylite), FCL or FML. Bytes are UTF-8.
 
     Raises
     ------
@@ -310,16 +409,21 @@ def loads(text: str) -> Model:
     >>> round(model(8, 9), 2)
     18.39
     """
+    if isinstance(text, (bytes, bytearray, memoryview)):
+        text = _decoded(bytes(text), "<text>")
+    if not isinstance(text, str):
+        help_text = "`load` reads files, `loads` texts"
+        raise DataError(f"`{type(text).__name__}` is not the text of a rule set\n  help: {help_text}")
     return _read(text, "<text>")
 
 
-def load(path: str | os.PathLike[str]) -> Model:
+def load(path: str | os.PathLike[str] | IO[str] | IO[bytes]) -> Model:
     """Reads a rule set from a file.
 
     Parameters
     ----------
     path
-        The file: YAML, FIS, FLL, FCL or FML, whatever its name. Or a built-in rule set: ``flagred``,
+        The file, or a file that is open for reading: YAML, FIS, FLL, FCL or FML, whatever its name. Or a built-in rule set: ``flagred``,
         ``flagred-battery`` or ``flagred-paper``. Such a name wins over a file that is called so.
 
     Raises
@@ -332,12 +436,12 @@ def load(path: str | os.PathLike[str]) -> Model:
     built_in = _built_in(path) if isinstance(path, str) else None
     if built_in is not None:
         return _read(built_in, str(path))
-    with open(path, "rb") as file:
-        data = file.read()
-    name = os.fspath(path)
-    encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
-    try:
-        text = data.decode(encoding)
-    except UnicodeDecodeError as error:
-        raise RuleSetError(f"`{name}` is not UTF-8: byte {error.start} is {data[error.start]:02X}") from None
-    return _read(text, name)
+    if isinstance(path, (str, os.PathLike)):
+        with open(path, "rb") as file:
+            return _read(_decoded(file.read(), os.fspath(path)), os.fspath(path))
+    if not hasattr(path, "read"):
+        raise DataError(f"`{type(path).__name__}` is not a file\n  help: give a path or an open file")
+    name = getattr(path, "name", "<file>")
+    name = name if isinstance(name, str) else "<file>"
+    data = path.read()
+    return _read(data if isinstance(data, str) else _decoded(bytes(data), name), name)

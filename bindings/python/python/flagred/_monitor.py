@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from . import _data
 from ._core import MonitorData, Profile, Table, Update
@@ -49,7 +49,7 @@ class Monitor(MonitorData):
     'FAIL'
     """
 
-    __slots__ = ("_names",)
+    __slots__ = ("_has_begun", "_made_of", "_names")
 
     def __new__(
         cls, profile: Profile | str = "flagred", *, signals: Sequence[str] = (), step_s: float | None = None
@@ -57,10 +57,21 @@ class Monitor(MonitorData):
         if not isinstance(profile, Profile):
             profile = Profile(profile)
         monitor: Monitor = super().__new__(cls, profile, list(signals), step_s)
-        monitor._names = list(signals)
+        monitor._names, monitor._made_of, monitor._has_begun = list(signals), (profile, step_s), False
         return monitor
 
     _names: list[str]
+    _made_of: tuple[Profile, float | None]
+    _has_begun: bool
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._has_begun:
+            raise TypeError(
+                "a monitor cannot be pickled during a flight\n"
+                "  help: pickle what `finish()` returns, or push the samples into a new monitor in the other process"
+            )
+        profile, step_s = self._made_of
+        return _new_monitor, (profile, self._names, step_s)
 
     def push(
         self,
@@ -92,7 +103,9 @@ class Monitor(MonitorData):
             The risk and the level of the moment.
         """
         known = signals or {}
-        return self._push(t_s, commands, in_air, [known.get(name, float("nan")) for name in self._names])
+        update = self._push(t_s, commands, in_air, [known.get(name, float("nan")) for name in self._names])
+        self._has_begun = True
+        return update
 
     def ended(self) -> list[Finding]:
         """The findings that are over after the latest sample."""
@@ -100,7 +113,7 @@ class Monitor(MonitorData):
 
     def finish(self) -> Followed | None:
         """Ends the flight and says what is said of it; None without a sample. Samples that follow are of a new flight."""
-        finished = self._finish()
+        finished, self._has_begun = self._finish(), False
         if finished is None:
             return None
         data, steps = json.loads(finished[0]), finished[1]
@@ -111,3 +124,7 @@ class Monitor(MonitorData):
             summary=_data.summary(data["summary"]),
             steps=steps,
         )
+
+
+def _new_monitor(profile: Profile, signals: list[str], step_s: float | None) -> Monitor:
+    return Monitor(profile, signals=signals, step_s=step_s)

@@ -61,3 +61,22 @@ def plot_map(map: DecisionMap, ax: Any | None) -> Any:
     ax.set_ylabel(axes[1][0])
     ax.figure.colorbar(drawn, ax=ax, label=map.output)
     return ax
+
+
+def plot_surface(map: DecisionMap, ax: Any | None) -> Any:
+    """A map as a surface: a picture, or on axes of matplotlib in three dimensions."""
+    if ax is None:
+        return Picture(map.svg("surface"))
+    axes = list(map.axes.items())
+    if len(axes) != 2:
+        help_text = "give the other inputs a value: `model.surface(bill=80)`"
+        raise DataError(f"a surface has two axes, and the map has {len(axes)}\n  help: {help_text}")
+    if not hasattr(ax, "plot_surface"):
+        raise DataError('the axes are flat\n  help: make them with `plt.subplot(projection="3d")`')
+    (x_name, x), (y_name, y) = axes
+    # Rows of matplotlib's arrays are along y.
+    ax.plot_surface(x[None, :], y[:, None], map.values.T, cmap="viridis")
+    ax.set_xlabel(x_name)
+    ax.set_ylabel(y_name)
+    ax.set_zlabel(map.output)
+    return ax

@@ -12,11 +12,12 @@ from sklearn.utils import check_random_state
 from sklearn.utils.multiclass import check_classification_targets, type_of_target
 from sklearn.utils.validation import _check_sample_weight, check_is_fitted, validate_data
 
+from ._conformal import ConformalRegressor
 from ._core import Explanation
 from ._learning import learn, tune
 from ._model import Model
 
-__all__ = ["FuzzyClassifier", "FuzzyRegressor", "FuzzyRiskClassifier"]
+__all__ = ["ConformalRegressor", "FuzzyClassifier", "FuzzyRegressor", "FuzzyRiskClassifier"]
 
 Floats = NDArray[np.float64]
 
@@ -174,7 +175,7 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
 
     def _evaluate(self, X: ArrayLike) -> Floats:
         rows = self._rows(X)
-        found: Floats = self.rule_set_(*rows.T)
+        found: Floats = np.asarray(self.rule_set_(*rows.T))
         return found
 
     def explain(self, X: ArrayLike) -> list[Explanation]:

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from .. import Assessment, Flight, Profile, __version__, assess, loads
+from .. import Profile, __version__, assess, loads
+from ..types import Assessment, Flight
 from .schema import FINDINGS, FLIGHTS, STEPS
 from .shards import Job
 from .storage import Log
