@@ -6,6 +6,7 @@
 mod arrays;
 mod arrow;
 mod assessment;
+mod command;
 mod compiled;
 mod errors;
 mod evaluate;
@@ -31,6 +32,7 @@ mod _core {
     #[pymodule_export]
     use crate::{
         assessment::{_page, AssessmentData},
+        command::_command,
         evaluation::EvaluationData,
         explanation::{ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share},
         flight::FlightData,
