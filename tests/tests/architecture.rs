@@ -79,7 +79,7 @@ fn every_package_stands_on_those_below_it_alone() {
         ("bindings/c", "flagred"),
         (
             "bindings/python",
-            "evaluation flagred flightlog fuzzy interchange report tuning",
+            "cli evaluation flagred flightlog fuzzy interchange report tuning",
         ),
         (
             "bindings/web",

@@ -7,6 +7,7 @@ mod arrays;
 mod arrow;
 mod assessment;
 mod c_means;
+mod command;
 mod compiled;
 mod errors;
 mod evaluate;
@@ -33,6 +34,7 @@ mod _core {
     use crate::{
         assessment::{_page, AssessmentData},
         c_means::_c_means,
+        command::_command,
         evaluation::EvaluationData,
         explanation::{ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share},
         flight::FlightData,

@@ -1,6 +1,6 @@
 //! How a command ends: its exit code, and what it says when it cannot go on.
 
-use std::{fmt, io, io::Write, path::Path, process::ExitCode};
+use std::{fmt, io, io::Write, path::Path};
 
 use clap::error::{ContextKind, ContextValue};
 use fuzzy::drawing::{visible, visible_lines};
@@ -16,13 +16,14 @@ pub(crate) enum Exit {
     Findings,
 }
 
-impl From<Exit> for ExitCode {
-    fn from(exit: Exit) -> Self {
-        ExitCode::from(match exit {
+impl Exit {
+    /// The exit code of the program.
+    pub(crate) fn code(self) -> u8 {
+        match self {
             Exit::Clean => 0,
             Exit::Findings => 1,
             Exit::Unreadable => 3,
-        })
+        }
     }
 }
 
@@ -101,8 +102,8 @@ impl Failure {
         &self.message
     }
 
-    /// Tells the user, and gives the exit code.
-    pub(crate) fn report(self) -> ExitCode {
+    /// Reports the failure to the user, and returns the exit code.
+    pub(crate) fn report(self) -> u8 {
         if !self.message.is_empty() {
             let mut err = anstream::stderr().lock();
             let red = anstyle::AnsiColor::Red.on_default().bold();
@@ -115,7 +116,7 @@ impl Failure {
                 let _ = writeln!(err, "  help: {}", visible(help));
             }
         }
-        ExitCode::from(self.code)
+        self.code
     }
 }
 
@@ -165,21 +166,26 @@ impl From<flagred_flightlog::ReadError> for Failure {
     }
 }
 
-/// Ends the program for a command line that clap refuses, or that asks for help. What the user typed is shown as text.
-pub(crate) fn refuse(error: &clap::Error) -> ExitCode {
-    let mut text = error.render().to_string();
-    if let Some(tip) = text.find("  tip: to pass '--") {
+/// Reports a command line that clap refuses, or prints the help that it asks for, and returns the exit code. What the user
+/// typed is shown as text.
+pub(crate) fn refuse(error: &clap::Error) -> u8 {
+    let text = error.render().to_string();
+    let mut shown = visible_lines(&text).into_owned();
+    if let Some(tip) = shown.find("  tip: to pass '--") {
         // Nobody has a file of such a name.
-        let end = text.get(tip..).and_then(|tip| tip.find("\n\n"));
-        text.replace_range(tip..end.map_or(text.len(), |end| tip + end + 2), "");
+        let end = shown.get(tip..).and_then(|tip| tip.find("\n\n"));
+        shown.replace_range(tip..end.map_or(shown.len(), |end| tip + end + 2), "");
     }
-    let shown = visible_lines(&text);
-    if shown == error.render().to_string() {
-        error.exit();
+    // Nobody is left to tell where the stream is closed.
+    if shown == text {
+        let _ = error.print();
+    } else {
+        let _ = write!(anstream::stderr(), "{shown}");
     }
-    // Nothing is left to tell a user whose standard error is closed.
-    let _ = write!(anstream::stderr(), "{shown}");
-    ExitCode::from(2)
+    match error.use_stderr() {
+        true => 2,
+        false => 0,
+    }
 }
 
 /// Standard output could not be written: exit code 2. That its reader went is no error (`output::Stdout`).

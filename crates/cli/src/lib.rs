@@ -47,7 +47,10 @@ mod watch;
 #[doc(hidden)] // For the types of the npm package.
 pub use schema::npm_types;
 
-use std::{ffi::OsString, process::ExitCode};
+use std::{
+    ffi::OsString,
+    io::{self, Write as _},
+};
 
 use clap::{Parser, Subcommand};
 use failure::{Exit, Failure};
@@ -195,17 +198,20 @@ fn help_of_help(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     arguments
 }
 
-/// Runs the command that the process was given.
-pub fn main() -> ExitCode {
-    let ran = match Arguments::try_parse_from(help_of_help(std::env::args_os())) {
-        Ok(arguments) => arguments.command.run(),
+/// Runs the command of a command line, which begins with the name of the program, and returns its exit code.
+pub fn run(arguments: impl Iterator<Item = OsString>) -> u8 {
+    let code = match Arguments::try_parse_from(help_of_help(arguments)) {
+        Ok(arguments) => match arguments.command.run() {
+            Ok(exit) => exit.code(),
+            Err(failure) => failure.report(),
+        },
         Err(error) => match failure::command_forgotten(&error) {
-            Some(failure) => Err(failure),
-            None => return failure::refuse(&error),
+            Some(failure) => failure.report(),
+            None => failure::refuse(&error),
         },
     };
-    match ran {
-        Ok(exit) => exit.into(),
-        Err(failure) => failure.report(),
-    }
+    // A process that is not a Rust program, such as Python, does not flush Rust's buffer when it ends. Nobody is left to
+    // tell of an output that cannot be written here.
+    let _ = io::stdout().flush();
+    code
 }

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    flagred_cli::main()
+    flagred_cli::run(std::env::args_os()).into()
 }
