@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._arrays import array
 from ._core import _c_means
 from ._errors import DataError
+from ._tables import whole_numbers
 
 __all__ = ["Clusters", "c_means"]
 
@@ -85,6 +86,7 @@ def c_means(
     matrix = array(rows)
     if matrix.ndim not in (1, 2):
         raise DataError(f"rows are an array or a matrix, and this has {matrix.ndim} axes")
+    whole_numbers({"clusters": clusters, "iterations": iterations, "starts": starts, "seed": seed})
     is_column = matrix.ndim == 1
     found = _c_means(matrix[:, None] if is_column else matrix, clusters, fuzzifier, iterations, starts, seed)
     centers, degrees, loss, done = found

@@ -15,6 +15,7 @@ from ._core import AssessmentData, FlightData, Profile, Table
 from ._data import Event, Finding, Gap, Geometry, Intervals, Motor, Parameter, Range, Report, Summary, Vehicle
 from ._errors import DataError
 from ._picture import framed
+from ._tables import names_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -118,7 +119,7 @@ class Signals(Mapping[str, Signal]):
             ``t_s`` and a column for each signal: its latest value at or before each time; NaN before its first value and
             where it is unknown.
         """
-        names = [names] if isinstance(names, str) else list(names)
+        names = names_of(names)
         if not names:
             raise DataError("a table needs the name of a signal")
         for name in names:
@@ -395,7 +396,7 @@ class Assessment(AssessmentData):
 def read_log(
     log: str | os.PathLike[str] | bytes | IO[bytes],
     *,
-    signals: list[str] | None = None,
+    signals: Iterable[str] | None = None,
     range: tuple[int, int] | None = None,
 ) -> Flight:
     """Reads a flight log.
@@ -428,6 +429,7 @@ def read_log(
     >>> flight.commands.shape
     (2, 4)
     """
+    signals = None if signals is None else names_of(signals)
     if isinstance(log, (bytes, bytearray, memoryview)):
         return _flight(bytes(log), "<bytes>", signals, range)
     if isinstance(log, (str, os.PathLike)):

@@ -13,7 +13,7 @@ from ._core import _identify
 from ._errors import DataError
 from ._learning import Figure
 from ._model import Model, _read
-from ._tables import column_names, column_of, groups_of, same_length, table_of
+from ._tables import column_names, column_of, groups_of, names_of, same_length, table_of, whole_numbers
 
 __all__ = ["IdentifyValidation", "Identified", "Step", "identify"]
 
@@ -125,7 +125,7 @@ def identify(
     True
     """
     data = table_of(data)
-    wanted, without = list(inputs), {target, group_by, *ignore}
+    wanted, without = names_of(inputs), {target, group_by, *names_of(ignore)}
     names = wanted or [name for name in column_names(data) if name not in without]
     columns = {name: array(column_of(data, name)) if wanted else _numbers(column_of(data, name)) for name in names}
     known = {name: column for name, column in columns.items() if column is not None}
@@ -154,7 +154,7 @@ def identify(
         "seed": seed,
         "validation": validation,
     }
-    found = _identify(list(known), target, list(known.values()), truths, groups, options)
+    found = _identify(list(known), target, list(known.values()), truths, groups, whole_numbers(options))
     worth = found["validation"]
     if worth is not None:
         figures = {name: Figure(*worth[name]) for name in ("identified", "linear", "mean", "ratio")}

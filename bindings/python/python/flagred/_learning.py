@@ -9,7 +9,7 @@ from ._arrays import array
 from ._core import _learn, _tune
 from ._errors import DataError
 from ._model import Model, _read
-from ._tables import column_of, groups_of, same_length, table_of
+from ._tables import column_of, groups_of, names_of, same_length, table_of, whole_numbers
 
 __all__ = ["Errors", "Figure", "Learned", "Moved", "TuneInterrupted", "TuneValidation", "Tuned", "learn", "tune"]
 
@@ -191,12 +191,12 @@ def learn(
         "min_support": min_support,
         "min_degree": min_degree,
         "complete": complete,
-        "rising": list(rising),
-        "falling": list(falling),
+        "rising": names_of(rising),
+        "falling": names_of(falling),
         "keep_rules": keep_rules,
         "validation": validation,
     }
-    found = _learn(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), options)
+    found = _learn(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), whole_numbers(options))
     errors = found.pop("validation")
     return Learned(
         model=_read(found.pop("model"), "<model>"), validation=None if errors is None else Errors(**errors), **found
@@ -285,12 +285,12 @@ def tune(
     """
     options = {
         "loss": loss,
-        "only": list(only),
-        "fix": list(fix),
+        "only": names_of(only),
+        "fix": names_of(fix),
         "weights": weights,
         "min_distance": min_distance,
-        "rising": list(rising),
-        "falling": list(falling),
+        "rising": names_of(rising),
+        "falling": names_of(falling),
         "beyond_range": beyond_range,
         "digits": digits,
         "starts": starts,
@@ -299,7 +299,7 @@ def tune(
         "folds": folds,
     }
     rows = _rows(model, data, columns, weight, group_by, skip_bad_rows)
-    found, was_interrupted = _tune(model, rows, options, threads)
+    found, was_interrupted = _tune(model, rows, whole_numbers(options), threads)
     moved = [Moved(*one) for one in found.pop("moved")]
     worth = found.pop("validation")
     if worth is not None:

@@ -9,7 +9,7 @@ from ._arrays import array
 from ._core import _simplify
 from ._errors import DataError
 from ._model import Model, _read
-from ._tables import column_of, same_length, table_of
+from ._tables import column_of, same_length, table_of, whole_numbers
 
 __all__ = ["Difference", "Simplified", "simplify"]
 
@@ -98,7 +98,9 @@ def simplify(
         data = table_of(data)
         rows = [array(column_of(data, renamed.get(name, name))) for name in names]
         same_length(rows)
-    found = _simplify(model, rows, {"tolerance": tolerance, "rows_only": rows_only, "seed": seed})
+    found = _simplify(
+        model, rows, whole_numbers({"tolerance": tolerance, "rows_only": rows_only, "seed": seed})
+    )
     difference = found.pop("difference")
     if difference is not None:
         output, before, after, inputs = difference

@@ -3,12 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from numbers import Integral
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._errors import DataError
+
+
+# Options that count something.
+_WHOLE = {
+    "clusters", "digits", "folds", "iterations", "max_inputs", "max_rules", "max_terms", "min_support", "seed", "starts"
+}  # fmt: skip
+
+
+def names_of(names: Iterable[str]) -> list[str]:
+    """A list of names; one name is a list of one."""
+    return [names] if isinstance(names, str) else list(names)
+
+
+def whole_numbers(options: dict[str, Any]) -> dict[str, Any]:
+    """Options as they are. Those that count something are refused unless they are whole numbers from 0."""
+    for key in sorted(_WHOLE & options.keys()):
+        value = options[key]
+        if value is not None and (isinstance(value, bool) or not isinstance(value, Integral) or value < 0):
+            raise DataError(f"`{key}` is {value!r}; it must be a whole number from 0")
+    return options
 
 
 def table_of(data: Any) -> Any:
@@ -36,7 +57,7 @@ def column_of(data: Any, name: str) -> Any:
     there = column_names(data)
     if name not in there:
         listed = ", ".join(f"`{column}`" for column in there)
-        raise DataError(f"the data have no column `{name}`\n  help: there are {listed}")
+        raise DataError(f"the data have no column `{name}`\n  help: {f'there are {listed}' if there else 'they have no columns'}")
     if there.count(name) > 1:
         raise DataError(f"the data have the column `{name}` more than once\n  help: rename all but the one that is meant")
     return data[name]
