@@ -47,6 +47,7 @@ pub const SCHEMA: &str = include_str!("../../rules/profile-schema.json");
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
+    /// The name of the profile, as reports show it.
     pub name: String,
     /// The purpose of the profile, in the author's words.
     pub description: Option<String>,
