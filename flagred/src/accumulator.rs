@@ -1,31 +1,31 @@
-//! The elevated risk: what the risk of the last seconds adds up to (Eq. 4 to 8 of the paper).
+//! The elevated risk, accumulated from the risks of the last seconds (Eq. 4 to 8 of the paper).
 //!
-//! The risks of a window are taken as normally distributed with their mean `mu` and standard deviation
-//! `sigma`; what lies above `high` raises the elevated risk, what lies below `low` lets it fall:
+//! The risks of a window are modelled as a normal distribution with their mean `mu` and standard deviation `sigma`. Its
+//! part above `high` raises the elevated risk, its part below `low` lowers it:
 //!
 //! ```text
 //! p_high = 1 - Phi((high - mu) / sigma)        p_low = Phi((low - mu) / sigma)
 //! dR/dt  = rise p_high - fall p_low            0 <= R <= 100
 //! ```
 //!
-//! The paper gives no time step and no values. Ours are rates in % per second, so the result does not depend
-//! on the sample rate. Between two samples the risk is a straight line, which counts in `sigma`, and so is the rate; the
-//! first risk and the first rate stand for the time before them.
+//! The paper gives no time step and no values. Ours are rates in % per second, so the result does not depend on the
+//! sample rate. The risk and the rate are interpolated linearly between two samples, and `sigma` includes the change of
+//! the risk between samples. The first risk and the first rate also apply to the time before them.
 
 use crate::{moments::Moments, window::Window};
 
 /// The parameters of the elevated risk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AccumulatorSettings {
-    /// Over how many seconds the risks are pooled.
+    /// The length of the window of risks, in seconds.
     pub window_s: f64,
     /// The risk in % above which the elevated risk rises (the paper's `x_high`).
     pub high_pct: f64,
     /// The risk in % below which it falls (the paper's `x_low`).
     pub low_pct: f64,
-    /// How fast it rises when all risks are above `high_pct`, in % per second (the paper's `k_i`).
+    /// The rate at which it rises when all risks are above `high_pct`, in % per second (the paper's `k_i`).
     pub rise_pct_per_s: f64,
-    /// How fast it falls when all risks are below `low_pct`, in % per second (the paper's `k_d`).
+    /// The rate at which it falls when all risks are below `low_pct`, in % per second (the paper's `k_d`).
     pub fall_pct_per_s: f64,
 }
 
@@ -47,8 +47,8 @@ impl Default for AccumulatorSettings {
 pub(crate) struct Accumulator {
     settings: AccumulatorSettings,
     elevated_pct: f64,
-    /// Risk in % and rate in % per second at the last sample; between two samples both are taken as straight lines,
-    /// which keeps few samples a second as right as many.
+    /// Risk in % and rate in % per second at the last sample. Both are interpolated linearly between two samples, so
+    /// that low sample rates are as accurate as high ones.
     last: Option<(f64, f64)>,
 }
 
@@ -67,7 +67,7 @@ impl Accumulator {
         self.last = None;
     }
 
-    /// Adds the risk at `t_s`, which stood for the `held_s` seconds before; returns the elevated risk in %.
+    /// Adds the risk at `t_s`, which applies to the `held_s` seconds before; returns the elevated risk in %.
     pub(crate) fn push(
         &mut self,
         risks: &mut Window,
@@ -91,7 +91,7 @@ impl Accumulator {
     }
 }
 
-/// `Phi((x - mean) / std)` with `Phi(z) = (1 + erf(z / sqrt 2)) / 2`; its limit, a step, at `std = 0`.
+/// `Phi((x - mean) / std)` with `Phi(z) = (1 + erf(z / sqrt 2)) / 2`; at `std = 0` its limit, a step.
 fn share_below(x: f64, mean: f64, std: f64) -> f64 {
     let distance = x - mean;
     if distance == 0.0 {

@@ -1,6 +1,6 @@
-//! Moving averages in two numbers, where a window would be too much memory.
+//! Moving averages that store two numbers, where a window would need too much memory.
 
-/// A moving average; until its time constant has passed, the plain mean.
+/// A moving average; the plain mean until its time constant has passed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Average {
     pub(crate) value: f64,
@@ -21,7 +21,7 @@ impl Average {
         }
     }
 
-    /// The average, once values of so many seconds are in it.
+    /// The average, or `None` until it covers `least_s` seconds.
     pub(crate) fn known_after(&self, least_s: f64) -> Option<f64> {
         (self.known_s >= least_s).then_some(self.value)
     }

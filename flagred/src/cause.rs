@@ -1,53 +1,56 @@
-//! Why a level was raised: the rule that raises the risk most, and the input that its antecedent is about.
+//! The cause of a level: the rule that raises the risk most, and the input that best explains it.
 
 use crate::channel::{Channel, Input, Motors, Observed};
 
-/// A proposition of a rule, as plain data: which input it is about.
+/// A proposition (`input IS term`) in the antecedent of a rule, as plain data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Proposition {
-    /// The index of the rule, among those of all stages where outputs read others.
+    /// The index of the rule, among the rules of all stages if outputs read other outputs.
     pub rule: u32,
-    /// The index of the input of the profile; of an output that is read, the number of inputs and its index.
+    /// The index of the input in the profile; for an output that is read, the number of inputs plus its index.
     pub input: u32,
-    /// The index of its degree among those of all literals, where rules read them by index.
+    /// The index of its degree among the degrees of all literals, if rules read them by index.
     pub literal: u32,
 }
 
-/// What raised the risk when a level was reached, in indices: of the rules that fired, the one that raises it most
-/// ([`Table::raised_by`](fuzzy::table::Table::raised_by)), and of the propositions of its antecedent that hold the one that
-/// the fewest rules have. Where that one is about an output, the rule is the one that most says so.
+/// The cause of the risk when a level was reached, in indices. The rule is the one that raises the risk most among
+/// those that fired ([`Table::raised_by`](fuzzy::table::Table::raised_by)). The proposition is the one that the fewest
+/// rules share, among the propositions of its antecedent that are true. If that one is about an output, the rule is the
+/// one that contributes most to the term of that output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cause {
-    /// The rule in the rule set.
+    /// The index of the rule in the rule set.
     pub rule: usize,
-    /// The input in the profile.
+    /// The index of the input in the profile.
     pub input: usize,
     /// The value of that input.
     pub value: f64,
-    /// The proposition in [`Plan::propositions`](crate::board::Plan::propositions). Exported profiles have it in words.
+    /// The index of the proposition in [`Plan::propositions`](crate::board::Plan::propositions). Exported profiles have
+    /// its words.
     pub proposition: usize,
 }
 
-/// The propositions of all rules, and what belongs to them.
+/// The propositions of all rules.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Propositions<'a> {
     pub(crate) all: &'a [Proposition],
 }
 
-/// Which rule is asked for.
+/// The rule that is searched for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Asked {
-    /// The one that raises an output of this value most.
+    /// The rule that raises an output of this value most.
     Raises(f64),
-    /// The one that says most that a proposition about an output holds.
+    /// The rule that contributes most to the truth of this proposition about an output.
     Concludes(usize),
 }
 
 impl Propositions<'_> {
-    /// The cause of a risk at values of the inputs, in the order of the profile. `ask` finds the rule of an output, and with it
-    /// and the degrees of the literals the proposition that it is to give. Where that is about an output, the cause is that
-    /// of this output. The rule of the cause is one of all stages.
+    /// Returns the cause of a risk at values of the inputs, in the order of the profile. `ask` finds the rule of an
+    /// output, and passes it with the degrees of the literals to a function that picks the proposition. If the
+    /// proposition is about an output, the search continues with that output. The rule of the cause is counted over all
+    /// stages.
     pub(crate) fn cause(
         &self,
         inputs: &[f64],
@@ -56,7 +59,7 @@ impl Propositions<'_> {
         mut ask: impl FnMut(usize, Asked, &dyn Fn(usize, &[f64]) -> Option<usize>) -> Option<usize>,
     ) -> Option<Cause> {
         let mut asked = Asked::Raises(risk_pct);
-        // A chain has no circles, and is not longer.
+        // A chain has no cycles, so it is at most this long.
         for _ in 0..outputs {
             let proposition = ask(output, asked, &|rule, degrees| self.of_rule(rule, degrees))?;
             let said = self.all.get(proposition)?;
@@ -75,8 +78,8 @@ impl Propositions<'_> {
         None
     }
 
-    /// The first of a rule's propositions that holds. `degrees` are those of the literals; empty where all rules are plain
-    /// ANDs: then each proposition of a rule that fires holds.
+    /// The first proposition of a rule that is true. `degrees` are those of the literals. They are empty if all rules
+    /// are plain ANDs, where every proposition of a rule that fires is true.
     fn of_rule(&self, rule: usize, degrees: &[f64]) -> Option<usize> {
         let holds = |said: &Proposition| {
             let degree = degrees.get(said.literal as usize);
@@ -91,7 +94,7 @@ impl Propositions<'_> {
     }
 }
 
-/// Whether an input tells how near a motor is to a limit.
+/// Whether an input measures the distance of a motor to a limit.
 pub(crate) fn is_of_limits(
     (channels, inputs): (&[Channel], &[Input]),
     input: usize,

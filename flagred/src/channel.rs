@@ -1,5 +1,5 @@
-//! Channels: one thing observed over one window, and the statistics taken of it. What is to be observed is plain data,
-//! which can lie in a table; what was seen is the caller's memory.
+//! Channels: one quantity observed over one window, and the statistics of it. A channel is plain data that can be in a
+//! constant table; the observed values are in memory of the caller.
 
 mod code;
 mod seen;
@@ -41,32 +41,33 @@ pub enum Statistic {
     Max,
     /// The latest value; over motors, their mean.
     Last,
-    /// The share of time, in [0, 1], spent below a value; over motors, the mean of their shares.
+    /// The share of time spent below a value, in [0, 1]; over motors, the mean of their shares.
     ShareBelow(f64),
-    /// The share of time, in [0, 1], spent above a value; over motors, the mean of their shares.
+    /// The share of time spent above a value, in [0, 1]; over motors, the mean of their shares.
     ShareAbove(f64),
-    /// The standard deviation without noise: `sqrt(max(0, std^2 - noise^2))`, both of the means of bins. What is left is
-    /// what successive values share.
+    /// The standard deviation without noise: `sqrt(max(0, std^2 - noise^2))`, both of the means of bins. It measures
+    /// slow changes, which successive bins share.
     StdLessNoise,
     /// The standard deviation of the noise: `sqrt(mean(step^2) / 2)`, with the steps between the means of successive
-    /// bins of 0.1 s (of successive samples where they are rarer). White noise has `noise = std`, slow movement 0.
-    /// docs/profiles.md defines the bins. The first one has no step before it, and counts with a step of 0.
+    /// bins of 0.1 s (between successive samples if they are further apart). For white noise `noise = std`, for slow
+    /// movement it is 0. docs/profiles.md defines the bins. The first bin has no bin before it, and counts as a step of
+    /// 0.
     Noise,
     /// The rate of change per second: the slope of the least-squares line through the means of the window's slots, weighted
     /// by their times.
     Rate,
-    /// The value below which so many percent of the means of the window's slots lie, weighted by their times; of 50 the
-    /// median. docs/profiles.md has the definition.
+    /// A percentile of the means of the window's slots, weighted by their times; 50 is the median. docs/profiles.md
+    /// defines it.
     Percentile(f64),
 }
 
 impl Statistic {
-    /// Whether it is one of means over 0.1 s, and not of samples.
+    /// Whether it is computed from means over 0.1 s and not from samples.
     pub(crate) const fn is_of_bins(self) -> bool {
         matches!(self, Statistic::StdLessNoise | Statistic::Noise)
     }
 
-    /// Whether it can be taken over an exponential window.
+    /// Whether it can be computed over an exponential window.
     pub(crate) const fn is_of_weights(self) -> bool {
         matches!(
             self,
@@ -78,14 +79,14 @@ impl Statistic {
         )
     }
 
-    /// Whether it is one of the means of slots, and not of samples.
+    /// Whether it is computed from the means of slots and not from samples.
     #[cfg(feature = "std")]
     pub(crate) const fn is_of_slots(self) -> bool {
         matches!(self, Statistic::Rate | Statistic::Percentile(_))
     }
 }
 
-/// How the motors of one sample become one value.
+/// How the motors of one sample are combined into one value.
 ///
 /// # Example: one motor at 0.25 and one at 0.75
 /// ```
@@ -106,69 +107,70 @@ impl Statistic {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Motors {
-    /// They do not: the statistic is over all motors and the whole window at once.
+    /// They are not combined: the statistic is over all motors and the whole window at once.
     #[default]
     Pooled,
     /// Their mean.
     Mean,
     /// Their standard deviation: the spread between motors.
     Std,
-    /// The smallest of them.
+    /// The smallest value.
     Min,
-    /// The largest of them.
+    /// The largest value.
     Max,
-    /// One of them, counted from 0 in the order of the samples; unknown where there are fewer.
+    /// The value of one motor, counted from 0 in the order of the samples; unknown if there are fewer motors.
     One(u32),
 }
 
-/// What a sample gives to a channel.
+/// The quantity that a channel observes in each sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Observed {
     /// The effective command of each motor.
     Command,
-    /// The same without the part that turns the nose; the command itself where the geometry is unknown.
+    /// The effective command without the part that commands yaw; the command itself if the geometry is unknown.
     CommandLessYaw,
-    /// Its margin.
+    /// The margin of each motor.
     Margin,
-    /// Its distance from the lower limit.
+    /// The distance of each command from the lower limit.
     LowSide,
-    /// Its distance from the upper limit.
+    /// The distance of each command from the upper limit.
     HighSide,
-    /// One of the efforts that the commands add up to: roll, pitch, yaw, thrust; unknown without a geometry.
+    /// One of the efforts that the commands add up to (0 roll, 1 pitch, 2 yaw, 3 thrust); unknown without a geometry.
     Effort(usize),
-    /// The noise of the commands, all motors together.
+    /// The noise of the commands of all motors together.
     CommandNoise,
-    /// The signal of this index among those that samples carry.
+    /// The signal with this index among the signals of a sample.
     Named(usize),
-    /// The signal `a` less the signal `b`, by their indices; of angles in degrees the short way around, in [-180, 180).
+    /// The signal `a` minus the signal `b`, by their indices; for angles in degrees the shorter way around, in [-180,
+    /// 180).
     Difference {
-        /// The signal.
+        /// The minuend.
         a: usize,
-        /// What is taken from it.
+        /// The subtrahend.
         b: usize,
-        /// Whether they are angles in degrees.
+        /// Whether both are angles in degrees.
         circular: bool,
     },
     /// The signal `a` divided by the signal `b`, by their indices.
     Ratio {
-        /// The signal.
+        /// The dividend.
         a: usize,
-        /// What it is divided by.
+        /// The divisor.
         b: usize,
-        /// The ratio is unknown where `b` is nearer to 0 than this, and always where `b` is 0.
+        /// The ratio is unknown while `|b|` is below this, and always when `b` is 0.
         unknown_below: f64,
     },
     /// The signal `a` times the signal `b`, by their indices.
     Product {
-        /// The signal.
+        /// The first factor.
         a: usize,
-        /// The other one.
+        /// The second factor.
         b: usize,
     },
 }
 
 impl Observed {
-    /// The signals that it is made of, by their index.
+    /// The indices of the signals that it reads.
     pub fn signals(&self) -> impl Iterator<Item = usize> {
         let [first, second] = match *self {
             Observed::Named(signal) => [Some(signal), None],
@@ -187,7 +189,7 @@ impl Observed {
     }
 }
 
-/// A difference of angles, the short way around, in [-180, 180).
+/// A difference of angles the shorter way around, in [-180, 180).
 pub(crate) fn short_way_deg(difference_deg: f64) -> f64 {
     let short_deg = libm::remainder(difference_deg, 360.0);
     if short_deg == 180.0 {
@@ -197,7 +199,7 @@ pub(crate) fn short_way_deg(difference_deg: f64) -> f64 {
     }
 }
 
-/// The values that count, where a share of time is asked for.
+/// The values that count in a share of time.
 ///
 /// # Example: the share of time that motors of the shipped profile are at a limit
 /// ```
@@ -213,13 +215,13 @@ pub(crate) fn short_way_deg(difference_deg: f64) -> f64 {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Threshold {
-    /// Those below.
+    /// Values below this limit.
     Below(f64),
-    /// Those above.
+    /// Values above this limit.
     Above(f64),
 }
 
-/// One thing to observe over one window.
+/// One quantity to observe over one window.
 ///
 /// # Example: what the paper's second input observes
 /// ```
@@ -235,22 +237,22 @@ pub enum Threshold {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Channel {
-    /// What.
+    /// The quantity.
     pub observed: Observed,
-    /// How the motors of a sample become one value.
+    /// How the motors of a sample are combined into one value.
     pub motors: Motors,
-    /// Which values count, for a share of time.
+    /// The values that count, for a share of time.
     pub threshold: Option<Threshold>,
     /// Whether values are averaged over 0.1 s first.
     pub in_bins: bool,
-    /// Over how many seconds.
+    /// The length of the window in seconds.
     pub window_s: f64,
-    /// Whether the window is an exponential one, and `window_s` its time constant.
+    /// Whether the window is exponential, with `window_s` as its time constant.
     pub exponential: bool,
 }
 
 impl Channel {
-    /// The number of motors that a craft needs so that every motor that the channel reads is there.
+    /// The number of motors that a craft needs so that it has every motor that the channel reads.
     fn motors_needed(&self) -> usize {
         match self.motors {
             _ if self.observed.signals().next().is_some() => 0,
@@ -260,7 +262,8 @@ impl Channel {
     }
 }
 
-/// The number of motors that a craft needs for channels, and where there are any, for findings beside the risk.
+/// The number of motors that a craft needs for the channels, and for the findings that are not about the risk if there
+/// are any.
 pub(crate) fn motors_needed(channels: &[Channel], has_notices: bool) -> usize {
     let needed = channels.iter().map(Channel::motors_needed);
     needed.fold(usize::from(has_notices), usize::max)
@@ -275,38 +278,39 @@ pub(crate) fn reads_motors(channels: &[Channel], input: &Input) -> bool {
 /// An input: a statistic of a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Input {
-    /// The channel's place among all.
+    /// The index of the channel.
     pub channel: usize,
     /// The statistic.
     pub statistic: Statistic,
-    /// What it is divided by.
+    /// The division by another input, if it is a ratio.
     pub ratio: Option<Ratio>,
-    /// Its value until its signals are known for the first time: a vehicle may never send them.
+    /// The value to assume until the signals are known for the first time, because a vehicle may never send them.
     pub if_missing: Option<f64>,
 }
 
 impl Input {
-    /// The other inputs that its value is made of.
+    /// The indices of the other inputs that its value depends on.
     pub(crate) fn others(&self) -> impl Iterator<Item = usize> {
         self.ratio.into_iter().map(|ratio| ratio.per)
     }
 }
 
-/// What makes an input `x / max(per, at_least)` of its statistic `x` and of another input, by its index. That is not a ratio
-/// itself.
+/// The division that makes an input `x / max(per, at_least)` of its statistic `x` and another input, which is not a
+/// ratio itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ratio {
     /// The index of the input to divide by.
     pub per: usize,
-    /// The least that it is divided by, above 0.
+    /// The minimum of the divisor, above 0.
     pub at_least: f64,
 }
 
 impl Ratio {
-    /// The value of an input, from the statistics of all of them; NaN where one is unknown. `None` where there is no such input.
+    /// The value of an input, computed from the statistics of all inputs; NaN if one is unknown. `None` if the index is
+    /// out of bounds.
     pub(crate) fn of(&self, statistics: &[f64], input: usize) -> Option<f64> {
         let per = *statistics.get(self.per)?;
-        // The larger of a number and NaN would be the number.
+        // `max` of a number and NaN would return the number.
         let per = if per < self.at_least {
             self.at_least
         } else {

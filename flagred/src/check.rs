@@ -1,4 +1,4 @@
-//! Whether a profile and its rule set fit together: what cannot work, and what cannot be meant.
+//! Checks whether a profile and its rule set fit together: errors, and likely mistakes.
 
 use alloc::{
     format,
@@ -25,15 +25,15 @@ mod alone;
 
 pub use alone::{Alone, alone};
 
-/// The least share of an input's range that the values of its signal have to cover.
+/// The minimum share of an input's range that the values of its signal must cover.
 const LEAST_SHARE: f64 = 0.02;
 
 /// Reads a profile and compiles it with the rule set that it names.
 ///
-/// The findings are located in the profile's text. With an error among them there is no estimator. Warnings: a threshold
-/// that the risk cannot reach or never leaves, WARN above FAIL, an input whose signal has another unit or another range,
-/// and a signal that is spelled almost like a known one. `signals` are the names and units of the signals that flights
-/// are known to carry; others are possible.
+/// The findings are located in the profile's text. If there is an error, no estimator is returned. There are warnings
+/// for thresholds that the risk cannot reach or never leaves, for WARN above FAIL, for inputs whose signal has another
+/// unit or range, and for signals that are spelled almost like a known one. `signals` are names and units of known
+/// signals; a flight may have other signals as well.
 ///
 /// # Example: a threshold above what the rules can say
 /// ```
@@ -75,10 +75,10 @@ pub fn profile(
     (Findings::locate(found, text), estimator)
 }
 
-/// Warnings about the inputs of signals beside the motors that raise no level alone: what rules say about them is outvoted by the
-/// other inputs, however bad their values are.
+/// Warns about inputs that do not come from the motors and cannot raise a level alone: the other inputs outvote them,
+/// however bad their values are.
 ///
-/// These are for the author of a profile; [`profile`] has those for everybody who uses it.
+/// These warnings are for the author of a profile; the warnings of [`profile`] are for everyone who uses it.
 ///
 /// # Example: a battery as one more vote
 /// ```
@@ -106,11 +106,11 @@ pub fn outvoted(profile: &fuzzy::Source, estimator: &Estimator) -> Findings {
     Findings::locate(found, profile.text())
 }
 
-/// The values of a document by their keys.
+/// The values of a document, found by their keys.
 struct Places<'t>(&'t Node);
 
 impl Places<'_> {
-    /// The place of the value behind a path of keys; of the deepest one that is written where it is a default.
+    /// The span of the value at a path of keys; if it is a default, the span of the deepest key that is written.
     fn of(&self, path: &[&str]) -> Range<usize> {
         let mut node = self.0;
         let mut span = node.span.start..node.span.start;
@@ -132,7 +132,7 @@ impl Places<'_> {
     }
 }
 
-/// The estimator, or why there is none, at the place of the profile that is to be changed.
+/// The estimator, or `None` with an error in `found`, located at the part of the profile to change.
 fn compile(
     profile: &Profile,
     rules: &fuzzy::Source,
@@ -194,7 +194,7 @@ fn compile(
     None
 }
 
-/// Thresholds that are never or always reached, and WARN above FAIL.
+/// Finds thresholds that are never or always reached, and WARN above FAIL.
 fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Vec<Diagnostic>) {
     let profile = estimator.profile();
     let of = |keys: &[&str]| at.of(&[place, keys].concat());
@@ -302,12 +302,12 @@ fn is_above(limit: f64, high: f64) -> bool {
     limit > high + ROUNDING
 }
 
-/// A percentage for a message.
+/// A percentage rounded for a message.
 fn shown(x: f64) -> f64 {
     (x * 10.0).round() / 10.0
 }
 
-/// What the risk cannot reach, or always reaches.
+/// Finds thresholds of a level that the risk cannot reach, or always reaches.
 fn reached(
     name: &str,
     level: &LevelSettings,
@@ -359,7 +359,7 @@ fn reached(
     found
 }
 
-/// What does not fit between an input of the rule set and its signal.
+/// Finds a mismatch between an input of the rule set and its signal.
 fn signal(
     input: &ProfileInput,
     model: &Model,
@@ -390,7 +390,7 @@ fn signal(
     }
     let mut carried = input.source.signal.carried();
     if let Some(name) = carried.find(|name| unit_of(name).is_none())
-        // Logs in CSV name their signals as they like; only a near miss is a mistake.
+        // CSV logs may have signals of any name; only a near miss is a mistake.
         && let Some(meant) = nearest(name, known.iter().map(|(name, _)| *name))
             .or_else(|| nearest(name, Signal::names()))
     {
@@ -401,7 +401,7 @@ fn signal(
         );
     }
     let mut first = input.source.signal.carried().next();
-    // The unit of a ratio or a product is none of its signals'.
+    // A ratio or a product does not have the unit of its signals.
     first = first.filter(|_| {
         let signal = &input.source.signal;
         !matches!(signal, Signal::Ratio { .. } | Signal::Product { .. })
@@ -449,13 +449,13 @@ fn signal(
     Some(Diagnostic::warning("unit", place, message).help(help))
 }
 
-/// A unit in one spelling.
+/// A unit in normalised spelling.
 fn normal(unit: &str) -> String {
     let unit = unit.trim().replace('°', "deg").replace('²', "2");
     unit.to_lowercase()
 }
 
-/// The least and the largest value of a source; `None` where it has no bounds.
+/// The minimum and maximum of the values of a source; `None` if it is unbounded.
 fn range(source: &Source) -> Option<(f64, f64)> {
     let (low, high) = match &source.signal {
         Signal::MotorMargin => (0.0, 0.5),
@@ -486,7 +486,7 @@ fn range(source: &Source) -> Option<(f64, f64)> {
 }
 
 impl Estimator {
-    /// The smallest and the largest risk that the rules and the filled gaps can give; `None` where that is not known.
+    /// The smallest and largest risk that the rules and the filled gaps can give; `None` if they are unknown.
     fn extent(&self) -> Option<(f64, f64)> {
         let (low, high) = extent(self.model(), &self.profile().output)?;
         let filled = self.filled().iter().copied();

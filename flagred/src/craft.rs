@@ -1,4 +1,4 @@
-//! What is known of a craft before it flies.
+//! The properties of a vehicle that are known before it flies.
 
 use crate::effort::Factors;
 
@@ -6,19 +6,19 @@ use crate::effort::Factors;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Craft<'a> {
-    /// The number of motors.
+    /// The number of motors in each sample.
     pub motors: usize,
-    /// The names of the signals that samples carry beside the motors, in their order.
+    /// The names of the other signals of a sample, in order.
     pub signals: &'a [&'a str],
-    /// Those of the signals that the vehicle may never send. Until one is known for the first time, an input with
-    /// [`if_missing`](crate::profile::ProfileInput::if_missing) has that value.
+    /// The signals among these that the vehicle may never send. Until such a signal is known for the first time, an
+    /// input with [`if_missing`](crate::profile::ProfileInput::if_missing) has that value.
     pub optional: &'a [&'a str],
-    /// The factors of each motor, in the order of the samples; empty where the geometry is unknown.
+    /// The factors of each motor, in the order of the samples; empty if the geometry is unknown.
     pub geometry: &'a [Factors],
 }
 
 impl<'a> Craft<'a> {
-    /// A craft with so many motors whose samples carry no other signals.
+    /// A craft with `motors` motors whose samples have no other signals.
     pub const fn new(motors: usize) -> Craft<'a> {
         Craft {
             motors,
@@ -28,22 +28,22 @@ impl<'a> Craft<'a> {
         }
     }
 
-    /// The same craft with samples that carry signals of these names, in this order.
+    /// Sets the names of the other signals of a sample, in order.
     pub const fn with_signals(self, signals: &'a [&'a str]) -> Craft<'a> {
         Craft { signals, ..self }
     }
 
-    /// The same craft that may never send some of its signals: a live vehicle, of which nobody knows yet what it sends.
+    /// Sets the signals that the craft may never send, as for a live vehicle whose messages are not known yet.
     pub const fn with_optional(self, optional: &'a [&'a str]) -> Craft<'a> {
         Craft { optional, ..self }
     }
 
-    /// Whether the vehicle sends a signal.
+    /// Whether the vehicle is known to send a signal.
     pub(crate) fn sends(&self, signal: &str) -> bool {
         self.signals.contains(&signal) && !self.optional.contains(&signal)
     }
 
-    /// The same craft with the factors of each motor, so that turning the nose is told from what pushes the craft around.
+    /// Sets the factors of each motor, so that yaw commands are separated from the rest.
     pub const fn with_geometry(self, geometry: &'a [Factors]) -> Craft<'a> {
         Craft { geometry, ..self }
     }

@@ -1,11 +1,11 @@
-//! Efforts: motor commands taken apart into roll, pitch, yaw and thrust.
+//! Efforts: the motor commands decomposed into roll, pitch, yaw and thrust.
 //!
-//! A mixer commands motor `i` with `e_i = roll r_i + pitch p_i + yaw y_i + thrust`, where `(r_i, p_i, y_i)` are the
-//! factors of its place and its direction of rotation. The efforts are the least-squares solution for all motors, given
-//! by the pseudo-inverse of the matrix of factors.
+//! A mixer commands motor `i` with `e_i = roll r_i + pitch p_i + yaw y_i + thrust`, where the factors `(r_i, p_i, y_i)`
+//! follow from its position and its direction of rotation. The efforts are the least-squares solution for all motors,
+//! given by the pseudo-inverse of the matrix of factors.
 
-/// The factors `[roll, pitch, yaw]` of a motor: positive where more thrust of it rolls the vehicle to the right, raises
-/// the nose, turns the nose to the right.
+/// The factors `[roll, pitch, yaw]` of a motor. Positive means that more thrust of this motor rolls the vehicle to the
+/// right, raises the nose, or turns the nose to the right.
 pub type Factors = [f64; 3];
 
 /// Roll, pitch, yaw and thrust, in the unit of the commands.
@@ -13,20 +13,20 @@ pub(crate) type Efforts = [f64; 4];
 
 pub(crate) const ROLL_PITCH_YAW_THRUST: usize = 4;
 
-/// What the efforts are where the geometry is unknown, or a motor is.
+/// The efforts if the geometry or a motor is unknown.
 pub(crate) const UNKNOWN: Efforts = [f64::NAN; ROLL_PITCH_YAW_THRUST];
 
-/// How much of each effort a unit of command of one motor is: its column of the pseudo-inverse. The columns of all motors
-/// come from the normal matrix of all of their factors.
+/// The contribution of one unit of a motor's command to each effort: its column of the pseudo-inverse. The columns of
+/// all motors are computed from the normal matrix of all factors.
 ///
-/// `None` where the efforts cannot be told apart, as with fewer than four motors, or where a factor is not finite.
+/// `None` if the efforts cannot be separated, as with fewer than four motors, or if a factor is not finite.
 pub(crate) fn column(normal: &Normal, factors: &Factors) -> Option<Efforts> {
     let [roll, pitch, yaw] = *factors;
     let shares = solve(normal, [roll, pitch, yaw, 1.0]);
     shares.filter(|shares| shares.iter().all(|share| share.is_finite()))
 }
 
-/// The sums of the products of factors over all motors.
+/// The sums of the products of the factors over all motors.
 pub(crate) type Normal = [[f64; ROLL_PITCH_YAW_THRUST]; ROLL_PITCH_YAW_THRUST];
 
 /// The normal matrix of the factors of all motors. An axis that no motor acts on gets an effort of 0.
@@ -48,7 +48,7 @@ pub(crate) fn normal(all: impl Iterator<Item = Factors>) -> Normal {
     sums
 }
 
-/// Gaussian elimination with pivots; `None` where the matrix is singular.
+/// Gaussian elimination with pivoting; `None` if the matrix is singular.
 fn solve(matrix: &Normal, mut right: Efforts) -> Option<Efforts> {
     const SINGULAR: f64 = 1e-9;
     let mut rows = *matrix;

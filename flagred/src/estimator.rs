@@ -1,4 +1,4 @@
-//! A profile and its rule set, compiled: from input values to a risk.
+//! A compiled profile and rule set, which computes a risk from input values.
 
 use alloc::{string::String, sync::Arc, vec, vec::Vec};
 
@@ -20,7 +20,7 @@ use crate::{
     sample::Estimate,
 };
 
-/// A profile and its rule set, compiled. A clone shares what was compiled, so it costs next to nothing.
+/// A compiled profile and rule set. Clones share the compiled data, so cloning is cheap.
 ///
 /// # Example
 /// ```
@@ -40,35 +40,35 @@ struct Compiled {
     engine: Engine,
     output: usize,
     filling: Filling,
-    /// The index in the profile of each input of the model; [`UNREAD`] of those that the risk does not depend on.
+    /// For each input of the model its index in the profile; [`UNREAD`] if the risk does not depend on it.
     order: Vec<u32>,
-    /// What is observed, where samples carry the signals of the profile in its order.
+    /// The channels, for samples with the signals of the profile in its order.
     channels: Vec<Channel>,
     inputs: Vec<Input>,
     propositions: Vec<Proposition>,
-    /// The same as the engine has them.
+    /// The propositions with the names of their terms.
     said: Vec<Said>,
-    /// Of the other risks of the profile, each as if it were the only one.
+    /// The estimators of the other risks of the profile, each as if it were the only one.
     others: Vec<Estimator>,
 }
 
-/// Why a profile and a rule set make no estimator.
+/// The reason why a profile and a rule set cannot be compiled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EstimatorError {
     /// The rule set does not compile.
     #[error("the rule set cannot be used: {0}")]
     Rules(#[from] Findings),
-    /// The rule set cannot be evaluated at the points that gaps are filled from.
+    /// The rule set cannot be evaluated at the points from which gaps are filled.
     #[error("the rule set cannot be evaluated everywhere: {0}")]
     Evaluate(#[from] EvaluateError),
-    /// The rule set has an input that the profile does not feed.
+    /// The rule set has an input that the profile does not provide.
     #[error("the profile does not say where input `{input}` of the rule set comes from")]
     NoSource {
         /// The input.
         input: String,
     },
-    /// The profile feeds an input that the rule set does not have.
+    /// The profile provides an input that the rule set does not have.
     #[error("the rule set has no input `{input}`")]
     NoSuchInput {
         /// The input.
@@ -80,7 +80,7 @@ pub enum EstimatorError {
         /// The output.
         output: String,
     },
-    /// The output is no percentage.
+    /// The range of the output is not a percentage.
     #[error("output `{output}` has the range [{low}, {high}], but a risk has the range [0, 100] %")]
     NoPercentage {
         /// The output.
@@ -90,19 +90,19 @@ pub enum EstimatorError {
         /// The upper end of its range.
         high: f64,
     },
-    /// An input has a value for a vehicle without its signal that is not one of the input.
+    /// The value of an input for a vehicle without its signal is outside the range of the input.
     #[error("`if_missing` of input `{input}` is {value}, and the input goes from {low} to {high}")]
     IfMissingOutside {
         /// The input.
         input: String,
-        /// That value.
+        /// The value.
         value: f64,
         /// The lower end of the input's range.
         low: f64,
         /// The upper end of its range.
         high: f64,
     },
-    /// An output keeps its previous value, but filling takes the place of rules that do not fire.
+    /// The output keeps its previous value where no rule fires, which conflicts with filling gaps.
     #[error(
         "output `{output}` keeps its previous value where no rule fires, which a risk does not"
     )]
@@ -117,13 +117,13 @@ impl Estimator {
     ///
     /// # Errors
     ///
-    /// Where the rule set does not compile, the two do not name the same inputs, an output is no percentage, or an output
-    /// keeps its previous value.
+    /// If the rule set does not compile, if the inputs of both differ, if the range of an output is not a percentage,
+    /// or if an output keeps its previous value.
     pub fn new(profile: &Profile, model: &Model) -> Result<Estimator, EstimatorError> {
         Estimator::with_engine(profile, &Engine::new(model)?)
     }
 
-    /// As [`new`](Self::new), with a rule set that is compiled.
+    /// As [`new`](Self::new), with a compiled rule set.
     pub(crate) fn with_engine(
         profile: &Profile,
         engine: &Engine,
@@ -198,7 +198,7 @@ impl Estimator {
         });
         let order = order.collect();
         let signals = profile.signals();
-        // What a vehicle on board sends is not known here.
+        // The signals that a vehicle sends on board are not known here.
         let craft = Craft::new(0).with_signals(&signals);
         let (channels, inputs) = profile
             .channels(&[], craft.with_optional(&signals))
@@ -241,7 +241,7 @@ impl Estimator {
         self.0.engine.model()
     }
 
-    /// The rule set, compiled.
+    /// The compiled rule set.
     pub fn engine(&self) -> &Engine {
         &self.0.engine
     }
@@ -251,7 +251,7 @@ impl Estimator {
         &self.0.order
     }
 
-    /// What raises the risk at values of the inputs, in the order of the profile, to `risk_pct`.
+    /// The cause that raises the risk to `risk_pct` at values of the inputs, in the order of the profile.
     pub(crate) fn cause(
         &self,
         inputs: &[f64],
@@ -280,7 +280,7 @@ impl Estimator {
     }
 
     /// The input and the term, with its hedges, of each proposition of the rules, in the order of
-    /// [`Plan::propositions`]: what a [`Cause`] is called.
+    /// [`Plan::propositions`]. They name a [`Cause`].
     pub fn propositions(&self) -> impl ExactSizeIterator<Item = (&str, &str)> {
         let all = self.0.propositions.iter().zip(&self.0.said);
         all.map(|(said, Said { term, .. })| {
@@ -293,9 +293,8 @@ impl Estimator {
         })
     }
 
-    /// The risk at the values of the inputs, in the order of the profile: as a monitor computes it.
-    /// `None` where no rule applies and there is nothing to interpolate from, or a value that the risk depends on is not
-    /// finite.
+    /// The risk at values of the inputs, in the order of the profile, as a monitor computes it. `None` if no rule
+    /// applies and nothing can be interpolated, or if a value that the risk depends on is not finite.
     pub fn at(&self, inputs: &[f64]) -> Option<Estimate> {
         self.estimate(inputs, &mut Memory::of(self))
     }
@@ -308,19 +307,19 @@ impl Estimator {
             outcomes,
         } = memory;
         let rules = |point: &[f64]| match self.0.engine.evaluate_with(scratch, point, outcomes) {
-            // Where the author calls it an error that no rule fires, the map can still fill the gap.
+            // Even if the author declared it an error that no rule fires, the map can fill the gap.
             Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => outcomes.get(self.0.output).copied(),
             Err(_) => None,
         };
         self.lookup().estimate(inputs, point, rules)
     }
 
-    /// The profile and its rule set as plain data, to fly on board; samples carry the signals of
+    /// The profile and its rule set as plain data for a monitor on board. Samples must have the signals of
     /// [`Profile::signals`], in that order.
     ///
     /// # Errors
     ///
-    /// The output, or one that is read for it, has no closed form, or the profile has several risks.
+    /// If the output, or an output that it reads, has no closed form, or if the profile has several risks.
     pub fn plan(&self) -> Result<Plan<'_>, NoPlan> {
         if let Some(other) = self.0.profile.other_risks.first() {
             return Err(NoPlan::SeveralRisks {
@@ -343,7 +342,7 @@ impl Estimator {
         })
     }
 
-    /// The values that fill gaps; empty where nothing is filled.
+    /// The values that fill gaps; empty if nothing is filled.
     pub(crate) fn filled(&self) -> &[f64] {
         self.0.filling.lend().map_or(&[], |knots| knots.values)
     }
@@ -357,11 +356,12 @@ impl Estimator {
     }
 }
 
-/// What an estimate needs beside the estimator: allocated once, used for every sample.
+/// The working memory of an estimate, allocated once and used for every sample.
 #[derive(Debug, Clone)]
 pub(crate) struct Memory {
     scratch: Scratch,
-    /// The inputs in the order of the model. Those that the risk does not depend on are at the lower ends of their ranges.
+    /// The inputs in the order of the model. Inputs that the risk does not depend on are at the lower ends of their
+    /// ranges.
     point: Vec<f64>,
     outcomes: Vec<Outcome>,
 }
@@ -413,7 +413,7 @@ mod tests {
         let with = |battery: f64| [&known[..], &[battery]].concat();
         let risk = default.at(&known);
         assert!(risk.is_some());
-        // Outside of the range, too: it says nothing of the risk.
+        // Also for values out of range: the risk does not depend on this input.
         for level in [80.0, f64::NAN, 250.0] {
             assert_eq!(motors.at(&with(level)), risk, "{level}");
             let plan = motors.plan().unwrap();

@@ -1,20 +1,20 @@
-//! Exponential windows: all values count, with weights that fall by their age, in a few numbers.
+//! Exponential windows: all past values count, with weights that decay with their age, stored in a few numbers.
 
 use crate::moments::Moments;
 
-/// The values so far, each with the weight `exp(-age / constant)`.
+/// A window in which each value has the weight `exp(-age / constant)`.
 #[derive(Debug, Clone)]
 pub(crate) struct Exponential {
     constant_s: f64,
     now_s: f64,
-    /// The sum of the weights of the samples, where the latest one weighs 1.
+    /// The sum of the weights of the samples, where the latest sample has weight 1.
     samples: f64,
-    /// The weights are the integral of `exp(-age / constant)` over the time of each sample.
+    /// The moments, weighted by the integral of `exp(-age / constant)` over the time of each sample.
     moments: Moments,
 }
 
 impl Exponential {
-    /// Memory for one, all zeros.
+    /// Memory for a window, all zeros.
     pub(crate) const IDLE: Exponential = Exponential {
         constant_s: 0.0,
         now_s: 0.0,
@@ -22,7 +22,7 @@ impl Exponential {
         moments: Moments::IDLE,
     };
 
-    /// Nothing yet, with a time constant over 0.
+    /// An empty window with a time constant above 0.
     pub(crate) const fn new(constant_s: f64) -> Exponential {
         Exponential {
             constant_s,
@@ -36,7 +36,7 @@ impl Exponential {
         *self = Exponential::new(self.constant_s);
     }
 
-    /// Adds a sample at a time that stands for the `held_s` seconds before it.
+    /// Adds a sample at `t_s` that applies to the `held_s` seconds before.
     pub(crate) fn push(&mut self, t_s: f64, held_s: f64, moments: &Moments) {
         self.advance(t_s);
         if held_s <= 0.0 || moments.weight() <= 0.0 {
@@ -48,7 +48,7 @@ impl Exponential {
         self.samples += 1.0;
     }
 
-    /// Lets time pass until `t_s`.
+    /// Ages all values until `t_s`.
     pub(crate) fn advance(&mut self, t_s: f64) {
         if t_s > self.now_s {
             let left = libm::exp((self.now_s - t_s) / self.constant_s);
@@ -62,12 +62,13 @@ impl Exponential {
         self.moments
     }
 
-    /// The number of samples: of samples at an even rate about those in one time constant.
+    /// The effective number of samples: at an even rate about the number of samples in one time constant.
     pub(crate) fn samples(&self) -> u32 {
         libm::round(self.samples) as u32
     }
 
-    /// For how many seconds samples without a gap would weigh as much: `constant (1 - exp(-seconds / constant))`.
+    /// The duration of samples without a gap that would have the same weight, in seconds; the inverse of `constant (1 -
+    /// exp(-seconds / constant))`.
     pub(crate) fn covered_s(&self) -> f64 {
         let share = (self.moments.weight() / self.constant_s).min(1.0);
         -self.constant_s * libm::log1p(-share)
@@ -79,7 +80,7 @@ mod tests {
     use super::*;
     use alloc::vec::Vec;
 
-    /// Samples of (seconds, value) at uneven times, with a gap.
+    /// Samples of (seconds, seconds held, value) at uneven times, with a gap.
     fn samples() -> Vec<(f64, f64, f64)> {
         let mut t_s = 50.0;
         let steps = (0..400).map(|i| {
@@ -90,7 +91,7 @@ mod tests {
         steps.collect()
     }
 
-    /// The definition itself, over all samples: the sum of weight times value over the sum of weights.
+    /// The definition, computed over all samples: the sum of weight times value over the sum of weights.
     fn plain(samples: &[(f64, f64, f64)], constant_s: f64) -> (f64, f64, f64) {
         let now_s = samples[samples.len() - 1].0;
         let weigh = |(t_s, held_s, _): &(f64, f64, f64)| {

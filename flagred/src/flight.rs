@@ -31,20 +31,20 @@ mod serialize;
 #[cfg(feature = "serde")]
 pub use serialize::{NamedStep, Steps, VerdictWord};
 
-/// The least share of the time in the air in which the risk must be known for a verdict of GOOD.
+/// The share of the time in the air for which the risk must be known for a verdict of GOOD.
 const KNOWN_SHARE: f64 = 0.5;
 
-/// Findings that are kept of a flight, the gravest.
+/// The number of findings that are kept of a flight, the gravest ones.
 const MOST_FINDINGS: usize = 1000;
-/// Steps that are kept of a flight: seven hours at ten a second.
+/// The number of steps that are kept of a flight: seven hours at 10 Hz.
 pub const MOST_STEPS: usize = 250_000;
-/// Judged risks closer together than this wait as one for the landing that may take them back, in seconds.
+/// Judged risks closer together than this, in seconds, are merged while they can still be taken back by a landing.
 const PENDING_S: f64 = 1e-4;
 
-/// A motor with a smaller margin counts as saturated.
+/// The margin below which a motor counts as saturated.
 const SATURATED_MARGIN: f64 = 0.005;
 
-/// Whether two reasons are the same but for their numbers.
+/// Whether two reasons differ only in their numbers.
 fn is_same(a: &Unknown, b: &Unknown) -> bool {
     let input = |reason: &Unknown| match reason {
         Unknown::WarmingUp { input }
@@ -76,15 +76,15 @@ fn is_same(a: &Unknown, b: &Unknown) -> bool {
 #[derive(Debug, Clone)]
 pub struct Assessor {
     monitor: Monitor,
-    /// `None` keeps no steps.
+    /// The distance between steps in seconds; `None` keeps no steps.
     step_s: Option<f64>,
     known_in_air_s: Option<f64>,
     flight: Flight,
-    /// How many of the findings ended before the latest sample.
+    /// The number of findings that had ended before the latest sample.
     ended_before: usize,
 }
 
-/// What adds up over a flight.
+/// The sums and results of a flight so far.
 #[derive(Debug, Clone)]
 struct Flight {
     findings: Vec<Finding>,
@@ -98,16 +98,16 @@ struct Flight {
     risk_times_s: f64,
     motor_samples: u64,
     saturated: u64,
-    /// For how long the risk was unknown, by reason.
+    /// For how long the risk was unknown, in seconds, by reason.
     unknown: Vec<(Unknown, f64)>,
     losses: Losses,
-    /// The inputs whose values were assumed in the air, by their index.
+    /// The indices of the inputs whose values were assumed in the air.
     assumed: Vec<usize>,
     /// Judged risks that a landing would still take back, in order of time.
     pending: VecDeque<Pending>,
 }
 
-/// The sample before.
+/// The previous sample.
 #[derive(Debug, Clone, Copy)]
 struct Last {
     t_s: f64,
@@ -120,13 +120,14 @@ struct Pending {
     t_s: f64,
     held_s: f64,
     risk_times_s: f64,
-    /// The highest.
+    /// The highest risk in %.
     risk_pct: f64,
     elevated_risk_pct: Option<f64>,
 }
 
 impl Assessor {
-    /// An assessor of a craft's flights that keeps a step every `step_s` seconds, or none.
+    /// Creates an assessor of a craft's flights, which keeps a step every `step_s` seconds, or no steps if that is
+    /// `None`.
     ///
     /// # Errors
     ///
@@ -145,12 +146,12 @@ impl Assessor {
         })
     }
 
-    /// The monitor that the samples go through.
+    /// The monitor that processes the samples.
     pub fn monitor(&self) -> &Monitor {
         &self.monitor
     }
 
-    /// Takes a sample in, in the air or on the ground.
+    /// Processes a sample, in the air or on the ground.
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         let update = self.monitor.push(sample);
         self.keep_findings(update.ended);
@@ -176,13 +177,13 @@ impl Assessor {
         update
     }
 
-    /// Sets the time in the air of this flight, in seconds, where it is known from elsewhere. Otherwise it is counted over
-    /// the samples, which says too little where some are missing at either end.
+    /// Sets the time in the air of this flight, in seconds, if it is known from another source. By default it is summed
+    /// over the samples, which is too short if samples are missing at the start or end.
     pub fn set_in_air_s(&mut self, in_air_s: f64) {
         self.known_in_air_s = Some(in_air_s);
     }
 
-    /// The finding behind the current level, as it stands so far; `None` while the level is good.
+    /// The finding behind the current level, with its values so far; `None` while the level is good.
     pub fn open_finding(&self) -> Option<Finding> {
         if let Some(of_risk) = self.monitor.open_elsewhere() {
             return Some(Finding::elsewhere(&of_risk, self.monitor.estimator()));
@@ -191,7 +192,7 @@ impl Assessor {
         Some(Finding::new(found, self.monitor.estimator()))
     }
 
-    /// The worst open finding beside the risk, as it stands so far: see [`Monitor::open_notice`].
+    /// The worst open finding that is not about the risk, with its values so far: see [`Monitor::open_notice`].
     pub fn open_notice(&self) -> Option<Finding> {
         let found = self.monitor.open_notice()?;
         Some(Finding::new(found, self.monitor.estimator()))
@@ -202,7 +203,7 @@ impl Assessor {
         self.flight.findings.get(self.ended_before..).unwrap_or(&[])
     }
 
-    /// Ends the findings that are still open, and gives them.
+    /// Ends the findings that are still open, and returns them.
     pub fn end_findings(&mut self) -> &[Finding] {
         let ended = self.monitor.finish();
         self.keep_findings(ended);
@@ -222,7 +223,7 @@ impl Assessor {
         }
     }
 
-    /// Ends the flight and gives its assessment. Samples that follow are those of a new flight.
+    /// Ends the flight and returns its assessment. Samples that follow belong to a new flight.
     pub fn finish(&mut self) -> Assessment {
         self.end_findings();
         let mut flight = core::mem::replace(&mut self.flight, Flight::new());
@@ -243,7 +244,7 @@ impl Assessor {
             flight.widen_steps();
         }
         let step_s = flight.widened_step_s.unwrap_or(step_s);
-        // On a grid of `step_s`; every sample where samples are rarer.
+        // On a grid of `step_s`; every sample if samples are further apart.
         flight.next_step_s = match flight.next_step_s + step_s {
             next_s if next_s > update.t_s => next_s,
             _ => update.t_s + step_s,
@@ -281,7 +282,7 @@ impl Flight {
         }
     }
 
-    /// Adds a sample; `unknown` has why risks of the profile are unknown.
+    /// Adds a sample; `unknown` are the reasons why risks of the profile are unknown.
     fn add(
         &mut self,
         update: &Update,
@@ -300,7 +301,7 @@ impl Flight {
         }
         let flown_s = last.map_or(0.0, |last| {
             let held_s = (t_s - last.t_s).max(0.0);
-            // It may have landed at any time of a gap.
+            // The landing may have been at any time within a gap.
             match !sample.is_on_ground() || held_s <= profile.sampling.longest_gap_s {
                 true => held_s,
                 false => 0.0,
@@ -354,14 +355,14 @@ impl Flight {
         }
     }
 
-    /// Sets a judged risk aside until no landing can take it back.
+    /// Keeps a judged risk pending until a landing can no longer take it back.
     fn wait(&mut self, risk: Pending) {
         match self.pending.back_mut() {
             Some(last) if risk.t_s - last.t_s < PENDING_S => {
                 last.held_s += risk.held_s;
                 last.risk_times_s += risk.risk_times_s;
                 last.risk_pct = last.risk_pct.max(risk.risk_pct);
-                // Unknown is less than any.
+                // Unknown is less than any number.
                 if risk.elevated_risk_pct > last.elevated_risk_pct {
                     last.elevated_risk_pct = risk.elevated_risk_pct;
                 }
@@ -370,7 +371,7 @@ impl Flight {
         }
     }
 
-    /// Leaves out the least grave of many findings.
+    /// Drops the least grave findings if there are too many.
     fn bound_findings(&mut self) {
         if self.findings.len() >= 2 * MOST_FINDINGS {
             self.keep_gravest();
@@ -389,7 +390,7 @@ impl Flight {
         self.findings_left_out += left_out as u64;
     }
 
-    /// Keeps every other step, and from now on steps that are twice as far apart.
+    /// Drops every other step, and doubles the distance between steps from now on.
     fn widen_steps(&mut self) {
         let mut index = 0;
         self.steps.retain(|_| {
@@ -404,7 +405,7 @@ impl Flight {
         self.widened_step_s = Some(self.widened_step_s.map_or(mean_s, |s| mean_s.max(2.0 * s)));
     }
 
-    /// Counts the judged risks up to a time: no landing takes them back any more.
+    /// Counts the pending risks up to a time, which no landing can take back any more.
     fn settle(&mut self, until_s: f64) {
         while let Some(risk) = self.pending.front().filter(|risk| risk.t_s <= until_s) {
             self.judged_s += risk.held_s;
@@ -417,7 +418,7 @@ impl Flight {
         }
     }
 
-    /// A landing: what came after `from_s` is not judged.
+    /// Handles a landing: nothing after `from_s` is judged.
     fn take_back(&mut self, from_s: f64) {
         self.settle(from_s);
         self.pending.clear();
@@ -450,7 +451,8 @@ impl Flight {
         }
     }
 
-    /// Without findings the flight is good only where enough of it is known, every motor but for moments, and the clock went on.
+    /// The verdict. Without findings the flight is GOOD only if the risk is known for most of the time in the air,
+    /// every motor except for moments, and the clock never went back.
     fn verdict(&self, summary: &Summary, profile: &Profile) -> Verdict {
         let knows_enough =
             summary.assessed_s > 0.0 && summary.assessed_s >= KNOWN_SHARE * summary.in_air_s;

@@ -1,4 +1,4 @@
-//! A flight, sample by sample, in memory that the caller lends: what every monitor does.
+//! The state of a flight, updated sample by sample in memory that the caller provides; all monitors share it.
 
 use crate::{
     accumulator::{Accumulator, AccumulatorSettings},
@@ -10,18 +10,18 @@ use crate::{
     window::Window,
 };
 
-/// What a profile says about time: when inputs count as known, how risks add up, when levels change.
+/// The settings of a profile that concern time: when inputs count as known, how risks accumulate, when levels change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// When an input counts as known.
+    /// The conditions under which an input counts as known.
     pub sampling: Sampling,
-    /// How risks add up to the elevated risk.
+    /// The parameters of the elevated risk.
     pub elevated_risk: AccumulatorSettings,
-    /// When levels are raised and lowered.
+    /// The conditions under which levels are raised and cleared.
     pub verdict: VerdictSettings,
 }
 
-/// What is known of a flight beside its windows.
+/// The state of a flight, without its windows.
 #[derive(Debug, Clone)]
 pub(crate) struct Follower {
     settings: Settings,
@@ -31,34 +31,35 @@ pub(crate) struct Follower {
     bin: Bin,
     last_s: Option<f64>,
     in_air_since_s: Option<f64>,
-    /// Whether the windows have dropped the take-off.
+    /// Whether the windows have discarded the take-off.
     settled: bool,
-    /// Since when the vehicle seems to be on the ground; within [`TOUCH_S`] the flight may go on.
+    /// Since when the vehicle seems to be on the ground, in seconds; the flight may continue within [`TOUCH_S`].
     down_since_s: Option<f64>,
     /// Whether the motors idle, and whether a high risk came before.
     idle: Option<Idle>,
-    /// When the motors last did not idle, since the autopilot last reported that the vehicle is on the ground.
+    /// The last time at which the motors did not idle since the autopilot reported that the vehicle is on the ground,
+    /// in seconds.
     lifted_s: Option<f64>,
     /// Whether the motors idle in the air.
     falls: bool,
     last_high_s: Option<f64>,
     last_known_s: Option<f64>,
-    /// Since an alarm: when it was last unknown whether the motors work as before.
+    /// While an alarm lasts: the last time at which it was unknown whether the motors work as before, in seconds.
     in_doubt_s: Option<f64>,
 }
 
-/// For less than this, in seconds, neither a land detector nor idle motors are a landing.
+/// A land detector or idle motors must last for this time, in seconds, to count as a landing.
 const TOUCH_S: f64 = 1.0;
 
-/// Motors that idle within this time after a high risk, in seconds, are no landing.
+/// Motors that idle within this time after a high risk, in seconds, do not count as a landing.
 const TROUBLE_S: f64 = 2.0;
 
-/// Motors that idle for this long, in seconds, while the autopilot reports that the vehicle is in the air, are a fall. A land
-/// detector reports a landing up to 1.5 s after the motors begin to idle, and in bounces motors idle for up to 2.3 s
-/// (docs/profiles.md).
+/// Motors that idle for this long, in seconds, while the autopilot reports that the vehicle is in the air, count as a
+/// fall. A land detector reports a landing up to 1.5 s after the motors begin to idle, and in bounces motors idle for
+/// up to 2.3 s (docs/profiles.md).
 const FALL_S: f64 = 3.0;
 
-/// How a flight, or what is known of it, ends.
+/// How a flight, or the knowledge about it, ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
     Landing,
@@ -82,8 +83,8 @@ struct Risk {
     judged: bool,
 }
 
-/// The memory of a flight: the risks of the last seconds, what each channel has seen, the values of the inputs after the
-/// latest sample (NaN is unknown), and the motors.
+/// The memory of a flight: the risks of the last seconds, the observations of each channel, the values of the inputs
+/// after the latest sample (NaN is unknown), and the motors.
 #[derive(Debug)]
 pub(crate) struct Room<'m> {
     pub(crate) risks: &'m mut Window,
@@ -92,13 +93,13 @@ pub(crate) struct Room<'m> {
     pub(crate) motors: &'m mut [Motor],
 }
 
-/// What a risk is computed from.
+/// The data that a risk is computed from.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Feed<'a> {
     pub(crate) channels: &'a [Channel],
-    /// The inputs of the profile, and those that a monitor appends.
+    /// The inputs of the profile, and inputs that a monitor appends.
     pub(crate) inputs: &'a [Input],
-    /// The inputs that the risk depends on, as [`Lookup::order`](crate::lookup::Lookup::order) has them.
+    /// The inputs that the risk depends on, in the form of [`Lookup::order`](crate::lookup::Lookup::order).
     pub(crate) order: &'a [u32],
 }
 
@@ -144,7 +145,7 @@ impl Follower {
         &self.settings
     }
 
-    /// Takes a sample in; `estimate` gives what is said about values of the inputs.
+    /// Processes a sample; `estimate` computes the risk at values of the inputs.
     pub(crate) fn push(
         &mut self,
         feed: Feed<'_>,
@@ -207,7 +208,7 @@ impl Follower {
         note((feed.channels, feed.inputs), room.seen, sample.signals);
         let together = motor::take(room.motors, &mut self.bin, t_s, sample.motors);
         let rests = self.rests(sample, room.motors);
-        // A risk that does not read the motors is estimated in a fall, too.
+        // A risk that does not depend on the motors is estimated during a fall too.
         self.falls = self.falls && feed.needs_motors();
         if rests {
             room.inputs.fill(f64::NAN);
@@ -217,7 +218,7 @@ impl Follower {
                     *ended = self.forget(down_since_s, End::Landing, room);
                 }
             } else {
-                // It landed in a gap.
+                // The landing was within a gap.
                 self.in_doubt_s = None;
                 motor::forget_trims(room.motors);
             }
@@ -272,7 +273,7 @@ impl Follower {
         };
         let step = self.alert.push(now, room.motors);
         self.doubt(t_s);
-        // Both at once cannot be: what was just forgotten takes a while to be raised again.
+        // Both cannot end at once: after the state was reset, raising a level again takes a while.
         if step.ended.is_some() {
             ended[0] = step.ended;
         }
@@ -283,18 +284,18 @@ impl Follower {
         })
     }
 
-    /// The finding that the level rests on, as it stands so far; `None` while the level is good.
+    /// The finding behind the current level, with its values so far; `None` while the level is good.
     pub(crate) fn open_finding(&self) -> Option<Finding> {
         self.alert.open().or_else(|| self.notices.open().copied())
     }
 
-    /// The worst open finding beside the risk, as it stands so far: little reserve or an imbalance.
+    /// The worst open finding that is not about the risk, with its values so far: little reserve or an imbalance.
     #[cfg(feature = "std")]
     pub(crate) fn open_notice(&self) -> Option<Finding> {
         self.notices.open().copied()
     }
 
-    /// Sets the cause of the open finding where the latest sample raised its level; `cause` is asked only then.
+    /// Sets the cause of the open finding if the latest sample raised its level; `cause` is called only then.
     pub(crate) fn explain(
         &mut self,
         feed: Feed<'_>,
@@ -313,7 +314,7 @@ impl Follower {
         });
     }
 
-    /// Ends the flight: the findings that were still open.
+    /// Ends the flight and returns the findings that were still open.
     pub(crate) fn finish(&mut self, room: &mut Room<'_>) -> Ended {
         let Some(last_s) = self.last_s else {
             return Ended::default();
@@ -326,14 +327,16 @@ impl Follower {
         ended
     }
 
-    /// The level of the risk, and of the findings beside it. After an alarm it is WARN until the motors work as before.
+    /// The worst level of the risk and of the other findings. After an alarm it is WARN until the motors work as
+    /// before.
     pub(crate) fn level(&self) -> Level {
         let noticed = self.notices.open().map_or(Level::Good, |f| f.severity);
         let doubted = self.in_doubt_s.map_or(Level::Good, |_| Level::Warn);
         self.alert.level().max(noticed).max(doubted)
     }
 
-    /// After an alarm the level is GOOD again when the motors have worked as before for as long as a level is held.
+    /// Keeps the level above GOOD after an alarm, until the motors have worked as before for as long as a level is
+    /// held.
     fn doubt(&mut self, t_s: f64) {
         let is_alarm = self.alert.level() > Level::Good;
         let clear_after_s = self.settings.verdict.clear_after_s;
@@ -345,8 +348,9 @@ impl Follower {
         }
     }
 
-    /// Whether the vehicle is on the ground: as the autopilot reports, or because the motors idle, before take-off and after a
-    /// flight that was calm to its end. With an unknown motor that cannot be known, and the vehicle counts as in the air.
+    /// Whether the vehicle is on the ground: the autopilot reports it, or the motors idle before take-off or after a
+    /// flight that was calm to its end. If a motor is unknown, this cannot be determined, and the vehicle counts as in
+    /// the air.
     fn rests(&mut self, sample: &Sample<'_>, motors: &[Motor]) -> bool {
         let t_s = sample.t_s;
         let fell = core::mem::replace(&mut self.falls, false);
@@ -364,7 +368,7 @@ impl Follower {
             return false;
         }
         let is_long = |lifted_s: f64| t_s - lifted_s >= FALL_S;
-        // An alarm that stands is judged by the rules.
+        // During an alarm the rules decide.
         self.falls = (fell || self.alert.level() == Level::Good)
             && sample.in_air == Some(true)
             && self.lifted_s.is_some_and(is_long);
@@ -378,7 +382,7 @@ impl Follower {
         idle == Idle::Landing && !self.falls
     }
 
-    /// Some time after take-off, drops it from the long windows and from the elevated risk.
+    /// Some time after take-off, discards it from the long windows and from the elevated risk.
     fn settle(&mut self, t_s: f64, in_air_since_s: f64, room: &mut Room<'_>) {
         let Sampling {
             take_off_s,
@@ -432,7 +436,7 @@ impl Follower {
         }
     }
 
-    /// The level where the risk is unknown: an alarm that stands, and never that all is good.
+    /// The level while the risk is unknown: that of an ongoing alarm, and never GOOD.
     fn level_in_doubt(&self) -> Option<Level> {
         let level = match self.last_known_s {
             Some(_) if self.in_air_since_s.is_some() => Some(self.level()),
@@ -441,7 +445,7 @@ impl Follower {
         level.filter(|level| *level > Level::Good)
     }
 
-    /// Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
+    /// Resets the state after a flight or a gap. A gap in the air keeps the trims and the doubt after an alarm.
     fn forget(&mut self, t_s: f64, end: End, room: &mut Room<'_>) -> Ended {
         for seen in room.seen.iter_mut() {
             seen.clear();
@@ -471,7 +475,7 @@ impl Follower {
     }
 }
 
-/// Why the risk is unknown where the command of a motor is; `None` where all are known.
+/// The reason why the risk is unknown if the command of a motor is; `None` if all commands are known.
 fn unknown_motor(motors: &[Motor], commands: &[f64]) -> Option<Unknown> {
     let motor = motors.iter().position(|motor| motor.command.is_nan())?;
     let given = commands.get(motor).copied();
@@ -481,7 +485,7 @@ fn unknown_motor(motors: &[Motor], commands: &[f64]) -> Option<Unknown> {
     })
 }
 
-/// The statistic of an input, where enough is known of its window.
+/// The statistic of an input, if enough of its window is known.
 pub(crate) fn reading(
     plan: (&[Channel], &[Input]),
     seen: &[Seen],
@@ -489,7 +493,7 @@ pub(crate) fn reading(
     input: usize,
 ) -> Result<f64, Unknown> {
     let observation = value(plan, seen, input).ok_or(Unknown::NoValue { input })?;
-    // A window that is full to a sample's time or so is full.
+    // A window that lacks about the time of one sample counts as full.
     let needed_s = sampling.warm_up_s.min(observation.window_s) * 0.99;
     match observation.samples {
         Some(_) if observation.covered_s < needed_s => Err(Unknown::WarmingUp { input }),

@@ -1,6 +1,6 @@
-//! Estimates from motor commands alone how close a multirotor is to losing control.
+//! Estimates how close a multirotor is to losing control, from its motor commands alone.
 //!
-//! What an embedder needs:
+//! Entry points:
 //!
 //! | to | use | feature |
 //! |---|---|---|
@@ -46,10 +46,10 @@
 //!
 //! # Errors
 //! Every error type implements `Display` and `Error`. Errors of profiles and rule sets are
-//! [`fuzzy::Findings`](fuzzy::diagnostic::Findings): all of a text, each with its line and column.
+//! [`fuzzy::Findings`](fuzzy::diagnostic::Findings): all errors of a text, each with its line and column.
 //!
 //! # Features
-//! - `std` (default): without it there are only [`board`] and what it uses, which need `core` alone.
+//! - `std` (default): without it only [`board`] and the modules that it uses are available, which need only `core`.
 //! - `flightlog`: flight logs, read by `flagred_flightlog`; profiles from files.
 //! - `serde`: assessments, findings and updates as data for `serde`; `schema`: their JSON Schemas.
 //!

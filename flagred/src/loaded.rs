@@ -1,4 +1,4 @@
-//! A profile by its name or from a file, with the rule set that it names, ready to use.
+//! Loads a profile by its name or from a file, with the rule set that it names.
 
 use std::{
     env,
@@ -16,22 +16,22 @@ use fuzzy::{Findings, Source};
 
 use crate::{check, estimator::Estimator, profile::Profile, shipped};
 
-/// A profile and its rule set, ready to use and as they were written.
+/// A loaded profile and rule set, compiled and in source form.
 #[derive(Debug, Clone)]
 pub struct Loaded {
-    /// Profile and rule set, compiled.
+    /// The compiled profile and rule set.
     pub estimator: Estimator,
-    /// The profile as it was written.
+    /// The source of the profile.
     pub profile: Source,
-    /// The rule set as it was written.
+    /// The source of the rule set.
     pub rules: Source,
-    /// What does not keep the profile from being used.
+    /// Warnings, which do not prevent the use of the profile.
     pub warnings: Findings,
-    /// Where it may have been read from; empty for a shipped one.
+    /// The files that it may have been read from; empty for a shipped profile.
     pub files: Vec<PathBuf>,
 }
 
-/// Why a profile cannot be used. `E` is why a file cannot be read.
+/// The reason why a profile cannot be used. `E` is the error of reading a file.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError<E> {
     /// The profile cannot be read.
@@ -40,19 +40,19 @@ pub enum LoadError<E> {
     /// A text has errors.
     #[error("`{file}` cannot be used:\n{findings}")]
     Findings {
-        /// Its file.
+        /// The name of the file.
         file: String,
-        /// The text.
+        /// The content of the file.
         text: String,
-        /// What is wrong with it.
+        /// The errors in it.
         findings: Findings,
     },
-    /// A file is something else, is missing, or lies where it may not be.
+    /// A file has another format, is missing, or is in a folder that is not allowed.
     #[error("{message}")]
     Unusable {
-        /// Which, and why.
+        /// The file, and the reason.
         message: String,
-        /// What to do about it.
+        /// What to do.
         help: Option<String>,
     },
 }
@@ -76,14 +76,16 @@ impl<E> LoadError<E> {
     }
 }
 
-/// Compiles a profile, which is a shipped one's name or a file, with its rule set. `read` gives the text of a file.
+/// Loads a profile, given by the name of a shipped profile or by a file, with its rule set. `read` returns the content
+/// of a file.
 ///
-/// A shipped name wins over a file of that name (`./flagred` is the file); a file's rule set is looked for beside it first,
-/// and then among the shipped ones. A profile may come from somebody else: the rule set lies in its folder, or in the one
-/// that `FLAGRED_RULES` names, and a file that is no rule set is not quoted.
+/// The name of a shipped profile takes precedence over a file of that name (`./flagred` is the file). The rule set of a
+/// file is searched for next to it first, and then among the shipped ones. A profile may come from an untrusted source:
+/// its rule set must be in its folder, or in the folder that `FLAGRED_RULES` names, and messages do not quote a file
+/// that is not a rule set.
 ///
 /// # Errors
-/// A file cannot be read, or what is in it cannot be used.
+/// If a file cannot be read, or if its content cannot be used.
 ///
 /// # Example
 /// ```
@@ -102,7 +104,7 @@ pub fn load<E>(
     finish(name, &profile.rules, (source, folder.as_deref()), rules)
 }
 
-/// As [`load`], of a text that was read from a file in a folder, or from no file.
+/// As [`load`], from a text that was read from a file in `folder`, or from no file.
 ///
 /// # Errors
 /// As [`load`].
@@ -117,10 +119,10 @@ pub fn from_source<E>(
     finish(name, &parsed.rules, (profile, folder), rules)
 }
 
-/// As [`from_source`], with the rule set too, which stands in for the one that the profile names.
+/// As [`from_source`], with a rule set that replaces the one that the profile names.
 ///
 /// # Errors
-/// As [`load`]; nothing is read.
+/// As [`load`]; no file is read.
 pub fn with_rules<E>(name: &str, profile: Source, rules: Source) -> Result<Loaded, LoadError<E>> {
     let parsed = parse(name, &profile)?;
     let rules = compiled(&parsed, parsed.rules.clone(), rules)?;
@@ -151,7 +153,8 @@ fn finish<E>(
     })
 }
 
-/// The findings about a profile and the rule set that it names, for the author: [`fit`] and [`check::outvoted`].
+/// The findings about a profile and the rule set that it names, for the author of a profile: [`fit`] and
+/// [`check::outvoted`].
 #[doc(hidden)] // For the programs of this repository.
 pub fn examine(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>) {
     let (mut findings, estimator) = fit(profile, rules);
@@ -162,14 +165,14 @@ pub fn examine(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>
     (findings, estimator)
 }
 
-/// The findings of [`check::profile`] with the signals that logs carry.
+/// The findings of [`check::profile`], with the signals that flight logs contain.
 pub fn fit(profile: &Source, rules: &Source) -> (Findings, Option<Estimator>) {
     let known = flagred_flightlog::known_signals();
     let signals: Vec<(&str, &str)> = known.iter().map(|s| (s.name, s.unit)).collect();
     check::profile(profile, rules, &signals)
 }
 
-/// The rule set that a profile names. It compiles.
+/// The rule set that a profile names, after verifying that it compiles.
 ///
 /// # Errors
 /// As [`load`].
@@ -183,7 +186,7 @@ pub fn rule_set<E>(
     compiled(profile, file, Source::new(text))
 }
 
-/// A rule set that compiles; `file` is what its findings name.
+/// Verifies that a rule set compiles; `file` is its name in findings.
 fn compiled<E>(profile: &Profile, file: String, source: Source) -> Result<Source, LoadError<E>> {
     if source.document().is_err() && !is_meant_as_rules(source.text()) {
         return Err(LoadError::unusable(format!(
@@ -202,7 +205,7 @@ fn compiled<E>(profile: &Profile, file: String, source: Source) -> Result<Source
     }
 }
 
-/// Reads a profile without its rule set: also what it was written as, and of a file the folder it is in.
+/// Reads a profile without its rule set. Returns also its source and, for a file, the folder it is in.
 ///
 /// # Errors
 /// As [`load`].
@@ -280,8 +283,8 @@ fn built_in() -> String {
     names.collect::<Vec<_>>().join(", ")
 }
 
-/// Whether a line of a text begins with a key that only rule sets and profiles have. No other file is quoted: it may hold
-/// secrets, and be named by somebody else.
+/// Whether a line of a text begins with a key that only rule sets and profiles have. Other files are never quoted in
+/// messages: a profile from somebody else may name a file that contains secrets.
 #[doc(hidden)] // For the programs of this repository.
 pub fn is_meant_as_rules(text: &str) -> bool {
     text.lines().any(|line| {
@@ -295,12 +298,12 @@ pub fn is_meant_as_rules(text: &str) -> bool {
     })
 }
 
-/// Whether a file, all links followed, lies in the folder of its profile or in the folder that the caller allows.
+/// Whether a file, with all links resolved, is in the folder of its profile or in the folder that the caller allows.
 fn is_allowed(path: &Path, folder: Option<&Path>) -> bool {
     let Ok(path) = path.canonicalize() else {
         return false;
     };
-    // The folder of `profile.yaml` has no name.
+    // The folder of the path `profile.yaml` is empty.
     let folder = folder.map(|folder| match folder.as_os_str().is_empty() {
         true => PathBuf::from("."),
         false => folder.to_owned(),

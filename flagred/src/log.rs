@@ -1,4 +1,4 @@
-//! A flight log as samples: the one place where `flightlog` and FLAGRED meet.
+//! Converts a flight log to samples: the only module that uses both `flightlog` and the monitor.
 
 use alloc::{vec, vec::Vec};
 
@@ -11,7 +11,7 @@ use crate::{
     verdict::Level,
 };
 
-/// Assesses a flight. Every motor sample counts; a step is kept every `step_s` seconds, or none.
+/// Assesses a flight. Every motor sample is used. A step is kept every `step_s` seconds, or no steps if that is `None`.
 ///
 /// # Example: from a log to a verdict
 /// ```
@@ -30,7 +30,7 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     let profile = estimator.profile();
     let missing = match profile.reads_motors() {
         true => gaps.iter().find(is_needed).cloned(),
-        // Whatever the vehicle is.
+        // For any vehicle.
         false => flight.gap_of_air(),
     };
     if let Some(gap) = missing {
@@ -38,7 +38,7 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     }
     let needed = profile.signals();
     let carried = carried(flight, &needed);
-    // A signal that one of several risks needs does not keep the others from being assessed.
+    // If a signal that only one of several risks needs is missing, the others are still assessed.
     let signals = match profile.other_risks.is_empty() {
         true => carried.clone(),
         false => needed,
@@ -75,7 +75,7 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     {
         match unknown {
             Unknown::TooFewSamples { .. } => *help = slow.help(),
-            // Two samples or none in a window: the rate is the reason, not the motors' signal.
+            // Two samples or none in a window: the reason is the low sample rate, not the signal of the motors.
             Unknown::NoValue { input } | Unknown::WarmingUp { input } if reads_motors(*input) => {
                 assessment.verdict = Verdict::NotAvailable(Reason::Log(slow.clone()));
             }
@@ -96,8 +96,8 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
             longest_gap_s: profile.sampling.longest_gap_s,
         });
     }
-    // As for a vehicle that is lost on a live link: what was seen of the flight is not GOOD for that. What is unknown then is
-    // unknown for that, too.
+    // As for a vehicle whose live link is lost: a flight that ended in a reboot in the air is not GOOD, and if its risk
+    // was unknown, the reboot is the reason.
     if let Some(&at_s) = flight.rebooted_in_air_s.first()
         && is_in_doubt(&assessment.verdict)
     {
@@ -106,7 +106,7 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     assessment
 }
 
-/// Whether a verdict is GOOD, or unknown for what was seen of the flight.
+/// Whether a verdict is GOOD, or unknown because of the observed part of the flight.
 fn is_in_doubt(verdict: &Verdict) -> bool {
     matches!(
         verdict,
@@ -120,7 +120,7 @@ fn is_in_doubt(verdict: &Verdict) -> bool {
     )
 }
 
-/// The craft that flew, with samples that carry the named signals.
+/// The craft of a flight, whose samples have the named signals.
 pub fn craft<'a>(flight: &'a Flight, signals: &'a [&'a str]) -> Craft<'a> {
     let geometry = flight.geometry.as_ref();
     Craft::new(flight.motors.len())
@@ -128,14 +128,14 @@ pub fn craft<'a>(flight: &'a Flight, signals: &'a [&'a str]) -> Craft<'a> {
         .with_geometry(geometry.map_or(&[], |geometry| &geometry.factors))
 }
 
-/// Those of the named signals that the flight carries.
+/// Those of the named signals that the flight contains.
 pub fn carried<'a>(flight: &Flight, names: &[&'a str]) -> Vec<&'a str> {
     let names = names.iter().copied();
     names.filter(|name| flight.signal(name).is_some()).collect()
 }
 
-/// Calls `take` with every motor sample of a flight in turn, with the latest value of each named signal; without motor commands,
-/// with every sample of these signals.
+/// Calls `take` for every motor sample of a flight in order, with the latest value of each named signal; without motor
+/// commands, for every sample of these signals.
 pub fn for_each_sample(flight: &Flight, signals: &[&str], mut take: impl FnMut(&Sample<'_>)) {
     let mut holds: Vec<_> = signals
         .iter()
@@ -169,7 +169,7 @@ pub fn for_each_sample(flight: &Flight, signals: &[&str], mut take: impl FnMut(&
     }
 }
 
-/// The times of the named signals, in order, each once.
+/// The times of the named signals, ascending and without duplicates.
 fn times_of(flight: &Flight, signals: &[&str]) -> Vec<f64> {
     let signals = signals.iter().filter_map(|name| flight.signal(name));
     let mut times: Vec<f64> = signals.flat_map(|signal| signal.t_s).copied().collect();
@@ -178,7 +178,7 @@ fn times_of(flight: &Flight, signals: &[&str]) -> Vec<f64> {
     times
 }
 
-/// How far apart most samples of a flight without motor commands are.
+/// The typical distance between samples of a flight without motor commands.
 fn step_s_of(flight: &Flight, signals: &[&str]) -> Option<f64> {
     if !flight.commands.is_empty() {
         return None;
@@ -190,7 +190,7 @@ fn step_s_of(flight: &Flight, signals: &[&str]) -> Option<f64> {
     steps.get(steps.len() / 2).copied()
 }
 
-/// Whether the autopilot reports at a time that the vehicle is in the air; `None` where that is assumed.
+/// Whether the autopilot reports at `t_s` that the vehicle is in the air; `None` if that is only assumed.
 pub fn in_air(flight: &Flight, t_s: f64) -> Option<bool> {
     let is_assumed = flight.in_air.as_ref().is_some_and(|air| air.is_assumed);
     match flight.is_in_air(t_s) == Some(true) {

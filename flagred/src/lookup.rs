@@ -1,4 +1,4 @@
-//! From the values of inputs to a risk: the rules where they apply, the filling where they do not.
+//! Computes a risk from the values of inputs: by the rules where they apply, otherwise by filling.
 
 use fuzzy::table::Outcome;
 
@@ -7,23 +7,23 @@ use crate::{
     sample::Estimate,
 };
 
-/// The index, among the profile's inputs, of an input that the risk does not depend on.
+/// Marks an input that the risk does not depend on, instead of its index among the inputs of the profile.
 pub(crate) const UNREAD: u32 = u32::MAX;
 
-/// What an estimate needs to know beside the rules.
+/// The data that an estimate needs in addition to the rules.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lookup<'a> {
-    /// Which input of the profile each input of the rule set is, or [`UNREAD`].
+    /// For each input of the rule set its index in the profile, or [`UNREAD`].
     pub(crate) order: &'a [u32],
     /// The coverage below which the rules do not apply.
     pub(crate) coverage_below: f64,
-    /// `None` where there is nothing to fill gaps from.
+    /// The values that fill gaps; `None` if nothing is filled.
     pub(crate) filled: Option<FilledKnots<'a>>,
 }
 
 impl Lookup<'_> {
     /// The risk at values of the inputs, in the order of the profile; `rules` evaluates the rule set, in its own order.
-    /// `None` where rules say nothing and there is nothing to fill from, or a value is not finite.
+    /// `None` if no rule applies and nothing is filled, or if a value is not finite.
     pub(crate) fn estimate(
         &self,
         inputs: &[f64],
@@ -49,7 +49,8 @@ impl Lookup<'_> {
         })
     }
 
-    /// The inputs of the profile in the order of the rule set. Those that the risk does not depend on keep their value.
+    /// Copies the inputs of the profile in the order of the rule set. Inputs that the risk does not depend on keep
+    /// their value.
     pub(crate) fn reorder(&self, inputs: &[f64], point: &mut [f64]) -> Option<()> {
         for (value, from) in point.iter_mut().zip(self.order) {
             if *from != UNREAD {

@@ -1,7 +1,7 @@
-//! The motor margin: how far a motor command is from its nearer limit.
+//! The motor margin: the distance of a motor command to the nearer limit.
 //!
-//! The paper's Eq. 2 and 3. Everything here works on the *effective* range, the part of the command range
-//! that the vehicle uses in flight: a motor at its limit then has margin 0, whatever the vehicle's set-up.
+//! Eq. 2 and 3 of the paper. All functions use the *effective* range, the part of the command range that the vehicle
+//! uses in flight, so a motor at its limit has margin 0 with any configuration of the vehicle.
 
 /// A command range: the two values between which a motor can be driven.
 ///
@@ -26,8 +26,9 @@ impl Range {
         high: 1.0,
     };
 
-    /// A range from `low` to `high`; `None` unless both and their difference are finite and `low < high`. A difference of less than
-    /// 1e-9, or of less than this share of the larger limit, is not a range: every command would be at a limit.
+    /// A range from `low` to `high`; `None` unless both and their difference are finite and `low < high`. The
+    /// difference must be at least 1e-9, and at least 1e-9 of the larger limit: otherwise every command would be at a
+    /// limit.
     ///
     /// # Example
     /// ```
@@ -43,7 +44,7 @@ impl Range {
         (span >= least && span.is_finite()).then_some(Range { low, high })
     }
 
-    /// Where a value stands in this range: 0 at `low`, 1 at `high`, clamped to these; NaN stays NaN.
+    /// The position of a value in this range: 0 at `low`, 1 at `high`, clamped to [0, 1]; NaN for NaN.
     ///
     /// # Example
     /// ```
@@ -57,8 +58,8 @@ impl Range {
         ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
 
-    /// Whether a value can be a command. A value that lies outside the range by more than ten times its width is a code, such as
-    /// 65535 for an unknown command; NaN is unknown, too.
+    /// Whether a value can be a command. A value outside the range by more than ten times its width is a code, such as
+    /// 65535 for an unknown command; NaN is unknown as well.
     ///
     /// ```
     /// let pulse_us = flagred::margin::Range::new(1000.0, 2000.0).ok_or("low must be below high")?;
@@ -71,7 +72,7 @@ impl Range {
     }
 }
 
-/// The margin of an effective command in [0, 1]: `min(e, 1 - e)`, in [0, 0.5]; 0 is saturated, low or high.
+/// The margin of an effective command in [0, 1]: `min(e, 1 - e)`, in [0, 0.5]; 0 is saturated at either limit.
 ///
 /// # Example
 /// ```
@@ -83,20 +84,20 @@ pub fn margin(effective: f64) -> f64 {
     effective.min(1.0 - effective)
 }
 
-/// The limit that a motor is nearer to.
+/// The nearer limit of a motor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Side {
-    /// Nearly stopped: it cannot give less.
+    /// The lower limit: the motor nearly stops and cannot give less thrust.
     Lower,
-    /// Nearly at full power: it cannot give more.
+    /// The upper limit: the motor has nearly full power and cannot give more thrust.
     Upper,
 }
 
 impl Side {
-    /// The limit nearer to an effective command; the middle counts as high.
+    /// The limit nearer to an effective command; 0.5 counts as the upper limit.
     ///
     /// # Example
     /// ```

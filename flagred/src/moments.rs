@@ -1,23 +1,23 @@
-//! Statistics of weighted values that merge without a subtraction of sums.
+//! Statistics of weighted values that can be merged without subtracting sums.
 
-/// Mean, spread and extremes of weighted values.
+/// Mean, standard deviation and extremes of weighted values.
 ///
-/// Two of them merge into one without a subtraction of sums (Chan, Golub and LeVeque 1983), so nothing
-/// cancels and nothing drifts.
+/// Two sets are merged without subtracting sums (Chan, Golub and LeVeque 1983), so there is no cancellation and no
+/// drift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Moments {
     weight: f64,
     mean: f64,
     /// `sum(weight (value - mean)^2)`.
     squares: f64,
-    /// `sum(weight (value - value before)^2)`, where the value before is known.
+    /// `sum(weight (value - previous value)^2)`, where the previous value is known.
     steps: f64,
     min: f64,
     max: f64,
 }
 
 impl Moments {
-    /// Of no value at all.
+    /// The moments of no values.
     pub(crate) const EMPTY: Moments = Moments {
         weight: 0.0,
         mean: 0.0,
@@ -34,7 +34,7 @@ impl Moments {
         ..Moments::EMPTY
     };
 
-    /// Of one finite value with a weight over 0.
+    /// The moments of one finite value with a weight above 0.
     pub(crate) fn of(value: f64, weight: f64) -> Moments {
         Moments {
             weight,
@@ -46,7 +46,7 @@ impl Moments {
         }
     }
 
-    /// Of one finite value that follows another one.
+    /// The moments of one finite value that follows another.
     pub(crate) fn after(previous: f64, value: f64, weight: f64) -> Moments {
         Moments {
             steps: weight * (value - previous) * (value - previous),
@@ -54,7 +54,7 @@ impl Moments {
         }
     }
 
-    /// Of a finite value that moves evenly from one end to the other, with a weight over 0.
+    /// The moments of a finite value that moves linearly from `from` to `to`, with a weight above 0.
     pub(crate) fn between(from: f64, to: f64, weight: f64) -> Moments {
         Moments {
             weight,
@@ -66,13 +66,14 @@ impl Moments {
         }
     }
 
-    /// Of values that weigh 1 each, as `counted` has them; [`EMPTY`](Self::EMPTY) where one of them is not finite.
+    /// The moments of values with weight 1 each, after applying `counted`; [`EMPTY`](Self::EMPTY) if one of them is not
+    /// finite.
     pub(crate) fn alike(
         values: impl Iterator<Item = f64> + Clone,
         counted: impl Fn(f64) -> f64,
     ) -> Moments {
         let mut all = Moments::EMPTY;
-        // Counted from the first value, so that equal values have exactly it as their mean, and no spread.
+        // Relative to the first value, so that the mean of equal values is exact and their standard deviation is 0.
         let Some(first) = values.clone().next().map(&counted) else {
             return all;
         };
@@ -84,7 +85,7 @@ impl Moments {
             let value = counted(value);
             count += 1;
             all.mean += value - first;
-            // Of finite numbers; `f64::min` also looks for NaN.
+            // The numbers are finite; `f64::min` would also test for NaN.
             all.min = if value < all.min { value } else { all.min };
             all.max = if value > all.max { value } else { all.max };
         }
@@ -96,7 +97,7 @@ impl Moments {
         all
     }
 
-    /// Adds the values behind `other`.
+    /// Adds the values of `other`.
     pub(crate) fn merge(&mut self, other: &Moments) {
         if other.weight <= 0.0 {
             return;
@@ -142,14 +143,14 @@ impl Moments {
         self.known(libm::sqrt(self.squares / self.weight))
     }
 
-    /// The standard deviation of white noise that would make the values step as they do,
-    /// `sqrt(mean((value - value before)^2) / 2)`; `None` without a value.
+    /// The standard deviation of white noise that has the same steps between values, `sqrt(mean((value - previous
+    /// value)^2) / 2)`; `None` without a value.
     pub(crate) fn noise(&self) -> Option<f64> {
         self.known(libm::sqrt(self.steps / self.weight / 2.0))
     }
 
-    /// The standard deviation without that noise, `sqrt(max(0, std^2 - noise^2))`: what is left is the part of the
-    /// variance that successive values share. `None` without a value.
+    /// The standard deviation without that noise, `sqrt(max(0, std^2 - noise^2))`, from the part of the variance that
+    /// successive values share. `None` without a value.
     pub(crate) fn std_less_noise(&self) -> Option<f64> {
         let variance = (self.squares - self.steps / 2.0) / self.weight;
         self.known(libm::sqrt(variance.max(0.0)))

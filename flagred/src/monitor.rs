@@ -1,4 +1,4 @@
-//! The streaming monitor: a sample in, what is known after it out.
+//! The streaming monitor, which takes samples and returns the risk and the level after each.
 
 use alloc::{format, string::String, vec, vec::Vec};
 
@@ -69,11 +69,11 @@ impl Unknown {
     }
 }
 
-/// Why a monitor cannot be made.
+/// The reason why a monitor cannot be created.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MonitorError {
-    /// The profile needs a signal that the flight does not carry.
+    /// The profile needs a signal that the samples do not have.
     #[error("the profile needs the signal `{signal}`, which the flight does not carry")]
     NoSignal {
         /// The signal.
@@ -82,20 +82,20 @@ pub enum MonitorError {
     /// The profile reads the motors, but the flight has none.
     #[error("the flight has no motors, and the profile reads them")]
     NoMotors,
-    /// The profile names a motor that the flight does not have.
+    /// The profile reads a motor that the flight does not have.
     #[error("the profile needs motor {motor}, and the flight has {motors} motors")]
     FewMotors {
-        /// The motor, counted from 1.
+        /// The number of the motor, from 1.
         motor: usize,
-        /// How many there are.
+        /// The number of motors of the flight.
         motors: usize,
     },
 }
 
-/// Follows one flight, sample by sample.
+/// Assesses one flight, sample by sample.
 ///
-/// It holds its own share of the estimator. After it is made it allocates nothing, its memory does not grow, and a sample
-/// costs the same for any length of the windows.
+/// It keeps its own reference to the estimator. After its creation it does not allocate, and the cost of a sample does
+/// not depend on the lengths of the windows.
 ///
 /// # Example: motors at their limits
 /// ```
@@ -120,10 +120,10 @@ pub struct Monitor {
     inputs: Vec<Input>,
     room: OwnRoom,
     follower: Follower,
-    /// Of the other risks of the profile.
+    /// The monitors of the other risks of the profile.
     others: Vec<Monitor>,
     ended_elsewhere: Vec<OfRisk>,
-    /// Why the risk, without the others, is unknown after the latest sample.
+    /// The reason why this risk, without the others, is unknown after the latest sample.
     unknown: Option<Unknown>,
 }
 
@@ -136,7 +136,7 @@ pub struct OfRisk {
     pub found: Finding,
 }
 
-/// What is kept of a flight beside the follower: allocated once.
+/// The memory of a flight besides the follower, allocated once.
 #[derive(Debug, Clone)]
 struct OwnRoom {
     risks: Window,
@@ -146,12 +146,12 @@ struct OwnRoom {
 }
 
 impl Monitor {
-    /// A monitor of a craft. For a profile that reads no motor the craft may have none: then samples with an empty `motors`
-    /// are of a vehicle in use, unless they say that it is on the ground.
+    /// Creates a monitor of a craft. For a profile that reads no motors the craft may have none. Samples with empty
+    /// `motors` then count as a vehicle in use, unless `in_air` is `Some(false)`.
     ///
     /// # Errors
     ///
-    /// The profile needs a signal that samples do not carry, or a motor that the craft does not have.
+    /// If the profile needs a signal that the samples do not have, or a motor that the craft does not have.
     ///
     /// # Example: a load, and no motors
     /// ```
@@ -221,13 +221,13 @@ impl Monitor {
         })
     }
 
-    /// The estimator it uses.
+    /// The estimator of the monitor.
     pub fn estimator(&self) -> &Estimator {
         &self.estimator
     }
 
-    /// Takes a sample in. The level of the update is the worst of all risks, and never [`Level::Good`] while one of them is
-    /// unknown. Risk and elevated risk are those of the profile's `output`, which other risks do not change.
+    /// Processes a sample. The level of the update is the worst of all risks, and never [`Level::Good`] while one of
+    /// them is unknown. Risk and elevated risk are those of the profile's `output`; other risks do not change them.
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         if self.others.is_empty() {
             return self.push_first(sample);
@@ -285,20 +285,20 @@ impl Monitor {
         &self.room.inputs
     }
 
-    /// The inputs whose values are assumed after the latest sample, by their index in the profile: those with `if_missing` of
-    /// signals that have never come.
+    /// The indices in the profile of the inputs whose values are assumed after the latest sample: inputs with
+    /// `if_missing` whose signals have never been known.
     pub fn assumed(&self) -> impl Iterator<Item = usize> {
         let all = 0..self.room.inputs.len();
         all.filter(|input| assumed(&self.inputs, &self.room.seen, *input).is_some())
     }
 
-    /// The finding behind the current level, as it stands so far; `None` while the level is good.
+    /// The finding behind the current level, with its values so far; `None` while the level is good.
     pub fn open_finding(&self) -> Option<Finding> {
         let elsewhere = self.open_elsewhere().map(|of_risk| of_risk.found);
         elsewhere.or_else(|| self.follower.open_finding())
     }
 
-    /// The finding behind the current level where it is one of another risk.
+    /// The finding behind the current level if it is one of another risk.
     pub fn open_elsewhere(&self) -> Option<OfRisk> {
         let first = self.follower.open_finding().map(|found| found.severity);
         let others = self.others.iter().enumerate();
@@ -306,7 +306,7 @@ impl Monitor {
             let found = other.follower.open_finding()?;
             Some(OfRisk { risk, found })
         });
-        // Of equal ones the first.
+        // Of equal ones, the first counts.
         let worst = open.reduce(
             |worst, next| match next.found.severity > worst.found.severity {
                 true => next,
@@ -321,18 +321,18 @@ impl Monitor {
         &self.ended_elsewhere
     }
 
-    /// Why other risks are unknown after the latest sample: a reason for each that is.
+    /// The reasons why other risks are unknown after the latest sample, one for each unknown risk.
     pub fn unknown_elsewhere(&self) -> impl Iterator<Item = Unknown> + Clone {
         self.others.iter().filter_map(|other| other.unknown)
     }
 
-    /// The worst open finding beside the risk, as it stands so far: little reserve or an imbalance. The level may rest on a
-    /// risk at the same time.
+    /// The worst open finding that is not about the risk, with its values so far: little reserve or an imbalance. A
+    /// risk may be the cause of the level at the same time.
     pub fn open_notice(&self) -> Option<Finding> {
         self.follower.open_notice()
     }
 
-    /// Ends the flight and gives the findings that were still open, once.
+    /// Ends the flight and returns the findings that were still open. A second call returns none.
     pub fn finish(&mut self) -> Ended {
         self.ended_elsewhere.clear();
         for (risk, other) in self.others.iter_mut().enumerate() {
@@ -343,13 +343,13 @@ impl Monitor {
         self.follower.finish(&mut self.room.lend())
     }
 
-    /// The mean margin over all motors and the profile's window: the paper's first input, for any rule set.
+    /// The mean margin over all motors and the profile's window, with any rule set: the paper's first input.
     pub fn margin(&self) -> Option<f64> {
         self.reading(self.room.inputs.len())
     }
 
-    /// The standard deviation of the effective commands over all motors and the profile's window: the paper's second
-    /// input, for any rule set.
+    /// The standard deviation of the effective commands over all motors and the profile's window, with any rule set:
+    /// the paper's second input.
     pub fn spread(&self) -> Option<f64> {
         self.reading(self.room.inputs.len() + 1)
     }

@@ -1,4 +1,4 @@
-//! What is kept of each motor: its command, the same without yaw, and its noise.
+//! The state of each motor: its command, the command without yaw, and its noise.
 
 use crate::{
     average::Average,
@@ -6,49 +6,50 @@ use crate::{
     margin::{Side, margin},
 };
 
-/// Commands are averaged over times of this length, in seconds, before their noise is taken, so that it hardly depends on
-/// the rate of the log.
+/// The noise of commands is computed from means over times of this length, in seconds, so that it hardly depends on the
+/// rate of the log.
 pub(crate) const BIN_S: f64 = 0.1;
 
-/// The number of the bin that a time falls into.
+/// The number of the bin that contains `t_s`.
 fn bin_of(t_s: f64) -> f64 {
     const ROUNDING: f64 = 1e-6;
     libm::floor(t_s / BIN_S + ROUNDING)
 }
 
-/// A command this far outside [0, 1] comes from rounding or from limits that are slightly exceeded. A larger one has another unit,
-/// such as microseconds or percent.
+/// Commands up to this far outside [0, 1] are rounding errors or slightly exceeded limits. Larger ones have another
+/// unit, such as microseconds or percent.
 #[cfg_attr(not(feature = "std"), expect(unreachable_pub))]
 pub const MOST_OUTSIDE: f64 = 0.5;
 
-/// No motor.
+/// In place of an index: no motor.
 const NONE: u32 = u32::MAX;
 
-/// What is kept of one motor.
+/// The state of one motor.
 #[derive(Debug, Clone, Copy)]
 pub struct Motor {
     /// Its effective command in the latest sample; NaN is unknown.
     pub(crate) command: f64,
-    /// The same without the part that turns the nose.
+    /// The command without the part that commands yaw.
     pub(crate) less_yaw: f64,
-    /// Its yaw factor, and how much of each effort a unit of its command is; zeros where the geometry is unknown.
+    /// Its yaw factor, and the contribution of one unit of its command to each effort; zeros if the geometry is
+    /// unknown.
     yaw: f64,
     share: Efforts,
-    /// The motor opposite, and `u32::MAX` where there is none or the geometry is unknown.
+    /// The index of the opposite motor; `u32::MAX` if there is none or the geometry is unknown.
     pub(crate) opposite: u32,
-    /// The sum of its commands in this bin, and their mean in the bin before; NaN is unknown.
+    /// The sum of its commands in the current bin, and their mean in the previous bin; NaN is unknown.
     bin_sum: f64,
     bin_before: f64,
-    /// How far its command is above the mean of all motors, lately and as a trim.
+    /// The difference of its command to the mean of all motors, averaged over the last seconds and as a trim.
     pub(crate) difference: Average,
     pub(crate) trim: Average,
-    /// For how long its command has been 0, in seconds.
+    /// The time for which its command has been 0, in seconds.
     pub(crate) at_zero_s: f64,
-    /// Its margins while a level was reached, since it was first.
+    /// Its margins while a level was being reached, since the first time.
     pub(crate) record: MotorRecord,
 }
 
-/// The margins of a motor over some time.
+/// The margins of a motor over a time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MotorRecord {
     pub(crate) samples: u32,
@@ -57,17 +58,17 @@ pub(crate) struct MotorRecord {
     pub(crate) side: Side,
 }
 
-/// What all motors do together at one time.
+/// The values of all motors together at one time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Together {
     pub(crate) efforts: Efforts,
-    /// The noise of the commands, known when a bin is complete; else NaN.
+    /// The noise of the commands if this sample completed a bin; otherwise NaN.
     pub(crate) noise: f64,
-    /// The bin that the sample fell into.
+    /// The bin that contains the sample.
     pub(crate) bin: f64,
 }
 
-/// The bin that the latest sample fell into.
+/// The bin that contains the latest sample.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bin {
     index: f64,
@@ -95,7 +96,7 @@ impl Motor {
         },
     };
 
-    /// A motor of which nothing is known yet.
+    /// A motor without known values.
     pub const UNKNOWN: Motor = Motor {
         command: f64::NAN,
         less_yaw: f64::NAN,
@@ -105,12 +106,12 @@ impl Motor {
         ..Motor::IDLE
     };
 
-    /// How far its command has moved from its trim, relative to the mean of all motors.
+    /// The change of its command from its trim, relative to the mean of all motors.
     pub(crate) fn shift(&self) -> f64 {
         self.difference.value - self.trim.value
     }
 
-    /// A motor at an effective command.
+    /// A motor with an effective command.
     #[cfg(test)]
     pub(crate) fn at(command: f64) -> Motor {
         Motor {
@@ -143,8 +144,8 @@ impl MotorRecord {
     }
 }
 
-/// Gives each motor its factors. Without factors for every motor, or where they do not tell the efforts apart, returns false
-/// and changes nothing: yaw stays in.
+/// Sets the factors of each motor. If there are not factors for every motor, or if they do not separate the efforts,
+/// returns false and changes nothing: yaw is then not removed.
 pub(crate) fn set_geometry(motors: &mut [Motor], factors: &[Factors]) -> bool {
     let normal = effort::normal(factors.iter().copied());
     let column = |factors| effort::column(&normal, factors);
@@ -160,7 +161,7 @@ pub(crate) fn set_geometry(motors: &mut [Motor], factors: &[Factors]) -> bool {
     is_known
 }
 
-/// The motor on the other side of the middle; of two on one arm the one that turns the same way.
+/// The motor opposite this one; of two on one arm, the one that turns the same way.
 fn opposite(factors: &[Factors], motor: usize) -> Option<usize> {
     const SAME_PLACE: f64 = 0.1;
     let [roll, pitch, yaw] = *factors.get(motor)?;
@@ -175,7 +176,7 @@ fn opposite(factors: &[Factors], motor: usize) -> Option<usize> {
     nearest.map(|(opposite, _)| opposite)
 }
 
-/// Values of the motors without the part that turns the nose.
+/// Values of the motors without the part that commands yaw.
 pub(crate) fn less_yaw(
     motors: &[Motor],
     value: impl Fn(&Motor) -> f64 + Copy,
@@ -186,7 +187,7 @@ pub(crate) fn less_yaw(
         .map(move |motor| value(motor) - motor.yaw * yaw)
 }
 
-/// Forgets the commands, and keeps the geometry; within a flight also the trims.
+/// Clears the commands and keeps the geometry; within a flight the trims are kept too.
 pub(crate) fn clear(motors: &mut [Motor], keeps_trims: bool) {
     for motor in motors {
         let Motor {
@@ -208,15 +209,15 @@ pub(crate) fn clear(motors: &mut [Motor], keeps_trims: bool) {
     }
 }
 
-/// Forgets the trims: a new flight may begin.
+/// Clears the trims, because a new flight may begin.
 pub(crate) fn forget_trims(motors: &mut [Motor]) {
     for motor in motors {
         motor.trim = Average::NONE;
     }
 }
 
-/// The command of a motor as it counts: clamped to [0, 1] where it is at most [`MOST_OUTSIDE`] outside, as readers of logs do;
-/// else NaN, unknown.
+/// The command that a monitor uses for a motor: clamped to [0, 1] if it is at most [`MOST_OUTSIDE`] outside, as when
+/// logs are read; otherwise NaN (unknown).
 ///
 /// ```
 /// use flagred::monitor::counted;
@@ -232,7 +233,7 @@ pub fn counted(command: f64) -> f64 {
     }
 }
 
-/// Takes in the effective command of each motor at a time; missing ones are unknown.
+/// Stores the effective command of each motor at `t_s`; missing ones are unknown.
 pub(crate) fn take(motors: &mut [Motor], bin: &mut Bin, t_s: f64, commands: &[f64]) -> Together {
     let noise = bin.begin(t_s, motors);
     let commands = commands.iter().map(|command| counted(*command));
@@ -247,7 +248,7 @@ pub(crate) fn take(motors: &mut [Motor], bin: &mut Bin, t_s: f64, commands: &[f6
             has_geometry |= share != 0.0;
         }
     }
-    // Without a geometry nothing is taken out, not even where a motor is unknown.
+    // Without a geometry no yaw is removed, even if a motor is unknown.
     let yaw = if has_geometry { efforts[2] } else { 0.0 };
     for motor in motors.iter_mut() {
         motor.less_yaw = motor.command - motor.yaw * yaw;
@@ -268,8 +269,8 @@ impl Bin {
         samples: 0,
     };
 
-    /// The noise of the bin that a new one at a time completes: `sqrt(mean over motors of (step^2) / 2)`, with the steps
-    /// from the bin before. Unknown where the step of a motor is.
+    /// The noise of a bin that this sample completes: `sqrt(mean over motors of (step^2) / 2)`, with the steps from the
+    /// previous bin. NaN if the step of a motor is unknown.
     fn begin(&mut self, t_s: f64, motors: &mut [Motor]) -> f64 {
         let index = bin_of(t_s);
         let mut noise = f64::NAN;

@@ -1,4 +1,4 @@
-//! What can fly on board: rule sets whose values have closed forms, as plain data.
+//! Exports rule sets whose values have closed forms as plain data for monitors on board.
 
 use alloc::string::String;
 use core::ops::Range;
@@ -7,7 +7,7 @@ use fuzzy::{Engine, table::ClosedForm};
 
 use crate::board::Rules;
 
-/// Why a rule set, with or without a profile, cannot be exported.
+/// The reason why a rule set, with or without a profile, cannot be exported.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoPlan {
@@ -32,13 +32,13 @@ pub enum NoPlan {
     SeveralRisks {
         /// The first risk.
         output: String,
-        /// The second one.
+        /// The second risk.
         other: String,
     },
 }
 
 impl NoPlan {
-    /// What can be exported.
+    /// A hint about what can be exported.
     pub fn help(&self) -> &'static str {
         match self {
             NoPlan::NoClosedForm { .. } => {
@@ -60,7 +60,7 @@ impl NoPlan {
 ///
 /// # Errors
 ///
-/// An output has no closed form, or keeps its previous value.
+/// If an output has no closed form, or keeps its previous value.
 pub fn rules(engine: &Engine) -> Result<Rules<'_>, NoPlan> {
     let mut outputs = engine.model().outputs.iter();
     if let Some(output) = outputs.find(|output| output.keeps_previous()) {
@@ -71,7 +71,7 @@ pub fn rules(engine: &Engine) -> Result<Rules<'_>, NoPlan> {
     rules_for(engine, 0..engine.output_names().len())
 }
 
-/// The rule set for these outputs; of others the values are not asked for.
+/// The rule set with the values of these outputs only.
 pub(crate) fn rules_for(engine: &Engine, mut outputs: Range<usize>) -> Result<Rules<'_>, NoPlan> {
     let (chain, table) = (engine.chain(), engine.table());
     let open = match (chain, table) {
@@ -122,7 +122,7 @@ mod tests {
         );
     }
 
-    /// The risk of the paper through an output of its own, which the other one only passes on.
+    /// The risk of the paper in an output of its own, which a second output passes on.
     #[test]
     fn a_chain_is_assessed_and_an_open_output_that_it_reads_makes_no_plan() {
         let profile = shipped::flagred_paper().profile().clone();

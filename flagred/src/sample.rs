@@ -1,19 +1,20 @@
-//! What goes into a monitor with every sample, and what comes out.
+//! The samples that a monitor takes, and the updates that it returns.
 
 use crate::verdict::{Ended, Level};
 
 /// A sample of a flight.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample<'a> {
-    /// Its time in seconds; times must not decrease.
+    /// The time in seconds; times must not decrease.
     pub t_s: f64,
-    /// The effective command of each motor, from 0 to 1; NaN is unknown. Values from -0.5 to 1.5 are clamped to [0, 1], all
-    /// others count as unknown. While a motor is unknown, so is the risk of a profile that reads motors.
+    /// The effective command of each motor, from 0 to 1; NaN is unknown. Values from -0.5 to 1.5 are clamped to [0, 1],
+    /// others count as unknown. While a motor is unknown, the risk of a profile that reads motors is unknown too.
     pub motors: &'a [f64],
-    /// Whether the autopilot reports that the vehicle is in the air; `None` where it does not report it. Motors that idle mean
-    /// that the vehicle is on the ground, unless the autopilot reports `true` for 3 s: then the vehicle falls.
+    /// Whether the autopilot reports that the vehicle is in the air; `None` if it does not report it. Motors that idle
+    /// mean that the vehicle is on the ground, unless the autopilot reports `true` for 3 s: then the vehicle is
+    /// falling.
     pub in_air: Option<bool>,
-    /// The values of the signals that the monitor was given the names of, in that order; NaN is unknown.
+    /// The values of the signals whose names the monitor was created with, in that order; NaN is unknown.
     pub signals: &'a [f64],
 }
 
@@ -24,46 +25,47 @@ impl Sample<'_> {
     }
 }
 
-/// What a monitor knows after a sample.
+/// The result of a monitor after a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(with = "UpdateFields"))]
 pub struct Update {
     /// The time of the sample in seconds.
     pub t_s: f64,
-    /// The risk, or why it is unknown.
+    /// The risk, or the reason why it is unknown.
     pub risk: Result<Estimate, Unknown>,
-    /// The elevated risk in %; `None` where the risk is unknown.
+    /// The elevated risk in %; `None` if the risk is unknown.
     pub elevated_risk_pct: Option<f64>,
-    /// The level. Where a risk of the profile is unknown it is an alarm that stands, or `None`: never [`Level::Good`].
+    /// The level. If a risk of the profile is unknown, it is the level of an ongoing alarm or `None`, never
+    /// [`Level::Good`].
     pub level: Option<Level>,
-    /// The new level where this sample changed it and it is known.
+    /// The new level if this sample changed it; `None` if the new level is unknown.
     pub change: Option<Level>,
-    /// Whether the risk counts for levels, findings and the summary of a flight: in the first seconds after take-off it
-    /// does not. A landing takes back the last seconds before it.
+    /// Whether the risk counts for levels, findings and the summary of a flight. It does not in the first seconds after
+    /// take-off. A landing also excludes the last seconds before it.
     pub judged: bool,
     /// The findings that ended with this sample.
     pub ended: Ended,
 }
 
-/// The risk where all inputs are known.
+/// A known risk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// The risk in %, from 0 to 100.
     pub risk_pct: f64,
-    /// The largest firing strength of a rule, in [0, 1].
+    /// The coverage: the largest firing strength of a rule, in [0, 1].
     pub coverage: f64,
-    /// The distance to the nearest inputs that rules cover, in shares of the inputs' ranges, where the risk is
-    /// interpolated from there; `None` where rules gave it.
+    /// If the risk is interpolated, the distance to the nearest inputs that rules cover, in shares of the inputs'
+    /// ranges; `None` if rules computed the risk.
     pub filled_from: Option<f64>,
-    /// The rule with the largest firing strength, as its index in the model, from 0.
+    /// The index in the model of the rule with the largest firing strength, from 0.
     pub dominant_rule: Option<usize>,
     /// Whether an input was outside its range and was moved to the end of the range.
     pub clamped: bool,
 }
 
 impl Estimate {
-    /// Motors that idle in the air keep no vehicle up, whatever the rules say.
+    /// The estimate while motors idle in the air: they cannot keep a vehicle up, whatever the rules compute.
     pub(crate) const FALL: Estimate = Estimate {
         risk_pct: 100.0,
         coverage: 1.0,
@@ -73,28 +75,28 @@ impl Estimate {
     };
 }
 
-/// Why a risk is unknown.
+/// The reason why a risk is unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unknown {
     /// The vehicle is on the ground.
     OnGround,
-    /// The time stamp is not after the previous one; the sample was ignored.
+    /// The timestamp is not after the previous one; the sample was ignored.
     OutOfOrder,
     /// The window of an input does not cover enough time yet.
     WarmingUp {
-        /// The input, in the order of the profile.
+        /// The index of the input in the profile.
         input: usize,
     },
-    /// The window of an input holds too few samples.
+    /// The window of an input contains too few samples.
     TooFewSamples {
-        /// The input, in the order of the profile.
+        /// The index of the input in the profile.
         input: usize,
-        /// How many it holds.
+        /// The number of samples in the window.
         samples: u32,
     },
     /// The signal of an input has no known value.
     NoValue {
-        /// The input, in the order of the profile.
+        /// The index of the input in the profile.
         input: usize,
     },
     /// No rule applies, and there is nothing to interpolate from.
@@ -113,18 +115,18 @@ pub enum Unknown {
     },
 }
 
-/// When an input counts as known.
+/// The conditions under which an input counts as known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
-    /// The fewest samples a window must hold.
+    /// The minimum number of samples in a window.
     pub min_samples: u32,
-    /// How much time a window must cover before it counts, in seconds, or its whole length where that is less; 99 % of it
+    /// The time that a window must cover before it counts, in seconds, or its whole length if that is less; 99 % of it
     /// is enough.
     pub warm_up_s: f64,
-    /// After a longer time without a sample, in seconds, the state is reset.
+    /// A time without a sample longer than this, in seconds, resets the state.
     pub longest_gap_s: f64,
-    /// What was before this time in the air, in seconds, is dropped from longer windows `warm_up_s` later, and the elevated
-    /// risk begins anew, because the take-off is not typical of the flight. 0 keeps it.
+    /// The length of the take-off, in seconds. `warm_up_s` after it, the take-off is discarded from longer windows and
+    /// the elevated risk restarts, because the take-off is not typical of the flight. 0 keeps it.
     pub take_off_s: f64,
 }
 
@@ -161,13 +163,13 @@ struct UpdateFields {
     t_s: f64,
     #[serde(flatten)]
     risk: RiskFields,
-    /// The level. Where a risk of the profile is unknown it is an alarm that stands, or null: never GOOD.
+    /// The level. If a risk of the profile is unknown, it is the level of an ongoing alarm or null, never GOOD.
     level: Option<Level>,
     /// Whether the risk counts for levels, findings and the summary of a flight.
     judged: bool,
 }
 
-/// A risk and what it rests on, as serde data; null where it is unknown.
+/// A risk and how it was estimated, as serde data; null if it is unknown.
 #[cfg(feature = "serde")]
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -177,11 +179,11 @@ pub(crate) struct RiskFields {
     risk: Option<f64>,
     /// The elevated risk in %.
     elevated_risk: Option<f64>,
-    /// The largest firing strength of a rule, in [0, 1].
+    /// The coverage: the largest firing strength of a rule, in [0, 1].
     coverage: Option<f64>,
-    /// Whether the risk is interpolated, since no rule applies.
+    /// Whether the risk is interpolated, because no rule applies.
     filled: Option<bool>,
-    /// The number of the rule with the largest firing strength, from 1; null where none fires.
+    /// The number of the rule with the largest firing strength, from 1; null if none fires.
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     dominant_rule: Option<usize>,
 }

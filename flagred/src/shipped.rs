@@ -1,4 +1,4 @@
-//! The rule sets and profiles that come with this crate, as text and ready to use.
+//! The rule sets and profiles that are part of this crate, as text and compiled.
 
 use alloc::vec::Vec;
 use core::fmt::Debug;
@@ -7,15 +7,15 @@ use fuzzy::Model;
 
 use crate::{estimator::Estimator, profile::Profile};
 
-/// A rule set or profile that comes with this crate.
+/// A rule set or profile that is part of this crate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Shipped {
-    /// Its name.
+    /// The name by which it can be loaded, such as `flagred-paper`.
     pub name: &'static str,
-    /// Its path below the folder `rules`.
+    /// Its path relative to the folder `rules`.
     pub file: &'static str,
-    /// Its YAML.
+    /// Its text in YAML.
     pub text: &'static str,
 }
 
@@ -68,7 +68,7 @@ pub fn flagred() -> Estimator {
     valid(Estimator::new(&profile(0), &flagred_rules()))
 }
 
-/// The published profile with the published rule set, compiled.
+/// The compiled profile and rule set of the paper.
 pub fn flagred_paper() -> Estimator {
     valid(Estimator::new(&profile(1), &flagred_paper_rules()))
 }
@@ -109,7 +109,7 @@ pub fn profile_names() -> Vec<&'static str> {
     PROFILES.iter().map(|shipped| shipped.name).collect()
 }
 
-/// The names of the shipped profiles whose risk comes from the motors alone: those that can be compared on any log.
+/// The names of the shipped profiles whose risk comes from the motors only, which can be compared on any log.
 pub fn motor_profile_names() -> impl Iterator<Item = &'static str> {
     let reads_motors_alone =
         |shipped: &&Shipped| valid(shipped.text.parse::<Profile>()).signals().is_empty();
@@ -127,7 +127,7 @@ fn rule_set(index: usize) -> Model {
     valid(fuzzy::yaml::parse(RULE_SETS[index].text)).model
 }
 
-/// What a shipped file gives. The text is part of the crate, and the tests below hold that it is valid.
+/// Unwraps the result for a shipped file. The text is part of the crate, and the tests below verify that it is valid.
 fn valid<T, E: Debug>(result: Result<T, E>) -> T {
     result.unwrap_or_else(|error| unreachable!("a shipped file is not valid: {error:?}"))
 }

@@ -1,4 +1,4 @@
-//! Where a model input comes from: a statistic of a signal over a window.
+//! The source of an input: a statistic of a signal over a window.
 
 use alloc::{string::String, vec, vec::Vec};
 
@@ -9,20 +9,20 @@ use crate::{
     motor::{Bin, Motor, clear, set_geometry, take},
 };
 
-/// What is observed.
+/// The signal that is observed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Signal {
-    /// The effective command `e` of each motor: 0 at its lower limit, 1 at its upper one.
+    /// The effective command `e` of each motor: 0 at its lower limit, 1 at its upper limit.
     MotorCommand,
-    /// The command of each motor without the part that turns the nose: `e_i - y_i yaw`, with the yaw factor `y_i` of the
-    /// motor and the yaw effort of all. The command itself where the geometry is unknown; with a geometry, unknown while
-    /// one motor is.
+    /// The command of each motor without the part that commands yaw: `e_i - y_i yaw`, with the yaw factor `y_i` of the
+    /// motor and the yaw effort of all. If the geometry is unknown, the command itself; with a geometry, unknown while
+    /// any motor is unknown.
     MotorCommandLessYaw,
     /// The margin `min(e, 1 - e)` of each motor, 0 to 0.5.
     MotorMargin,
-    /// How far each motor is from its lower limit: `e`.
+    /// The distance of each motor from its lower limit: `e`.
     MotorMarginLowSide,
-    /// How far each motor is from its upper limit: `1 - e`.
+    /// The distance of each motor from its upper limit: `1 - e`.
     MotorMarginHighSide,
     /// The roll effort of all motors; this and the other efforts are unknown without a geometry.
     RollEffort,
@@ -35,34 +35,34 @@ pub enum Signal {
     /// The noise of the commands, every 0.1 s: `sqrt(mean over motors of (step^2) / 2)`, with the steps between the
     /// means of successive times of 0.1 s.
     CommandNoise,
-    /// A signal that the flight carries beside the motors, by name: `battery_v`.
+    /// Another signal of the flight by its name, such as `battery_v`.
     Named(String),
-    /// One such signal less another one. Where both names end in `_deg`, the short way around, in [-180, 180).
+    /// The difference `a - b` of two such signals. If both names end in `_deg`, the shorter way around, in [-180, 180).
     Difference {
-        /// The signal.
+        /// The minuend.
         a: String,
-        /// What is taken from it.
+        /// The subtrahend.
         b: String,
     },
-    /// One such signal divided by another one.
+    /// The ratio `a / b` of two such signals.
     Ratio {
-        /// The signal.
+        /// The dividend.
         a: String,
-        /// What it is divided by.
+        /// The divisor.
         b: String,
-        /// The ratio is unknown where `b` is nearer to 0 than this, and always where `b` is 0.
+        /// The ratio is unknown while `|b|` is below this, and always when `b` is 0.
         unknown_below: f64,
     },
-    /// One such signal times another one.
+    /// The product `a b` of two such signals.
     Product {
-        /// The signal.
+        /// The first factor.
         a: String,
-        /// The other one.
+        /// The second factor.
         b: String,
     },
 }
 
-/// The signals with a value for each motor, by the names profiles use.
+/// The signals with a value for each motor, with their names in profiles.
 const OF_MOTORS: [(&str, Signal); 5] = [
     ("motor_command", Signal::MotorCommand),
     ("motor_command_less_yaw", Signal::MotorCommandLessYaw),
@@ -86,13 +86,13 @@ impl Signal {
         OF_MOTORS.iter().map(|(name, _)| *name)
     }
 
-    /// The names of the signals that are made of the motors' commands.
+    /// The names of the signals that are computed from the commands of the motors.
     pub fn names() -> impl Iterator<Item = &'static str> + Clone {
         let all = OF_MOTORS.iter().chain(&OF_ALL_MOTORS);
         all.map(|(name, _)| *name)
     }
 
-    /// The signal of a name; an unknown name is a signal of the flight's own.
+    /// The signal with this name; an unknown name is a signal of the flight.
     pub fn named(name: &str) -> Signal {
         OF_MOTORS
             .into_iter()
@@ -101,7 +101,7 @@ impl Signal {
             .map_or_else(|| Signal::Named(name.into()), |(_, signal)| signal)
     }
 
-    /// The names of the signals that samples have to carry for it.
+    /// The names of the signals that samples must have for it.
     pub fn carried(&self) -> impl Iterator<Item = &str> {
         let (first, second) = match self {
             Signal::Named(name) => (Some(name), None),
@@ -112,7 +112,7 @@ impl Signal {
         first.into_iter().chain(second).map(String::as_str)
     }
 
-    /// Whether the signal is made of the motors' commands.
+    /// Whether the signal is computed from the commands of the motors.
     pub fn is_made_of_motors(&self) -> bool {
         self.carried().next().is_none()
     }
@@ -123,10 +123,10 @@ impl Signal {
     }
 }
 
-/// Where a model input comes from.
+/// The source of an input.
 ///
-/// `{mean: motor_margin}` pools all motors; `{mean: {min: motor_margin}}` is the mean over time of the lowest
-/// motor; `{std: {mean: motor_command}}` is the spread over time of what the motors do together.
+/// `{mean: motor_margin}` pools all motors; `{mean: {min: motor_margin}}` is the mean over time of the lowest motor;
+/// `{std: {mean: motor_command}}` is the standard deviation over time of the mean of the motors.
 ///
 /// # Example: the lowest motor over five seconds, in YAML and in Rust
 /// ```
@@ -148,17 +148,17 @@ impl Signal {
 pub struct Source {
     /// The statistic over time.
     pub statistic: Statistic,
-    /// How the motors of one sample become one value, before the statistic.
+    /// How the motors of one sample are combined into one value, before the statistic.
     pub motors: Motors,
-    /// What is observed.
+    /// The observed signal.
     pub signal: Signal,
-    /// Over how many seconds; of an exponential window its time constant.
+    /// The length of the window in seconds; for an exponential window its time constant.
     pub window_s: f64,
-    /// Whether all values count with weights that fall by their age, `exp(-age / window_s)`, and not alike for `window_s`.
+    /// Whether the window is exponential: all past values count with the weight `exp(-age / window_s)`.
     pub exponential: bool,
 }
 
-/// The windows that a number of sources need, each window shared by those that look at the same thing.
+/// Computes the values of several sources. Sources that observe the same signal share a window.
 ///
 /// # Example: the mean margin of two motors over a second
 ///
@@ -191,11 +191,11 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// The windows for `sources`, of a craft whose samples carry the craft's signals.
+    /// Creates the windows for `sources`, for samples of a craft with its signals.
     ///
     /// # Errors
     ///
-    /// The name of a signal that the craft does not carry.
+    /// The name of a signal that the craft does not have.
     pub fn new<'a>(
         sources: impl IntoIterator<Item = &'a Source>,
         craft: Craft<'_>,
@@ -214,7 +214,7 @@ impl Observer {
         })
     }
 
-    /// Forgets everything.
+    /// Discards all observations.
     pub fn clear(&mut self) {
         for seen in &mut self.seen {
             seen.clear();
@@ -223,8 +223,8 @@ impl Observer {
         self.bin = Bin::NONE;
     }
 
-    /// Adds a sample, of a time and the seconds before it that it stands for: the effective commands of the motors and the
-    /// values of the craft's signals, NaN where one is unknown.
+    /// Adds a sample at `t_s` that applies to the `held_s` seconds before: the effective commands of the motors and the
+    /// values of the craft's signals; NaN is unknown.
     pub fn push(&mut self, t_s: f64, held_s: f64, motors: &[f64], named: &[f64]) {
         let together = take(&mut self.motors, &mut self.bin, t_s, motors);
         let motors = &self.motors;
@@ -236,7 +236,7 @@ impl Observer {
         push(&self.channels, &mut self.seen, (t_s, held_s), &now);
     }
 
-    /// The value of a source, by its index; `None` where nothing is known.
+    /// The value of the source with this index; `None` if nothing is known.
     pub fn value(&self, input: usize) -> Option<Observation> {
         value((&self.channels, &self.inputs), &self.seen, input)
     }
@@ -247,8 +247,8 @@ pub(crate) fn is_angle(name: &str) -> bool {
     name.ends_with("_deg")
 }
 
-/// The channels that sources need, each shared by those that look at the same thing, and which of them each source is
-/// a statistic of. The named signals stand at the places of their names; a name that is not among them is the error.
+/// The channels that sources need, shared between sources that observe the same signal, and the channel and statistic
+/// of each source. Named signals are identified by their index in `names`; the error is a name that is missing there.
 pub(crate) fn channels<'a>(
     sources: impl IntoIterator<Item = &'a Source>,
     names: &[&str],
@@ -420,7 +420,7 @@ mod tests {
             // The geometry is unknown.
             source(Statistic::Mean, Motors::Pooled, "motor_command_less_yaw"),
             source(Statistic::Mean, Motors::One(1), "motor_command"),
-            // There are two motors.
+            // There are only two motors.
             source(Statistic::Mean, Motors::One(2), "motor_command"),
         ];
         let found = observe(&sources, &[[0.2, f64::NAN], [f64::NAN; 2]]);
@@ -513,7 +513,7 @@ mod tests {
         );
     }
 
-    /// Numbers that look random, evenly spread over -1 to 1: their standard deviation is `1 / sqrt(3)`.
+    /// Pseudo-random numbers, uniform from -1 to 1; their standard deviation is `1 / sqrt(3)`.
     fn noise() -> impl FnMut() -> f64 {
         let mut state = 1_u64;
         move || {
@@ -524,7 +524,7 @@ mod tests {
         }
     }
 
-    /// What sources see over 60 s of two motors that move apart by `apart(t)` at a rate.
+    /// The values of sources after 60 s of two motors that differ by `apart(t)`, at a sample rate.
     fn at_rate(sources: &[Source], rate_hz: f64, mut apart: impl FnMut(f64) -> f64) -> Vec<f64> {
         let mut observer = Observer::new(sources, craft(&["battery_v"])).unwrap();
         for i in 0..(60.0 * rate_hz) as u32 {
@@ -561,7 +561,7 @@ mod tests {
             .windows(2)
             .map(|pair| (pair[1] - pair[0]).powi(2))
             .sum();
-        // The first value has no step and weighs as much as the others.
+        // The first value has no step, and has the same weight as the others.
         let noise = (steps / count / 2.0).sqrt();
         let expected = [(variance - noise * noise).sqrt(), noise, variance.sqrt()];
         for (found, expected) in found.into_iter().zip(expected) {
@@ -588,7 +588,8 @@ mod tests {
         assert!(noise < 0.1 * std, "{noise}");
     }
 
-    /// The statistics without noise agree within 5 % at any rate of the log, with noise of 0.009 on movement of 0.014.
+    /// The statistics without noise agree within 5 % for all rates of the log, with noise of 0.009 on movement of
+    /// 0.014.
     #[test]
     fn one_flight_at_different_rates_has_the_same_unsteadiness() {
         let sources = [
@@ -613,7 +614,7 @@ mod tests {
         }
     }
 
-    /// The factors of a quadrotor in X, [roll, pitch, yaw].
+    /// The factors of a quadrotor in an X, [roll, pitch, yaw].
     const QUAD_X: [crate::monitor::Factors; 4] = [
         [-1.0, 1.0, 1.0],
         [1.0, -1.0, 1.0],
@@ -641,7 +642,7 @@ mod tests {
             let [less_yaw, all] = spread(&QUAD_X[..], yaw);
             approx::assert_abs_diff_eq!(less_yaw, straight, epsilon = 1e-12);
             assert!(all > 1.5 * straight, "{all}");
-            // Without a geometry, yaw stays in.
+            // Without a geometry, yaw is not removed.
             let [less_yaw, all] = spread(&[], yaw);
             assert_eq!(less_yaw, all);
         }

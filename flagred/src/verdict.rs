@@ -1,7 +1,8 @@
-//! From risk to words: levels with hysteresis, a minimum duration and silence where alarms mean nothing.
+//! Levels, which are derived from the risk with hysteresis, a minimum duration and quiet times.
 //!
-//! Pilots switch off warnings that cry too often, so a level is raised only after its threshold has been reached for
-//! a while, is lowered only after a lower one has not been reached for a while, and is not raised just after take-off.
+//! Pilots switch off warnings that are too frequent. Therefore a level is raised only after its threshold has been
+//! reached for some time, is cleared only after a lower threshold has not been reached for some time, and is not raised
+//! just after take-off.
 
 use crate::margin::Side;
 
@@ -13,7 +14,7 @@ pub use crate::{cause::Cause, motor::Motor};
 pub(crate) use alert::{Alert, Now, ROUNDING_S};
 pub(crate) use notices::Notices;
 
-/// How risky it is, or was.
+/// How risky a moment, or a flight, is.
 ///
 /// # Example
 /// ```
@@ -27,13 +28,13 @@ pub(crate) use notices::Notices;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "UPPERCASE"))]
 pub enum Level {
-    /// Nothing to say.
+    /// No problem was found.
     Good,
-    /// Worth knowing, and no danger: the flight is as good as without it.
+    /// Worth knowing but not dangerous: the flight is as good as without it.
     Info,
-    /// The pilot should know.
+    /// The pilot should pay attention.
     Warn,
-    /// Control is about to be lost, or was.
+    /// Loss of control is imminent, or has happened.
     Fail,
 }
 
@@ -48,33 +49,33 @@ impl core::fmt::Display for Level {
     }
 }
 
-/// The quantity that a threshold is on.
+/// The quantity that a threshold applies to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Measure {
-    /// The risk of the moment.
+    /// The current risk.
     Risk,
     /// The elevated risk.
     ElevatedRisk,
     /// The noise of the motor commands, in % of their range.
     CommandNoise,
-    /// What the mean command leaves below the upper limit, in % of the range.
+    /// The reserve of the mean command to the upper limit, in % of the range.
     Reserve,
-    /// How far motors are from their own part of the thrust earlier in the flight, in % of the range.
+    /// The deviation of motors from their own part of the thrust earlier in the flight, in % of the range.
     Imbalance,
-    /// How far a motor is from the one opposite, in % of the range.
+    /// The difference between a motor and the opposite one, in % of the range.
     PairImbalance,
-    /// How far one motor alone is above its own part of the thrust earlier in the flight, in % of the range: it gives less
-    /// thrust than it is commanded.
+    /// The amount by which one motor alone exceeds its own part of the thrust earlier in the flight, in % of the range:
+    /// it gives less thrust than commanded.
     WeakMotor,
     /// The risk of motors that idle in the air, which is 100 %.
     IdleInAir,
 }
 
 impl Measure {
-    /// All of them, in order.
+    /// All quantities, in order.
     pub const ALL: [Measure; 8] = [
         Measure::Risk,
         Measure::ElevatedRisk,
@@ -102,19 +103,19 @@ impl core::fmt::Display for Measure {
     }
 }
 
-/// A limit on each quantity; reaching either is enough.
+/// Thresholds on the risk and the elevated risk; reaching either is enough.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Threshold {
-    /// On the risk, in %.
+    /// The threshold on the risk, in %.
     pub risk_pct: Option<f64>,
-    /// On the elevated risk, in %.
+    /// The threshold on the elevated risk, in %.
     pub elevated_risk_pct: Option<f64>,
 }
 
 impl Threshold {
-    /// What reaches its limit, and the limit.
+    /// The measure that reaches its threshold, and the threshold.
     fn reached(&self, risk_pct: f64, elevated_pct: f64) -> Option<(Measure, f64)> {
         let by = |limit: Option<f64>, value: f64| limit.filter(|limit| value >= *limit);
         by(self.risk_pct, risk_pct)
@@ -125,7 +126,7 @@ impl Threshold {
     }
 }
 
-/// When a level is raised and until when it is held.
+/// The conditions under which a level is raised and held.
 ///
 /// # Example: raised at 67 % for a fifth of a second, held down to 25 %
 /// ```
@@ -138,15 +139,15 @@ impl Threshold {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LevelSettings {
-    /// The level is raised when this is reached ...
+    /// The threshold that raises the level.
     pub raise: Threshold,
-    /// ... for this long without a break, in seconds.
+    /// How long the threshold must be reached without a break, in seconds.
     pub after_s: f64,
-    /// Once raised, the level is held while this, which is lower, is reached.
+    /// The threshold that holds the level once it is raised; lower than `raise`.
     pub until: Threshold,
 }
 
-/// When levels are raised and lowered.
+/// The conditions under which levels are raised and cleared.
 ///
 /// # Example: to warn at a risk of 60 % that lasts for a second
 /// ```
@@ -161,52 +162,54 @@ pub struct LevelSettings {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct VerdictSettings {
-    /// When to warn.
+    /// The conditions for WARN.
     pub warn: LevelSettings,
-    /// When it fails.
+    /// The conditions for FAIL.
     pub fail: LevelSettings,
-    /// A level is lowered when nothing has held it for this long, in seconds: to the level that is held then.
+    /// A level is cleared when nothing has held it for this time, in seconds. The new level is the one that is held
+    /// then.
     pub clear_after_s: f64,
-    /// In the first seconds in the air only FAIL is raised; WARN does not count as reached.
+    /// In this time after take-off, in seconds, only FAIL is raised; WARN does not count as reached.
     pub quiet_after_take_off_s: f64,
-    /// A WARN that is raised in the last seconds before touch-down is taken back, unless FAIL is being reached at touch-down.
+    /// A WARN that is raised in this time before touch-down, in seconds, is withdrawn, unless FAIL is being reached at
+    /// touch-down.
     pub quiet_before_landing_s: f64,
     /// While their mean effective command is below this, the motors idle: before take-off and after landing the vehicle
-    /// is on the ground, also where the land detector lags. Motors that begin to idle within 2 s after a risk that reaches
-    /// WARN do not rest. Motors that idle for 3 s while the autopilot reports that the vehicle is in the air are a fall, with a
-    /// risk of 100 %.
+    /// then counts as on the ground, even if the land detector lags. Motors that begin to idle within 2 s after a risk
+    /// that reaches WARN do not count as a landing. Motors that idle for 3 s while the autopilot reports that the
+    /// vehicle is in the air count as a fall, with a risk of 100 %.
     pub idle_below: f64,
-    /// What is told beside the risk.
+    /// The limits of the findings that are not about the risk.
     pub notices: NoticeSettings,
 }
 
-/// A limit that has to be passed for a while.
+/// A limit that must be exceeded for some time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Limit {
     /// The limit, on the effective range.
     pub value: f64,
-    /// For how long, in seconds.
+    /// How long it must be exceeded, in seconds.
     pub after_s: f64,
 }
 
-/// What is told beside the risk; `None` is not.
+/// The limits of the findings that are not about the risk; `None` disables a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NoticeSettings {
-    /// Noise of the commands above this: vibration, or gains too high.
+    /// The noise of the commands above which it is reported: vibration, or gains that are too high.
     pub noise: Option<Limit>,
-    /// A mean command that leaves less than this below the upper limit.
+    /// The reserve of the mean command to the upper limit below which it is reported.
     pub reserve: Option<Limit>,
-    /// Motors that moved farther than this from their own part of the thrust earlier in the flight, or are farther than twice
-    /// this from the motor opposite; half of it where one motor alone moved up.
+    /// The deviation of motors from their own part of the thrust earlier in the flight above which it is reported;
+    /// twice this between opposite motors, half of it if one motor alone is higher.
     pub imbalance: Option<Limit>,
 }
 
 impl NoticeSettings {
-    /// Whether anything is told. All of it is about motors.
+    /// Whether any finding is enabled. All of them read the motors.
     pub(crate) fn any(&self) -> bool {
         *self != NoticeSettings::default()
     }
@@ -251,55 +254,57 @@ impl Default for VerdictSettings {
     }
 }
 
-/// A time of trouble: from when a level was first reached until it was last reached, with the worst level of it.
+/// A period at or above a level: from the time at which a level was first reached to the time at which it was last
+/// reached, with its worst level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Finding {
     /// The worst level that was reached.
     pub severity: Level,
-    /// Since when the level was reached, in seconds.
+    /// The time at which the level was first reached, in seconds.
     pub from_s: f64,
-    /// When it was first raised: `after_s` of that level later.
+    /// The time at which it was first raised, in seconds: `after_s` of that level later.
     pub raised_s: f64,
-    /// When it became FAIL; `None` where it did not.
+    /// The time at which it was raised to FAIL, in seconds; `None` if it was not.
     pub failed_s: Option<f64>,
-    /// When the level was last reached. It is held for a while longer.
+    /// The time at which the level was last reached, in seconds. It is held for some time after that.
     pub to_s: f64,
-    /// What reached the level first.
+    /// The measure that reached the level first.
     pub measure: Measure,
     /// The threshold of the level in %.
     pub threshold_pct: f64,
-    /// The worst value of the measure in that time, in %.
+    /// The worst value of the measure in that period, in %.
     pub value_pct: f64,
-    /// The motor that is the cause. Of a risk: where the cause is that motors are near a limit, the one with the least margin
-    /// while the level was being raised. Of an imbalance: the one out of balance.
+    /// The motor that is the cause. For a risk caused by motors near a limit, the motor with the least margin while the
+    /// level was being raised. For an imbalance, the motor that is out of balance.
     pub motor: Option<MotorFinding>,
-    /// What raised the risk to the level; `None` where no rule did, as for a notice or an interpolated risk.
+    /// The cause of the risk when it reached the level; `None` if no rule raised it, as for a notice or an interpolated
+    /// risk.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub cause: Option<Cause>,
 }
 
-/// The motor behind a finding.
+/// The motor that caused a finding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MotorFinding {
-    /// Its number, from 1: of a log or a vehicle that of the autopilot, else its place in the samples.
+    /// Its number, from 1: the number of the autopilot in logs and vehicles, otherwise its position in the samples.
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub number: usize,
-    /// The number of the other motor that it may be as well, where the commands do not show which of the two.
+    /// The number of a second motor that may be the cause instead, if the commands do not show which of the two.
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub or_number: Option<usize>,
-    /// The limit it was nearest to. Out of balance: below or above its part.
+    /// The nearest limit. For an imbalance, whether it is below or above its part.
     pub side: Side,
     /// Its mean margin.
     pub margin_mean: f64,
-    /// Its least margin.
+    /// Its smallest margin.
     pub margin_min: f64,
 }
 
-/// An index as a number that counts from 1.
+/// Serialises an index as a number from 1.
 #[cfg(feature = "serde")]
 pub(crate) fn from_one<S: serde::Serializer>(
     index: &usize,

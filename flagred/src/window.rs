@@ -1,30 +1,30 @@
 //! Statistics of a signal over the last seconds: time-weighted, without drift, in fixed memory.
 //!
-//! A sample stands for the time since the sample before it, so the statistics are integrals over the window
-//! `(t - length, t]` and do not depend on the sample rate; at an even rate they are the plain statistics of
-//! the samples in the window.
+//! A sample applies to the time since the previous sample, so the statistics are integrals over the window `(t -
+//! length, t]` and do not depend on the sample rate. At an even rate they are the plain statistics of the samples in
+//! the window.
 
 use crate::moments::Moments;
 
 mod slots;
 
-/// Over how many slots the samples of a window are spread. See [`Window`].
+/// The number of slots that the samples of a window are divided into. See [`Window`].
 const SLOTS: usize = 128;
 
-/// A sample that reaches into the window by less than this has left it: time stamps are in microseconds.
+/// A sample that is inside the window for less than this time, in seconds, has left it: timestamps are in microseconds.
 const TIME_RESOLUTION_S: f64 = 1e-6;
 
 /// The statistics of a signal over the last `length_s` seconds.
 ///
-/// Memory is fixed whatever the sample rate, and a sample costs the same whatever the length, on average (the
-/// worst single one about a hundred merges): the window is cut into 128 slots of time, the samples of a slot
-/// are merged, and the slots form a queue of two stacks with running totals. Up to 128 evenly spaced samples
-/// a window (64 Hz at 2 s) every sample has a slot of its own and the statistics are exact; where samples share a
-/// slot, only the oldest slot, of which a part has already left the window, is counted in proportion to the part
-/// inside, and the extremes may remember it for 1/128 of the length too long.
+/// The memory is fixed for any sample rate, and the average cost of a sample does not depend on the length (the worst
+/// single sample takes about a hundred merges). The window is divided into 128 slots of time, the samples of a slot are
+/// merged, and the slots form a queue of two stacks with running totals. With up to 128 evenly spaced samples in a
+/// window (64 Hz at 2 s), every sample has its own slot and the statistics are exact. If samples share slots, the
+/// oldest slot counts in proportion to the part of it that is still inside the window, and the extremes may include it
+/// for 1/128 of the length too long.
 ///
-/// It is memory to be lent to a [`board::Monitor`](crate::board::Monitor), and what a
-/// [`source::Observer`](crate::source::Observer) keeps.
+/// A [`board::Monitor`](crate::board::Monitor) takes it as memory from the caller; a
+/// [`source::Observer`](crate::source::Observer) owns it.
 ///
 /// # Example: a second of silence leaves a window of one second empty
 ///
@@ -50,26 +50,27 @@ pub struct Window {
     oldest: usize,
     len: usize,
     samples: u32,
-    /// How many of the oldest slots have their `and_later` filled in.
+    /// The number of the oldest slots whose `and_later` is set.
     front: usize,
-    /// The total of all slots behind those.
+    /// The total of all slots after those.
     back: Moments,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Slot {
-    /// Which slot of time, counted from t = 0.
+    /// The number of the slot, counted from t = 0.
     index: f64,
     start_s: f64,
     end_s: f64,
     samples: u32,
     moments: Moments,
-    /// The total of this slot and the later ones of the front.
+    /// The total of this slot and the later slots of the front.
     and_later: Moments,
 }
 
 impl Window {
-    /// Memory for a window, all zeros, so that a static one costs no place in firmware; a monitor makes it a window.
+    /// Memory for a window, all zeros, so that a static one takes no space in the firmware image; a monitor initialises
+    /// it.
     pub const IDLE: Window = {
         const FREE: Slot = Slot {
             index: 0.0,
@@ -91,7 +92,7 @@ impl Window {
         }
     };
 
-    /// An empty window over the last `length_s` seconds (over 0).
+    /// An empty window over the last `length_s` seconds (above 0).
     #[cfg(feature = "std")]
     pub(crate) fn new(length_s: f64) -> Window {
         Window {
@@ -102,7 +103,7 @@ impl Window {
         }
     }
 
-    /// Makes it an empty window over the last `length_s` seconds, where it is.
+    /// Resets it to an empty window over the last `length_s` seconds, in place.
     pub(crate) fn restart(&mut self, length_s: f64) {
         self.length_s = length_s;
         self.oldest = 0;
@@ -114,7 +115,7 @@ impl Window {
         self.length_s
     }
 
-    /// Forgets everything.
+    /// Discards all samples.
     pub(crate) fn clear(&mut self) {
         self.len = 0;
         self.samples = 0;
@@ -123,10 +124,10 @@ impl Window {
         self.now_s = f64::NEG_INFINITY;
     }
 
-    /// Adds a sample at `t_s` that stands for the `held_s` seconds before it; its moments weigh `held_s` in all. One
-    /// that stands for no time at all does not count.
+    /// Adds a sample at `t_s` that applies to the `held_s` seconds before; its moments have the total weight `held_s`.
+    /// A sample with `held_s` of 0 does not count.
     ///
-    /// `t_s` must not fall; a sample older than the newest one is taken as if it came with that one.
+    /// `t_s` must not decrease; a sample older than the newest one counts as if it had the time of that one.
     pub(crate) fn push(&mut self, t_s: f64, held_s: f64, moments: &Moments) {
         self.advance(t_s);
         if held_s <= 0.0 {
@@ -159,13 +160,13 @@ impl Window {
         self.keep_a_front();
     }
 
-    /// Lets time pass until `t_s`: what is older than the window leaves it.
+    /// Advances the time to `t_s`: samples older than the window leave it.
     pub(crate) fn advance(&mut self, t_s: f64) {
         self.now_s = self.now_s.max(t_s);
         self.forget_before(self.now_s - self.length_s);
     }
 
-    /// Drops what ended before a time.
+    /// Discards the slots that ended before `t_s`.
     pub(crate) fn forget_before(&mut self, t_s: f64) {
         while self.len > 0 && self.slots[self.oldest].end_s - t_s <= TIME_RESOLUTION_S {
             let left = self.slots[self.oldest].samples;
@@ -181,7 +182,7 @@ impl Window {
         }
     }
 
-    /// The statistics of what is in the window; the weight is the time it covers in seconds.
+    /// The statistics of the samples in the window; the weight is the time that they cover, in seconds.
     pub(crate) fn total(&self) -> Moments {
         if self.front == 0 {
             return self.back.scaled(self.inside_of_oldest());
@@ -211,7 +212,7 @@ impl Window {
         (inside_s / (slot.end_s - slot.start_s)).min(1.0)
     }
 
-    /// Moves all but the newest slot, which still takes samples, into the front when that has run out.
+    /// Moves all slots except the newest, which still takes samples, into the front if the front is empty.
     fn keep_a_front(&mut self) {
         if self.front > 0 || self.len < 2 {
             return;
@@ -231,7 +232,7 @@ impl Window {
         self.slots.get_mut(at)
     }
 
-    /// Where the i-th oldest slot stands in the ring.
+    /// The index in the ring of the i-th oldest slot.
     fn place(&self, i: usize) -> usize {
         (self.oldest + i) % self.slots.len()
     }
@@ -243,7 +244,7 @@ mod tests {
     use alloc::vec::Vec;
     use proptest::prelude::*;
 
-    /// The definition itself: the integral over `(t - length, t]` of a signal held between samples.
+    /// The definition, computed directly: the integral over `(t - length, t]` of a signal held between samples.
     fn integral(samples: &[(f64, f64)], length_s: f64) -> Option<(f64, f64)> {
         let now = samples.last()?.0;
         let held = samples.windows(2).map(|pair| {

@@ -1,4 +1,4 @@
-//! What is told of a rule set, as documents for programs.
+//! Results about a rule set, as JSON documents for programs.
 
 use flagred::check::Alone;
 use fuzzy::{check, diagnostic::Diagnostic, engine, model::Step};
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::Examined;
 
-/// The versions of the layouts; they grow when a name changes its meaning or goes.
+/// The versions of the layouts; they increase when a name changes its meaning or is removed.
 const CHECK: &str = "flagred.check/1";
 const EXPLAIN: &str = "flagred.explain/1";
 
@@ -16,32 +16,32 @@ const EXPLAIN: &str = "flagred.explain/1";
 pub struct Checked<'a> {
     #[cfg_attr(feature = "schema", schemars(extend("const" = CHECK)))]
     schema: &'static str,
-    /// The file, as given.
+    /// The path of the file, as given.
     file: &'a str,
-    /// The name of the rule set; null where it has errors, and of a profile.
+    /// The name of the rule set; null if it has errors, and for a profile.
     model: Option<&'a str>,
-    /// The name of the profile; absent where it cannot be read, and of a rule set.
+    /// The name of the profile; absent if it cannot be read, and for a rule set.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "str"))]
     profile: Option<&'a str>,
-    /// The commands that made the rule set; absent where it says none.
+    /// The commands that created the rule set; absent if it has no provenance.
     #[serde(skip_serializing_if = "<[Step]>::is_empty")]
     provenance: &'a [Step],
-    /// What was found in the text, then by the analysis.
+    /// The findings of the text, followed by those of the analysis.
     findings: &'a [Diagnostic],
     /// The findings that the author accepts; absent if the author accepts none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     accepted: Vec<check::Accepted>,
-    /// Regions, conflicts, reach and monotonicity in numbers; null where the rule set has errors, and of a profile.
+    /// Regions, conflicts, reach and monotonicity in numbers; null if the rule set has errors, and for a profile.
     report: Option<&'a check::Report>,
-    /// What each input of a profile reaches alone; absent of a rule set.
+    /// The highest risk that each input of a profile reaches alone; absent for a rule set.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "[Alone]"))]
     alone: Option<&'a [Alone]>,
 }
 
 impl<'a> Checked<'a> {
-    /// Of a rule set.
+    /// The findings of a rule set.
     pub fn rules(file: &'a str, examined: &'a Examined) -> Checked<'a> {
         let model = examined
             .analysed
@@ -57,7 +57,7 @@ impl<'a> Checked<'a> {
         }
     }
 
-    /// Of a profile of this name.
+    /// The findings of a profile with this name.
     pub fn profile(
         file: &'a str,
         name: Option<&'a str>,
@@ -78,7 +78,7 @@ impl<'a> Checked<'a> {
     }
 }
 
-/// How the outputs come about at a point: `flagred explain --json`.
+/// An explanation of the outputs at a point: `flagred explain --json`.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "Explanation"))]
@@ -98,7 +98,7 @@ pub struct Explained<'a> {
 }
 
 impl<'a> Explained<'a> {
-    /// Of the rule set of this name.
+    /// The explanation for the rule set with this name.
     pub fn new(model: &'a str, explanation: &'a engine::Explanation) -> Explained<'a> {
         Explained {
             schema: EXPLAIN,
@@ -109,7 +109,7 @@ impl<'a> Explained<'a> {
         }
     }
 
-    /// With the rules that do not fire and the nearest changes.
+    /// Adds the rules that do not fire and the nearest changes.
     #[must_use]
     pub fn with_reasons(
         mut self,

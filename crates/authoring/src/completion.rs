@@ -1,31 +1,31 @@
-//! What can be written at a place: names, hedges and connectives in a rule, keys and words elsewhere.
+//! Completions at a position in a text: names, hedges and connectives in a rule, keys and values elsewhere.
 
 use fuzzy::model::Variable;
 use serde_json::Value;
 
 use crate::document::Document;
 
-/// What can be written at a place.
+/// A completion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Completion {
-    /// What is shown.
+    /// The label to show.
     pub label: String,
-    /// What is written.
+    /// The text to insert.
     pub text: String,
-    /// What it is.
+    /// The kind of completion.
     pub kind: Kind,
-    /// More about it: a range, a membership function, a unit.
+    /// Details: a range, a membership function, a unit.
     pub detail: Option<String>,
 }
 
-/// What a completion is.
+/// The kind of a completion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A word of the rule language.
+    /// A keyword of the rule language.
     Keyword,
     /// An input or output.
     Variable,
-    /// A term, or one of the words that a key takes.
+    /// A term, or a value of a key.
     Choice,
     /// A key.
     Key,
@@ -33,7 +33,7 @@ pub enum Kind {
     Signal,
 }
 
-/// The completions at an offset in bytes.
+/// Returns the completions at an offset in bytes.
 pub fn at(document: &Document, offset: usize) -> Vec<Completion> {
     let before = document.text().get(..offset).unwrap_or("");
     if !document.is_profile()
@@ -70,7 +70,7 @@ fn rule(before: &str) -> Option<&str> {
         if text.starts_with("- ") || text == "-" {
             break;
         }
-        // A rule goes on in deeper lines; a key ends it.
+        // A rule continues on more deeply indented lines; a key ends it.
         if start == 0 || text.is_empty() || text.ends_with(':') {
             return None;
         }
@@ -81,11 +81,11 @@ fn rule(before: &str) -> Option<&str> {
     item.get(at..)
 }
 
-/// What the rule language takes next.
+/// The words that may follow in a rule.
 fn in_rule(document: &Document, rule: &str) -> Vec<Completion> {
     let spaced = rule.replace(['(', ')'], " ");
     let mut words: Vec<&str> = spaced.split_whitespace().collect();
-    // The word at the cursor is being written.
+    // The word at the cursor is still being typed.
     if !rule.ends_with([' ', '(', ')', '\n']) {
         words.pop();
     }
@@ -154,7 +154,7 @@ fn in_rule(document: &Document, rule: &str) -> Vec<Completion> {
     }
 }
 
-/// The keys that a mapping takes at the cursor, or the words that a key takes.
+/// The keys that are allowed in the mapping at the cursor, or the values of a key.
 fn in_schema(document: &Document, before: &str, root: &Value) -> Vec<Completion> {
     let (path, key) = path(before);
     let mut parts = vec![root];
@@ -206,7 +206,7 @@ fn signals() -> Vec<Completion> {
         .collect()
 }
 
-/// A part of a schema and its alternatives, with what its references name.
+/// A part of a schema and its alternatives, with references resolved.
 fn resolved<'s>(root: &'s Value, part: &'s Value) -> Vec<&'s Value> {
     let mut found = vec![part];
     if let Some(Value::String(name)) = part.get("$ref")
@@ -225,7 +225,7 @@ fn resolved<'s>(root: &'s Value, part: &'s Value) -> Vec<&'s Value> {
     found
 }
 
-/// What a key of a mapping holds; of a list, its items.
+/// The schema of a key in a mapping; for a list, the schema of its items.
 fn step<'s>(root: &'s Value, part: &'s Value, name: &str) -> Vec<&'s Value> {
     let mut found = Vec::new();
     for part in resolved(root, part) {
@@ -242,7 +242,7 @@ fn step<'s>(root: &'s Value, part: &'s Value, name: &str) -> Vec<&'s Value> {
     found
 }
 
-/// The keys above the cursor, and the key in whose value it stands.
+/// The keys above the cursor, and the key whose value contains the cursor.
 fn path(before: &str) -> (Vec<String>, Option<String>) {
     let mut lines = before.split('\n').rev();
     let line = lines.next().unwrap_or("");

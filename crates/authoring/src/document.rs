@@ -1,4 +1,4 @@
-//! An open text: what it means, and what is wrong with it.
+//! An open text with its model and its findings.
 
 use std::cell::OnceCell;
 
@@ -17,16 +17,16 @@ use fuzzy::{
 
 use crate::provenance;
 
-/// A rule set or a profile that an editor shows.
+/// A rule set or a profile that is open in an editor.
 #[derive(Debug)]
 pub struct Document {
     source: Source,
-    /// The rule set as far as it can be read; of a profile, the one that it names.
+    /// The rule set as far as it can be read; for a profile, the rule set that it names.
     partial: Option<Partial>,
     profile: Option<OpenProfile>,
-    /// A profile compiled with its rule set, and what is wrong with the two.
+    /// A profile compiled with its rule set, and the findings about both.
     fitted: OnceCell<(Findings, Option<Estimator>)>,
-    /// Found when somebody asks: it is most of the work.
+    /// Computed on demand, because this is most of the work.
     findings: OnceCell<Findings>,
 }
 
@@ -38,7 +38,7 @@ struct OpenProfile {
 }
 
 impl Document {
-    /// Reads a text. `rules_of` gives the text of the rule set that a profile names; none where there is no such.
+    /// Reads a text. `rules_of` returns the text of the rule set that a profile names, or `None` if there is none.
     pub fn new(
         text: impl Into<String>,
         rules_of: impl FnOnce(&Profile) -> Option<String>,
@@ -67,12 +67,12 @@ impl Document {
         self.source.text()
     }
 
-    /// The text, and what is made of it.
+    /// The source of the text.
     pub fn source(&self) -> &Source {
         &self.source
     }
 
-    /// What `flagred check` finds.
+    /// The findings of `flagred check`.
     pub fn findings(&self) -> &Findings {
         self.findings.get_or_init(|| match self.fitted() {
             Some((findings, estimator)) => {
@@ -80,7 +80,7 @@ impl Document {
                 let outvoted = outvoted.into_iter().flat_map(|findings| findings.0);
                 Findings(findings.0.iter().cloned().chain(outvoted).collect())
             }
-            // Only claims are refused, and none are made.
+            // Only claims can be rejected, and there are none.
             None => examine(&self.source, &check::Options::default()).map_or_else(
                 |finding| Findings::locate(vec![*finding], self.text()),
                 |examined| examined.findings,
@@ -88,7 +88,7 @@ impl Document {
         })
     }
 
-    /// A profile compiled with its rule set; none of a rule set and of a profile with errors.
+    /// A profile compiled with its rule set; `None` for a rule set and for a profile with errors.
     pub fn estimator(&self) -> Option<&Estimator> {
         self.fitted()?.1.as_ref()
     }
@@ -98,7 +98,7 @@ impl Document {
         Some(self.fitted.get_or_init(|| profile.fit(&self.source)))
     }
 
-    /// What each input of a profile reaches alone; nothing of a rule set and of a profile with errors.
+    /// The highest risk that each input of a profile reaches alone; empty for a rule set and for a profile with errors.
     pub fn alone(&self) -> Vec<Alone> {
         self.estimator().map(alone).unwrap_or_default()
     }
@@ -108,17 +108,17 @@ impl Document {
         self.profile.is_some()
     }
 
-    /// The profile, where it can be read.
+    /// The profile, if it can be read.
     pub fn profile(&self) -> Option<&Profile> {
         self.profile.as_ref()?.read.as_ref().ok()
     }
 
-    /// The rule set as far as it can be read; of a profile, the one that it names.
+    /// The rule set as far as it can be read; for a profile, the rule set that it names.
     pub fn model(&self) -> Option<&Model> {
         self.partial.as_ref().map(|rules| &rules.model)
     }
 
-    /// The rule set as far as it can be read, with its places; none of a profile.
+    /// The rule set as far as it can be read, with its spans; `None` for a profile.
     pub(crate) fn rules(&self) -> Option<&Partial> {
         self.partial.as_ref().filter(|_| self.profile.is_none())
     }
@@ -138,7 +138,7 @@ pub(crate) fn partial(source: &Source) -> Option<Partial> {
     format::read_partly(source.tree().ok()?)
 }
 
-/// Whether a text is meant to be a profile: whether it has the key `flagred`, also where it is no YAML yet.
+/// Whether a text is meant to be a profile: whether it has the key `flagred`, even if it is not valid YAML yet.
 pub fn is_profile(source: &Source) -> bool {
     let Ok(Value::Mapping(pairs)) = source.tree().map(|tree| &tree.value) else {
         return source
@@ -150,12 +150,12 @@ pub fn is_profile(source: &Source) -> bool {
     keys.any(|key| matches!(key, Value::Scalar(key) if key.text == "flagred"))
 }
 
-/// What there is to say of a rule set.
+/// The result of examining a rule set.
 #[derive(Debug)]
 pub struct Examined<'s> {
     /// All findings.
     pub findings: Findings,
-    /// The rule set and its analysis, where it can be analysed.
+    /// The rule set and its analysis, if it can be analysed.
     pub analysed: Option<(&'s format::Document, check::Report)>,
 }
 
@@ -172,7 +172,7 @@ impl Examined<'_> {
 /// Examines a rule set.
 ///
 /// # Errors
-/// A claim of the options names what the rule set does not have.
+/// If a claim of the options names something that the rule set does not have.
 pub fn examine<'s>(
     source: &'s Source,
     options: &check::Options,
@@ -193,7 +193,7 @@ pub fn examine<'s>(
     })
 }
 
-/// The finding of a profile whose rule set cannot be used.
+/// The finding for a profile whose rule set cannot be used.
 fn unusable_rules(text: &str, rules: &str) -> Findings {
     let place = text.find("rules:").unwrap_or(0);
     let message = format!("the rule set `{rules}` cannot be used");

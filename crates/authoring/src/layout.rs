@@ -1,4 +1,4 @@
-//! One layout for rule sets and profiles. Comments stay.
+//! Formats rule sets and profiles in a common layout. Comments are preserved.
 
 use std::fmt;
 
@@ -9,17 +9,17 @@ use fuzzy::{
 };
 use pretty_yaml::config::FormatOptions;
 
-/// The width of a line.
+/// The maximum width of a line.
 const WIDTH: usize = 120;
 
-/// Why a text has no common layout.
+/// The reason why a text cannot be formatted.
 #[derive(Debug)]
 pub enum Unformatted {
     /// The text is not YAML.
     NotYaml(Findings),
-    /// It is neither a rule set nor a profile: another program may want its layout.
+    /// It is neither a rule set nor a profile, so it may belong to another program.
     Foreign,
-    /// Another layout would change its meaning, or the formatter does not take it.
+    /// Formatting would change its meaning, or the formatter does not support it.
     Other(String),
 }
 
@@ -33,11 +33,11 @@ impl fmt::Display for Unformatted {
     }
 }
 
-/// A text in the common layout: indentation by two spaces, one space where there were several, rules with keywords in
-/// capitals. It means the same, comments included.
+/// Formats a text: indentation by two spaces, single spaces between words, rules with keywords in capitals. Meaning and
+/// comments are preserved.
 ///
 /// # Errors
-/// Why it has no common layout.
+/// The reason why it cannot be formatted.
 pub fn formatted(text: &str) -> Result<String, Unformatted> {
     let before = fuzzy::yaml::read(text).map_err(Unformatted::NotYaml)?;
     if !is_ours(&before) {
@@ -67,7 +67,7 @@ pub fn formatted(text: &str) -> Result<String, Unformatted> {
     }
 }
 
-/// Whether a tree has the key that a rule set or a profile begins with, with a number, or two keys of a rule set that lacks it.
+/// Whether a tree has the first key of a rule set or a profile, with a number, or two keys of a rule set that lacks it.
 fn is_ours(tree: &Node) -> bool {
     let Value::Mapping(entries) = &tree.value else {
         return false;
@@ -88,12 +88,12 @@ fn is_ours(tree: &Node) -> bool {
     is_numbered || has("inputs") && has("outputs")
 }
 
-/// A tree without its places in the text.
+/// A tree without its positions in the text.
 fn means(tree: &Node) -> serde_json::Value {
     serde_json::to_value(tree).unwrap_or_default()
 }
 
-/// The text with each rule in one line as the rule language prints it, where nothing else is on that line.
+/// The text with each rule on one line in the syntax of the rule language, if nothing else is on that line.
 fn with_capitals(text: &str, document: &Document) -> String {
     let mut changed = text.to_owned();
     let rules = document.model.rules.iter().zip(&document.spans.rules);

@@ -1,8 +1,8 @@
-//! What an editor of rule sets and profiles asks for, whatever program shows the text: its findings, what can be written at a
-//! place, what a name means, new names, one layout, and numbers that change in place.
+//! Functions for editors of rule sets and profiles: findings, completion, descriptions of names, renaming, formatting,
+//! and changing numbers in place.
 //!
-//! It knows no protocol, opens no file and prints nothing: places are offsets in bytes, changes are [`Edit`]s. Where a profile
-//! names the file of a rule set, the caller gives its text.
+//! It implements no protocol, opens no file and prints nothing. Positions are offsets in bytes, changes are [`Edit`]s.
+//! If a profile names the file of a rule set, the caller provides its text.
 //!
 //! # Example: an open text
 //! ```
@@ -46,13 +46,13 @@ use std::ops::Range;
 /// A change of a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Edit {
-    /// The bytes that go.
+    /// The bytes to replace.
     pub span: Range<usize>,
-    /// What comes in their place.
+    /// The replacement.
     pub text: String,
 }
 
-/// A text after edits that do not overlap.
+/// Applies edits that do not overlap to a text.
 pub fn edited(text: &str, edits: &[Edit]) -> String {
     let mut edits: Vec<&Edit> = edits.iter().collect();
     edits.sort_by_key(|edit| (edit.span.start, edit.span.end));
@@ -66,7 +66,7 @@ pub fn edited(text: &str, edits: &[Edit]) -> String {
     changed + text.get(at..).unwrap_or("")
 }
 
-/// The example of the README, run.
+/// Runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

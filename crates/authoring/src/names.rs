@@ -1,4 +1,4 @@
-//! The names of a rule set: where they are defined and used, what they mean, and new ones for them.
+//! The names of a rule set: where they are defined and used, what they mean, and renaming.
 
 use std::ops::Range;
 
@@ -15,14 +15,14 @@ use crate::{
     edited,
 };
 
-/// What a name in the text means.
+/// The meaning of a name in the text.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Meaning {
     Variable(usize),
     Term(usize, usize),
 }
 
-/// A variable and where it is defined.
+/// A variable and its definition.
 struct Defined<'r> {
     variable: &'r Variable,
     name: Range<usize>,
@@ -46,7 +46,7 @@ fn variables(rules: &Partial) -> Vec<Defined<'_>> {
         .collect()
 }
 
-/// Every name in the text, and what it means.
+/// Every name in the text, with its meaning.
 fn all(rules: &Partial) -> Vec<(Range<usize>, Meaning)> {
     let variables = variables(rules);
     let mut found = Vec::new();
@@ -87,7 +87,7 @@ fn all(rules: &Partial) -> Vec<(Range<usize>, Meaning)> {
                 text: beaten.term.clone(),
                 span: span.clone(),
             };
-            // A learned rule concludes one output.
+            // A learned rule has one consequent.
             if let Some(consequent) = rule.rule.consequents.first() {
                 used(&consequent.output, Some(&term));
             }
@@ -105,16 +105,16 @@ fn at(document: &Document, offset: usize) -> Option<(&Partial, Range<usize>, Mea
     Some((rules, span, meaning))
 }
 
-/// What a name means.
+/// The description of a name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Description {
     /// The bytes of the name.
     pub span: Range<usize>,
-    /// What it means, in Markdown.
+    /// The description, in Markdown.
     pub markdown: String,
 }
 
-/// What the name at an offset in bytes means.
+/// Returns the description of the name at an offset in bytes.
 pub fn describe(document: &Document, offset: usize) -> Option<Description> {
     let (rules, span, meaning) = at(document, offset)?;
     let variables = variables(rules);
@@ -153,7 +153,7 @@ fn term(term: &Term, of: &Variable) -> String {
     format!("**{}** of `{}` {range}\n\n`{shape}`", term.name, of.name)
 }
 
-/// Where the name at a place is defined.
+/// Returns the definition of the name at an offset in bytes.
 pub fn definition(document: &Document, offset: usize) -> Option<Range<usize>> {
     let (rules, _, meaning) = at(document, offset)?;
     let variables = variables(rules);
@@ -163,10 +163,10 @@ pub fn definition(document: &Document, offset: usize) -> Option<Range<usize>> {
     }
 }
 
-/// All places of the name at a place, for a new one.
+/// Returns all positions of the name at an offset, to replace it with `new`.
 ///
 /// # Errors
-/// Why it cannot be renamed.
+/// The reason why it cannot be renamed.
 pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range<usize>>, String> {
     let (rules, _, meaning) =
         at(document, offset).ok_or("there is no variable and no term here")?;

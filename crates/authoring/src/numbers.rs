@@ -1,4 +1,5 @@
-//! Numbers that change in a text where they stand: of membership functions, and the weights of rules. Comments and layout stay.
+//! Changes numbers in place in a text: of membership functions, and the weights of rules. Comments and layout are
+//! preserved.
 
 use std::ops::Range;
 
@@ -11,8 +12,8 @@ use fuzzy::{
 
 use crate::Edit;
 
-/// The edits that give the rule set in a text the numbers of another one. `None` where a number that differs is not in the text.
-/// Nothing else is compared: what the edited text means must be verified.
+/// The edits that change the numbers of the rule set in a text to those of another one. `None` if a number that differs
+/// is not in the text. Nothing else is compared, so the meaning of the edited text must be verified.
 pub(crate) fn of_model(text: &str, document: &Document, wanted: &Model) -> Option<Vec<Edit>> {
     let mut edits = Vec::new();
     let spans = document.spans.inputs.iter().chain(&document.spans.outputs);
@@ -42,7 +43,8 @@ fn variables(model: &Model) -> impl Iterator<Item = &Variable> {
     model.inputs.iter().chain(outputs)
 }
 
-/// The edits that give a variable in a text the numbers of other terms. `None` where a number that differs is not in the text.
+/// The edits that change the numbers of a variable in a text to those of other terms. `None` if a number that differs
+/// is not in the text.
 pub(crate) fn of_terms(
     text: &str,
     variable: &Variable,
@@ -129,7 +131,7 @@ fn changed(text: &str, spans: &TermSpans, number: usize, value: f64) -> Option<E
     }
 }
 
-/// The constant of a linear function that has none in the text, before the first coefficient.
+/// The edit that adds a constant, before the first coefficient, to a linear function that has none in the text.
 fn constant(text: &str, spans: &TermSpans, value: f64) -> Option<Edit> {
     let start = spans.names.first()?.span.start;
     let line = text.get(..start)?.rsplit('\n').next()?;
@@ -144,7 +146,7 @@ fn constant(text: &str, spans: &TermSpans, value: f64) -> Option<Edit> {
     })
 }
 
-/// An even partition `[low, high]` with its peaks: `{low: 0, high: 1}`.
+/// Converts an even partition `[low, high]` to one with peaks: `{low: 0, high: 1}`.
 fn spelt_out(text: &str, spans: &VariableSpans, peaks: &[f64]) -> Option<Vec<Edit>> {
     let list = spans.partition.clone();
     let is_flow = text.get(list.clone())?.starts_with('[');
@@ -172,7 +174,7 @@ fn spelt_out(text: &str, spans: &VariableSpans, peaks: &[f64]) -> Option<Vec<Edi
     Some(edits)
 }
 
-/// A number as rule sets write it.
+/// A number in the syntax of rule sets.
 fn written(number: f64) -> String {
     match Node::number(number).value {
         Value::Scalar(scalar) => scalar.text,

@@ -1,4 +1,4 @@
-//! Where a rule set comes from: the step that a command writes into it, and whether it was edited since.
+//! The provenance of a rule set: the step that a command adds to it, and whether it was edited since.
 
 use fuzzy::{
     Model,
@@ -11,11 +11,12 @@ use sha2::{Digest as _, Sha256};
 
 use crate::{Edit, edited, numbers, rewrite::head};
 
-/// The text of a rule set that a command made, with the step that made it. Where only numbers differ from the text that the
-/// command began with, they change in that text; any other rule set is written anew, below the comments at the head of that text.
+/// The text of a rule set that a command created, with the step that describes how. If only numbers differ from the
+/// original text, they are changed in that text. Otherwise the rule set is written anew, below the comments at the top
+/// of that text.
 ///
 /// # Errors
-/// The text would not be read as this rule set, because of a number that is not finite, for example.
+/// If the text would not be read back as this rule set, for example because of a number that is not finite.
 pub fn rule_set(begun_with: &str, mut model: Model, step: Step) -> Result<String, Findings> {
     let step = Step {
         result: Some(fingerprint(&model)),
@@ -36,7 +37,7 @@ pub fn rule_set(begun_with: &str, mut model: Model, step: Step) -> Result<String
     }
 }
 
-/// A text with the numbers and the last step of a rule set, where nothing else differs.
+/// A text with the numbers and the last step of a rule set; `None` if anything else differs.
 fn in_place(text: &str, model: &Model) -> Option<String> {
     let document = fuzzy::yaml::parse(text).ok()?;
     let mut edits = numbers::of_model(text, &document, model)?;
@@ -76,7 +77,7 @@ fn last_step(text: &str, document: &Document, model: &Model) -> Option<Edit> {
     })
 }
 
-/// Where the block list behind a key of the top level ends, and the space before its items.
+/// The end of the block list of a top-level key, and the indentation of its items.
 fn end_of_list(text: &str, key_end: usize) -> Option<(usize, &str)> {
     let mut at = key_end;
     let mut lines = text.get(key_end..)?.split_inclusive('\n');
@@ -98,7 +99,7 @@ fn end_of_list(text: &str, key_end: usize) -> Option<(usize, &str)> {
     found
 }
 
-/// A step in a line: `flagred tune: 61 rows of rows.csv, RMS error 10.1 -> 9.2`.
+/// A step on one line: `flagred tune: 61 rows of rows.csv, RMS error 10.1 -> 9.2`.
 pub fn words(step: &Step) -> String {
     let mut parts = Vec::new();
     let files: Vec<&str> = step.data.iter().map(|data| data.file.as_str()).collect();
@@ -121,7 +122,7 @@ pub fn words(step: &Step) -> String {
     }
 }
 
-/// Findings, and that the rule set was edited after a command made it, if it was.
+/// Adds a finding if the rule set was edited after a command created it.
 pub fn with_edited(mut findings: Findings, document: &Document, text: &str) -> Findings {
     let edited = edited_since(document).into_iter().collect();
     findings.0.extend(Findings::locate(edited, text).0);
@@ -140,7 +141,7 @@ fn edited_since(document: &Document) -> Option<Diagnostic> {
     (!is_same).then(|| finding.help(help))
 }
 
-/// The first digits of a hash of what a rule set means: its name, notes and the origin of rules do not count.
+/// The first digits of a hash of the meaning of a rule set, excluding its name, notes and the origin of rules.
 pub fn fingerprint(model: &Model) -> String {
     const DIGITS: usize = 16;
     let mut bare = model.clone();

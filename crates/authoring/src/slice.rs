@@ -1,4 +1,4 @@
-//! The part of a decision map that a picture shows: one or two inputs are the axes, the others are held.
+//! The part of a decision map that a picture shows: one or two inputs are the axes, the others are held at a value.
 
 use flagred::gap::Filling;
 use fuzzy::{
@@ -8,42 +8,43 @@ use fuzzy::{
     model::Variable,
 };
 
-/// The number of points along an axis, where nothing else is asked for.
+/// The default number of points along an axis.
 pub const POINTS: usize = 51;
 
-/// A rule set, compiled, with the output to show and what fills its gaps.
+/// A compiled rule set, with the output to show and the filling of its gaps.
 #[derive(Debug)]
 pub struct Mapped<'a> {
     /// The rule set.
     pub model: &'a Model,
-    /// It, compiled.
+    /// The compiled rule set.
     pub engine: &'a Engine,
     /// The index of the output.
     pub output: usize,
-    /// What fills gaps, and the name of the method.
+    /// The filling of gaps, and the name of its method.
     pub filling: Option<(&'a Filling, &'static str)>,
 }
 
-/// Combinations of held values that are tried.
+/// The maximum number of combinations of held values that are tried.
 const MOST_TRIED: usize = 1000;
 
-/// An input is held off its middle only where the output then varies more by this share of its range.
+/// An input is held at another value than its middle only if the variation of the output then increases by this share
+/// of its range.
 const NOTICEABLE: f64 = 0.01;
 
-/// The output at a point.
+/// Evaluates the output at a point.
 ///
 /// # Errors
-/// The point is no point of the rule set's inputs.
+/// If the point does not match the inputs of the rule set.
 pub fn at(mapped: &Mapped<'_>, point: &[f64]) -> Result<Cell, EvaluateError> {
     let mut outcomes = vec![Outcome::default(); mapped.engine.output_names().len()];
     let mut scratch = mapped.engine.scratch();
     evaluate(mapped, &mut scratch, point, &mut outcomes)
 }
 
-/// One output over the axes; `point` holds the other inputs.
+/// Evaluates one output over the axes; `point` contains the values of the other inputs.
 ///
 /// # Errors
-/// The point is no point of the rule set's inputs.
+/// If the point does not match the inputs of the rule set.
 pub fn cut(
     mapped: &Mapped<'_>,
     (x, x_axis): (usize, Axis),
@@ -116,8 +117,8 @@ fn cell(mapped: &Mapped<'_>, outcome: &Outcome, point: &[f64]) -> Cell {
     }
 }
 
-/// The part of an input's range that is shown: the whole range, or twice the part where the terms change if that is less
-/// than a quarter of the range.
+/// The part of an input's range that is shown: the whole range, or twice the part in which the terms change if that is
+/// less than a quarter of the range.
 pub fn shown(variable: &Variable) -> Scale {
     let (low, high) = (variable.low, variable.high);
     let (first, last) = fuzzy::map::changing(variable);
@@ -136,8 +137,8 @@ pub fn shown(variable: &Variable) -> Scale {
     Scale::new(low, high)
 }
 
-/// A value for each input: the fixed one, the middle of its range, or the peak of a term where the output varies more
-/// over the two axes.
+/// Chooses a value for each input: the fixed one, the middle of its range, or the peak of a term if the output then
+/// varies more over the two axes.
 pub fn held(
     mapped: &Mapped<'_>,
     fixed: &[Option<f64>],
@@ -197,7 +198,7 @@ pub fn combinations(lists: &[Vec<f64>]) -> Vec<Vec<f64>> {
     })
 }
 
-/// From the lowest to the highest value of the output over the peaks of the axes, as a share of its range.
+/// The difference between the lowest and highest output over the peaks of the axes, as a share of its range.
 fn variation(mapped: &Mapped<'_>, point: &[f64], axes: &[(usize, Vec<f64>)]) -> f64 {
     let lists: Vec<Vec<f64>> = axes.iter().map(|(_, peaks)| peaks.clone()).collect();
     let mut scratch = mapped.engine.scratch();

@@ -1,28 +1,28 @@
-//! Commented texts to start from.
+//! Commented templates for rule sets and profiles.
 
 use flagred::shipped::Shipped;
 
 const RULES: &str = include_str!("starter.yaml");
-/// What stands above a profile: how it is used.
+/// The comment at the top of a profile, which describes its use.
 const PROFILE: &str = include_str!("starter-profile.yaml");
 
-/// A rule set of this name, which is one that [`is_name`] takes.
+/// A rule set with this name, which must satisfy [`is_name`].
 pub fn rules(name: &str) -> String {
     RULES.replace("my-rules", name)
 }
 
-/// A profile of this name, which is one that [`is_name`] takes, with the values and comments of a shipped profile.
+/// A profile with this name, which must satisfy [`is_name`], with the values and comments of a shipped profile.
 pub fn profile(name: &str, from: &Shipped) -> String {
     format!("{}\n{}", PROFILE.replace("NAME", name), renamed(name, from))
 }
 
-/// The text of a shipped rule set or profile, comments included, with another name, which is one that [`is_name`] takes.
+/// The text of a shipped rule set or profile, including comments, with another name, which must satisfy [`is_name`].
 pub fn renamed(name: &str, from: &Shipped) -> String {
     let own = format!("\nname: {}\n", from.name);
     from.text.replacen(&own, &format!("\nname: {name}\n"), 1)
 }
 
-/// Whether a name is a file name everywhere and needs no quotes in YAML.
+/// Whether a name is a valid file name on every system and needs no quotes in YAML.
 pub fn is_name(text: &str) -> bool {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
     text.starts_with(|c: char| c.is_ascii_alphabetic()) && text.chars().all(plain)

@@ -1,6 +1,7 @@
-//! Alarms where nothing happens, and before upsets.
+//! Alarms in calm times, and before upsets.
 //!
-//! An alarm is a WARN or a FAIL, from when it is raised until its level is last reached; one that turns into the other is one.
+//! An alarm is a WARN or a FAIL, from the time it is raised until its level is last reached. A WARN that is raised to
+//! FAIL counts as one alarm.
 
 use std::collections::BTreeMap;
 
@@ -15,12 +16,12 @@ use crate::{
     upset::UpsetAlarm,
 };
 
-/// The alarms of a profile over all flights but the kind apart, and over each kind.
+/// The alarms of a profile over all flights except the kind [`APART`], and over each kind.
 pub(crate) struct Alarms {
-    /// In calm stretches, and in flights whose error never passes [`ORDINARY_DEG`].
+    /// Alarms in calm stretches, and in flights whose error never exceeds [`ORDINARY_DEG`].
     pub(crate) calm: Needless,
     pub(crate) ordinary: Needless,
-    /// Found by any alarm, and by FAIL alone.
+    /// Upsets found by any alarm, and by FAIL only.
     pub(crate) upsets: Upsets,
     pub(crate) upsets_by_fail: Upsets,
     /// Calm stretches and upsets of each kind.
@@ -28,7 +29,7 @@ pub(crate) struct Alarms {
 }
 
 impl Alarms {
-    /// Of a profile.
+    /// Computes the alarms of a profile.
     pub(crate) fn of(profile: usize, records: &[Record]) -> Alarms {
         let main = || records.iter().filter(|record| record.kind != APART);
         let of_kind = |kind: &str| {
@@ -49,7 +50,7 @@ impl Alarms {
     }
 }
 
-/// The kinds of flights, in order of their names.
+/// The kinds of flights, sorted by name.
 pub(crate) fn kinds(records: &[Record]) -> Vec<&str> {
     let mut kinds: Vec<&str> = records.iter().map(|r| r.kind.as_str()).collect();
     kinds.sort_unstable();
@@ -57,10 +58,10 @@ pub(crate) fn kinds(records: &[Record]) -> Vec<&str> {
     kinds
 }
 
-/// A flight without an upset is ordinary if its error over a second never passes this ...
+/// A flight without an upset is ordinary if its error over a second never exceeds this, in degrees, ...
 const ORDINARY_DEG: f64 = 5.0;
 
-/// ... and it tilts by less than this.
+/// ... and its tilt is less than this, in degrees.
 const STEEP_DEG: f64 = 45.0;
 
 /// The time in the air of an ordinary flight.
@@ -84,22 +85,22 @@ pub(crate) struct Figure {
 
 /// The alarms of a profile in times that need none.
 pub(crate) struct Needless {
-    /// The flights with such times and a verdict, and those without a verdict.
+    /// The number of flights with such times and a verdict, and of those without a verdict.
     pub(crate) flights: usize,
     pub(crate) not_assessed: usize,
     pub(crate) hours: f64,
-    /// GOOD, WARN, FAIL.
+    /// The number of flights with GOOD, WARN, FAIL.
     pub(crate) verdicts: [usize; 3],
     pub(crate) alarms: usize,
     pub(crate) fails: usize,
-    /// `None` without a flight.
+    /// Alarms per hour; `None` without a flight.
     pub(crate) alarms_per_hour: Option<Figure>,
     pub(crate) fails_per_hour: Option<Figure>,
-    /// The share of the times with an alarm on.
+    /// The share of the time during which an alarm was on.
     pub(crate) share_of_time_on: Option<Figure>,
 }
 
-/// What a vehicle adds.
+/// The counts of one vehicle.
 #[derive(Default)]
 struct Counted {
     length_s: f64,
@@ -108,7 +109,7 @@ struct Counted {
     on_s: f64,
 }
 
-/// The column of a verdict in counts of GOOD, WARN and FAIL.
+/// The index of a verdict in counts of GOOD, WARN and FAIL.
 fn column(level: Level) -> usize {
     match level {
         Level::Good | Level::Info => 0,
@@ -118,7 +119,7 @@ fn column(level: Level) -> usize {
 }
 
 impl Needless {
-    /// Of a profile over such times of flights.
+    /// Counts the alarms of a profile in these times of flights.
     pub(crate) fn of<'a>(
         profile: usize,
         times: fn(&Record) -> &[Span],
@@ -190,20 +191,20 @@ impl Needless {
 #[derive(Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Upsets {
-    /// With an alarm on in the 10 s before.
+    /// Upsets with an alarm on in the 10 s before.
     pub(crate) before: usize,
-    /// With an alarm raised within 1 s after.
+    /// Upsets with an alarm raised within 1 s after.
     pub(crate) within_1_s: usize,
-    /// Without an alarm in that time.
+    /// Upsets without an alarm in that time.
     pub(crate) never: usize,
-    /// Those of flights without a verdict.
+    /// Upsets of flights without a verdict.
     pub(crate) not_assessed: usize,
-    /// The median of how long before, in seconds.
+    /// The median lead time in seconds.
     pub(crate) lead_s_median: Option<f64>,
 }
 
 impl Upsets {
-    /// Of a profile; `alarms` says which alarms count.
+    /// Counts the upsets that a profile found; `alarms` selects the alarms that count.
     pub(crate) fn of<'a>(
         profile: usize,
         alarms: fn(&Said) -> &[Span],
@@ -230,23 +231,23 @@ impl Upsets {
         found
     }
 
-    /// All that were assessed.
+    /// The number of upsets that were assessed.
     pub(crate) fn assessed(&self) -> usize {
         self.before + self.within_1_s + self.never
     }
 }
 
-/// How the flights of a vehicle were judged.
+/// The verdicts of the flights of a vehicle.
 #[derive(Default)]
 pub(crate) struct Verdicts {
     pub(crate) flights: usize,
     pub(crate) hours: f64,
-    /// For each profile: GOOD, WARN, FAIL, NA.
+    /// For each profile, the number of GOOD, WARN, FAIL, NA.
     pub(crate) counts: Vec<[usize; 4]>,
 }
 
 impl Verdicts {
-    /// Takes in a flight.
+    /// Adds a flight.
     pub(crate) fn add(&mut self, record: &Record) {
         self.flights += 1;
         self.hours += record.air_s() / 3600.0;

@@ -1,14 +1,14 @@
-//! Which episodes warnings announce, how long before, and which warnings are false.
+//! Matches warnings with episodes: which episodes they announce, how early, and which warnings are false.
 
 use crate::span::Span;
 
-/// A warning is not false when an episode starts within so many seconds after its end.
+/// A warning is not false if an episode starts within this time after its end, in seconds.
 const FOLLOWS_S: f64 = 10.0;
 
-/// A warning is not false when it begins within so many seconds after an episode.
+/// A warning is not false if it begins within this time after an episode, in seconds.
 const ECHO_S: f64 = 1.0;
 
-/// Time stamps are in microseconds.
+/// A tolerance in seconds; timestamps are in microseconds.
 const ROUNDING_S: f64 = 1e-6;
 
 /// An episode and its warning.
@@ -16,7 +16,8 @@ const ROUNDING_S: f64 = 1e-6;
 pub struct Answer {
     /// The episode.
     pub episode: Span,
-    /// Since when a warning was on at its start, or else when the first one during it began; `None` if none did.
+    /// The start of the warning that was on at the start of the episode, otherwise of the first one during it, in
+    /// seconds; `None` without either.
     pub warned_s: Option<f64>,
 }
 
@@ -26,22 +27,22 @@ impl Answer {
         self.lead_s().is_some_and(|lead_s| lead_s > 0.0)
     }
 
-    /// How long before the episode the warning began, in seconds; below 0 where it came after its start.
+    /// How long before the episode the warning began, in seconds; negative if it came after its start.
     pub fn lead_s(&self) -> Option<f64> {
         self.warned_s.map(|warned_s| self.episode.from_s - warned_s)
     }
 }
 
-/// A time during which a profile warned.
+/// A period during which a profile warned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Warning {
-    /// When, within the judged times.
+    /// The period, within the judged times.
     pub span: Span,
     /// Whether no episode followed.
     pub is_false: bool,
 }
 
-/// The episodes and warnings of a flight, matched.
+/// The matched episodes and warnings of a flight.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Judged {
     /// The episodes that start within the judged times.
@@ -52,9 +53,9 @@ pub struct Judged {
 
 /// Matches the warnings of a flight with its episodes, within the judged time of the flight.
 ///
-/// A warning is false unless an episode starts while it is on or within 10 s after it, or it begins during an episode or
-/// within 1 s after one. `lost_s` is when the log ended in the air: what followed is unknown, so a warning
-/// that is on then or ended up to 10 s before is not false.
+/// A warning is false unless an episode starts while it is on or within 10 s after it, or it begins during an episode
+/// or within 1 s after one. `lost_s` is the time at which the log ended in the air. What followed is unknown, so a
+/// warning that is on at that time, or ended up to 10 s before, is not false.
 ///
 /// # Example: a false warning, and one four seconds ahead
 /// ```
@@ -126,10 +127,10 @@ mod tests {
             ((40.0, 60.0), Some(10.0), true),
             ((50.0, 60.0), Some(0.0), false),
             ((51.0, 60.0), Some(-1.0), false),
-            // Over before, or after.
+            // Ended before, or began after.
             ((40.0, 49.0), None, false),
             ((56.0, 60.0), None, false),
-            // Only what is judged counts.
+            // Only the judged time counts.
             ((1.0, 60.0), Some(40.0), true),
         ];
         for (warning, lead_s, announced) in table {

@@ -2,7 +2,8 @@
 
 use flagred_flightlog::Attitude;
 
-/// The root mean square of the attitude error in degrees. Unknown attitudes are left out; `None` without a known one.
+/// Returns the root mean square of the attitude error in degrees. Unknown attitudes are ignored; `None` if all are
+/// unknown.
 ///
 /// # Example: an error of 3 degrees in roll and 4 in pitch is one of 5
 /// ```
@@ -21,7 +22,7 @@ pub fn rmse_deg<'a>(attitudes: impl IntoIterator<Item = &'a Attitude>) -> Option
     (samples > 0).then(|| mean.sqrt())
 }
 
-/// The risk that an attitude error stands for, in %: `100 min(1, rmse / critical)`.
+/// Returns the risk that corresponds to an attitude error, in %: `100 min(1, rmse / critical)`.
 ///
 /// The paper gives the critical error ([`CRITICAL_ERROR_DEG`](flagred::profile::CRITICAL_ERROR_DEG)) but no scaling; this one is ours.
 ///

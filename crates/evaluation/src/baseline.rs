@@ -1,11 +1,11 @@
-//! Baselines: predictors without rules that a risk must beat.
+//! Baselines: predictors without rules, with which risks are compared.
 
 use flagred::{
     monitor::Craft,
     source::{Motors, Observer, Signal, Source, Statistic},
 };
 
-/// A predictor without rules: a statistic of the motors, or a signal as it stands.
+/// A predictor without rules: a statistic of the motors, or an unchanged signal.
 ///
 /// # Example
 /// ```
@@ -18,35 +18,35 @@ use flagred::{
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baseline {
-    /// Its name.
+    /// The name in tables and documents, such as `margin_mean`.
     pub name: &'static str,
-    /// What it is.
+    /// A description in one sentence.
     pub description: &'static str,
-    /// Where its value comes from.
+    /// The source of its value.
     pub source: Source,
-    /// Where the statistic is taken of each motor apart: how those become one value.
+    /// How the statistics of single motors are combined, if the statistic is computed for each motor separately.
     pub per_motor: Option<PerMotor>,
     /// Whether a higher value is more critical; otherwise a lower one is.
     pub rises: bool,
 }
 
-/// How the statistics of single motors become one value.
+/// How the statistics of single motors are combined into one value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PerMotor {
     /// Their mean.
     Mean,
-    /// The smallest of them.
+    /// The smallest value.
     Min,
 }
 
-/// Over how many seconds the statistics of the motors are taken.
+/// The window of the statistics of all motors, in seconds.
 const WINDOW_S: f64 = 5.0;
 
-/// Over how many seconds those are taken that look at each motor apart, and the share near the upper limit.
+/// The window of statistics of single motors, and of the share near the upper limit, in seconds.
 const SHORT_WINDOW_S: f64 = 2.0;
 
 impl Baseline {
-    /// All of them.
+    /// All baselines.
     pub fn all() -> [Baseline; 9] {
         let of = |name, description, source, rises| Baseline {
             name,
@@ -139,7 +139,7 @@ impl Baseline {
     }
 }
 
-/// Follows baselines through a flight.
+/// Computes the scores of baselines during a flight.
 ///
 /// # Example: one of two motors at its lower limit
 /// ```
@@ -160,16 +160,16 @@ impl Baseline {
 #[derive(Debug, Clone)]
 pub struct BaselineObserver<'a> {
     baselines: &'a [Baseline],
-    /// Of the baselines without [`PerMotor`] whose signal is there, in their order.
+    /// The sources of the baselines without [`PerMotor`] whose signal is available, in their order.
     pooled: Observer,
-    /// For each motor, of the baselines with [`PerMotor`], in their order.
+    /// For each motor, the sources of the baselines with [`PerMotor`], in their order.
     motors: Vec<Observer>,
-    /// Where the value of each baseline stands in those.
+    /// The index of each baseline in these observers.
     places: Vec<Option<usize>>,
 }
 
 impl<'a> BaselineObserver<'a> {
-    /// Baselines of a craft; one whose signal the craft does not carry has no score.
+    /// Creates an observer for a craft. A baseline whose signal the craft does not have has no score.
     ///
     /// # Errors
     ///
@@ -204,7 +204,7 @@ impl<'a> BaselineObserver<'a> {
         })
     }
 
-    /// Forgets everything.
+    /// Discards all observations.
     pub fn clear(&mut self) {
         self.pooled.clear();
         self.motors.iter_mut().for_each(Observer::clear);

@@ -1,20 +1,20 @@
-//! How sure a figure over flights is: 95 % intervals by drawing whole flights again.
+//! 95 % intervals of figures over flights, by resampling whole flights.
 
 use crate::random::Random;
 
-/// Both ends of a 95 % interval.
+/// The ends of a 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// 2.5 % of the resamples lie below.
+    /// The lower end: 2.5 % of the resamples are below.
     pub low: f64,
-    /// 2.5 % of the resamples lie above.
+    /// The upper end: 2.5 % of the resamples are above.
     pub high: f64,
 }
 
-/// The intervals of `N` figures over `groups` groups, such as flights. Each resample draws as many groups as there are,
-/// with replacement; `figures` gets how often each group was drawn.
+/// Returns the intervals of `N` figures over `groups` groups, such as flights. Each resample draws `groups` groups with
+/// replacement; `figures` receives the number of times each group was drawn.
 ///
-/// The same seed gives the same intervals. Resamples in which the figures are unknown are left out; `None` where no
+/// The same seed gives the same intervals. Resamples for which `figures` returns `None` are ignored; `None` if no
 /// resample is left.
 ///
 /// # Example: alarms an hour, over three flights of half an hour
@@ -59,7 +59,7 @@ pub fn bootstrap<const N: usize>(
     Some(intervals)
 }
 
-/// The 2.5 % and 97.5 % quantiles, linear between values.
+/// The 2.5 % and 97.5 % quantiles, interpolated linearly between values.
 fn quantiles(values: &mut [f64]) -> Option<Interval> {
     values.sort_by(f64::total_cmp);
     let quantile = |share: f64| {

@@ -1,26 +1,26 @@
-//! Stretches of a flight in which nothing happens.
+//! Calm stretches of a flight, in which nothing happens.
 
 use flagred::profile::CRITICAL_ERROR_DEG;
 use flagred_flightlog::Attitude;
 
 use crate::{critical::ErrorRecord, span::Span};
 
-/// Calm begins so many seconds after take-off ...
+/// Calm begins this time after take-off, in seconds, ...
 const AFTER_TAKE_OFF_S: f64 = 5.0;
 
-/// ... is so many seconds away from critical errors, tilts over [`TILT_DEG`] and attitudes that are unknown for over
-/// [`UNKNOWN_S`] ...
+/// ... is this far away from critical errors, from tilts over [`TILT_DEG`] and from attitudes that are unknown for over
+/// [`UNKNOWN_S`], in seconds, ...
 const AWAY_S: f64 = 10.0;
 
 const TILT_DEG: f64 = 45.0;
 
 const UNKNOWN_S: f64 = 1.0;
 
-/// ... and lasts at least so long.
+/// ... and lasts at least this long, in seconds.
 const SHORTEST_S: f64 = 20.0;
 
-/// The calm stretches of a time in the air: at least 20 s, from 5 s after take-off, and 10 s away from any attitude error
-/// over [`CRITICAL_ERROR_DEG`] and any tilt over 45 degrees. An alarm there announced nothing and answered nothing.
+/// Returns the calm stretches of a time in the air: at least 20 s long, from 5 s after take-off, and 10 s away from any
+/// attitude error over [`CRITICAL_ERROR_DEG`] and any tilt over 45 degrees. An alarm in a calm stretch is needless.
 ///
 /// # Example: one error of 20 degrees in a minute
 ///

@@ -1,24 +1,24 @@
-//! Which flights can be learned from and evaluated on, and which of their time is judged.
+//! Determines which flights can be used for learning and evaluation, and which part of their time is judged.
 
 use flagred::verdict::VerdictSettings;
 use flagred_flightlog::{ATTITUDE, Flight, Gap, LeftOut, Options};
 
 use crate::span::Span;
 
-/// Why a flight is not complete: see [`complete`].
+/// The reason why a flight is not complete: see [`complete`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Incomplete {
-    /// The log has more than is kept of it.
+    /// The log exceeds the limits of what is kept.
     #[error("not all of it is kept, which leaves out {0}")]
     LeftOut(LeftOut),
-    /// The log lacks something.
+    /// Required information is missing from the log.
     #[error(transparent)]
     Gap(Gap),
 }
 
 impl Incomplete {
-    /// What to do about it, apart from the message.
+    /// Advice on what to do, in addition to the message.
     pub fn help(&self) -> Option<&'static str> {
         match self {
             Incomplete::LeftOut(_) => Some("docs/limits.md has the bounds"),
@@ -27,7 +27,7 @@ impl Incomplete {
     }
 }
 
-/// What is read of a log to learn from it or to evaluate on it: the named signals, and the attitude.
+/// Options for reading a log for learning or evaluation: the named signals, and the attitude.
 pub fn complete_options(names: &[&str]) -> Options {
     let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
     let mut options = Options::default();
@@ -35,10 +35,11 @@ pub fn complete_options(names: &[&str]) -> Options {
     options
 }
 
-/// Whether a flight can be learned from and evaluated on: with motors, attitude and times in the air, and nothing left out.
+/// Checks that a flight can be used for learning and evaluation: it needs motors, attitude and times in the air, and
+/// nothing may be left out.
 ///
 /// # Errors
-/// What it lacks.
+/// The missing information.
 pub fn complete(flight: &Flight) -> Result<(), Incomplete> {
     let left_out = &flight.report.left_out;
     if left_out.messages > 0 || left_out.changes > 0 {
@@ -49,13 +50,13 @@ pub fn complete(flight: &Flight) -> Result<(), Incomplete> {
     gap.map_or(Ok(()), |gap| Err(Incomplete::Gap(gap)))
 }
 
-/// What the header of a flight CSV says under a key, such as `kind` or `vehicle`.
+/// The value of a key in the header of a flight CSV, such as `kind` or `vehicle`.
 pub fn header<'a>(flight: &'a Flight, key: &str) -> Option<&'a str> {
     let found = flight.header.iter().find(|(k, _)| k == key);
     found.map(|(_, value)| value.as_str())
 }
 
-/// The judged time that the header of a flight CSV gives: from `judged_from_s` to `judged_to_s`.
+/// The judged time in the header of a flight CSV: from `judged_from_s` to `judged_to_s`.
 pub fn judged_by_header(flight: &Flight) -> Option<Span> {
     let number = |key| header(flight, key)?.parse().ok();
     Some(Span {
@@ -64,8 +65,8 @@ pub fn judged_by_header(flight: &Flight) -> Option<Span> {
     })
 }
 
-/// The judged time of a flight: that of the header, else each time in the air without the first seconds after take-off and
-/// the last before landing.
+/// The judged time of a flight: that of its header, otherwise each time in the air without the first seconds after
+/// take-off and the last before landing.
 pub fn judged_spans(flight: &Flight, settings: &VerdictSettings) -> Vec<Span> {
     if let Some(span) = judged_by_header(flight) {
         return Vec::from_iter((span.length_s() > 0.0).then_some(span));
@@ -83,7 +84,7 @@ pub fn judged_spans(flight: &Flight, settings: &VerdictSettings) -> Vec<Span> {
 
 /// The judged part of a time in the air: without the first seconds after take-off and the last before landing.
 ///
-/// `None` where nothing is left. A flight that ends with its log in the air has no landing.
+/// `None` if nothing remains. A flight whose log ends in the air has no landing.
 fn judged_span(air: Span, ends_with_log: bool, settings: &VerdictSettings) -> Option<Span> {
     let before_landing_s = match ends_with_log {
         true => 0.0,

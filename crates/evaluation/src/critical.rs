@@ -9,19 +9,19 @@ use flagred_flightlog::Attitude;
 
 use crate::span::Span;
 
-/// The attitude error is its root mean square over so many seconds.
+/// The window of the attitude error, which is a root mean square, in seconds.
 const ERROR_WINDOW_S: f64 = 1.0;
 
-/// The name of the signal whose mean over the window is taken.
+/// The name of the signal that is averaged over the window.
 const SQUARED_ERROR: &str = "squared_error_deg2";
 
-/// An episode is over the limit for at least so many seconds.
+/// The minimum duration of an episode, in seconds.
 const SHORTEST_EPISODE_S: f64 = 1.0;
 
-/// Time stamps are in microseconds.
+/// A tolerance in seconds; timestamps are in microseconds.
 const ROUNDING_S: f64 = 1e-6;
 
-/// The attitude error of a flight over time, and when it was critical.
+/// The attitude error of a flight over time, and its critical episodes.
 ///
 /// # Example: three seconds with an error of 20 degrees
 ///
@@ -44,13 +44,14 @@ const ROUNDING_S: f64 = 1e-6;
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct ErrorRecord {
-    /// Times in seconds, with the error over the second before in degrees.
+    /// Times in seconds, each with the error over the preceding second in degrees.
     errors: Vec<(f64, f64)>,
     episodes: Vec<Span>,
 }
 
 impl ErrorRecord {
-    /// From the attitudes of a flight with their times in seconds, in order; one that is not finite is unknown.
+    /// Computes the record from the attitudes of a flight with their times in seconds, ascending. An attitude that is
+    /// not finite is unknown.
     pub fn new(attitudes: impl IntoIterator<Item = (f64, Attitude)>) -> ErrorRecord {
         let mut record = ErrorRecord::default();
         let squares = Source {
@@ -60,7 +61,7 @@ impl ErrorRecord {
             window_s: ERROR_WINDOW_S,
             exponential: false,
         };
-        // The craft carries the signal, so there is an observer of it.
+        // The craft has the signal, so creating the observer cannot fail.
         let craft = Craft::new(0).with_signals(&[SQUARED_ERROR]);
         let Ok(mut second) = Observer::new([&squares], craft) else {
             return record;
@@ -80,7 +81,7 @@ impl ErrorRecord {
                 continue;
             }
             second.push(t_s, held_s, &[], &[squared]);
-            // A second that is full to a sample or so is full.
+            // A second that lacks about half the time of a sample counts as full.
             let full_s = ERROR_WINDOW_S - held_s / 2.0 - ROUNDING_S;
             let Some(mean) = second.value(0).filter(|mean| mean.covered_s >= full_s) else {
                 continue;
@@ -94,7 +95,7 @@ impl ErrorRecord {
             });
             let span = Span { to_s: t_s, ..span };
             excursion = is_critical.then_some(span);
-            // The first sample stands for the time before it, too.
+            // The first sample also applies to the time before it.
             if is_critical && span.length_s() + held_s >= SHORTEST_EPISODE_S - ROUNDING_S {
                 match record.episodes.last_mut() {
                     Some(last) if last.from_s == span.from_s => *last = span,
@@ -105,7 +106,7 @@ impl ErrorRecord {
         record
     }
 
-    /// The largest error after `t_s` and within `horizon_s`, in degrees; `None` where it is unknown.
+    /// The largest error after `t_s` and within `horizon_s`, in degrees; `None` if it is unknown.
     pub fn largest_within(&self, t_s: f64, horizon_s: f64) -> Option<f64> {
         let after = |t_s: f64| {
             self.errors
@@ -118,24 +119,24 @@ impl ErrorRecord {
             .reduce(f64::max)
     }
 
-    /// Whether the error becomes critical after `t_s` and within `horizon_s`; `None` where it is unknown.
+    /// Whether the error becomes critical after `t_s` and within `horizon_s`; `None` if it is unknown.
     pub fn critical_within(&self, t_s: f64, horizon_s: f64) -> Option<bool> {
         let largest_deg = self.largest_within(t_s, horizon_s)?;
         Some(largest_deg > CRITICAL_ERROR_DEG)
     }
 
-    /// Whether no error in the `for_s` seconds up to `t_s` is critical; an unknown one is none.
+    /// Whether no error in the `for_s` seconds before `t_s` is critical; unknown errors do not count.
     pub fn is_quiet(&self, t_s: f64, for_s: f64) -> bool {
         self.critical_within(t_s - for_s, for_s) != Some(true)
     }
 
-    /// The largest error of all, in degrees; `None` where no error is known.
+    /// The largest error, in degrees; `None` if no error is known.
     pub fn largest_deg(&self) -> Option<f64> {
         let errors = self.errors.iter().map(|(_, error_deg)| *error_deg);
         errors.reduce(f64::max)
     }
 
-    /// The times within a span at which the error is over a limit.
+    /// The times within a span at which the error exceeds a limit.
     pub fn times_over(&self, limit_deg: f64, span: Span) -> impl Iterator<Item = f64> + '_ {
         let errors = self.errors.iter();
         let over =
@@ -143,7 +144,7 @@ impl ErrorRecord {
         over.map(|(t_s, _)| *t_s)
     }
 
-    /// The times over the limit, each for a second at least.
+    /// The critical episodes, each at least a second long.
     pub fn episodes(&self) -> &[Span] {
         &self.episodes
     }
@@ -170,7 +171,7 @@ mod tests {
 
     #[test]
     fn an_episode_starts_when_the_error_of_a_second_is_over_the_limit_and_lasts_one() {
-        // 8 degrees for a share x of the second make 8 sqrt(x): over 5 from x = 0.39 on.
+        // 8 degrees for a share x of the second result in 8 sqrt(x): over 5 from x = 0.39 on.
         for rate in [10, 25, 100] {
             let record = record(rate, &[(10.0, 11.0), (20.0, 21.5), (40.0, 45.0)]);
             let spans: Vec<(f64, f64)> = record
@@ -189,7 +190,7 @@ mod tests {
                 assert!((to_s - ends_s).abs() < step_s, "{rate} Hz: {spans:?}");
             }
         }
-        // Over the limit, but for 0.7 s only.
+        // Over the limit, but only for 0.7 s.
         assert_eq!(record(25, &[(10.0, 10.55)]).episodes(), []);
         assert_eq!(
             record(25, &[(10.0, 10.55)]).critical_within(9.0, 5.0),
@@ -250,7 +251,7 @@ mod tests {
             (t_s, if known { level } else { lost })
         }));
         assert_eq!(record.critical_within(11.0, 5.0), None);
-        // A second must be known before its mean is.
+        // The whole second must be known before its mean is.
         assert_eq!(record.critical_within(19.5, 1.0), None);
         assert_eq!(record.critical_within(19.5, 2.0), Some(false));
     }

@@ -1,4 +1,4 @@
-//! The evaluation for programs: one JSON document.
+//! The evaluation as a JSON document for programs.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use crate::{
     warnings::Warnings,
 };
 
-/// The version of the document's layout; it grows when a name changes its meaning or goes.
+/// The version of the document's layout; it increases when a name changes its meaning or is removed.
 const SCHEMA: &str = "flagred.validate/1";
 
 /// The document of an evaluation: what `flagred validate --json` prints.
@@ -26,10 +26,10 @@ const SCHEMA: &str = "flagred.validate/1";
 pub struct Document<'a> {
     #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
     schema: &'static str,
-    /// What was predicted: `steps`, half a second apart, or whole `flights`.
+    /// The cases: `steps`, half a second apart, or whole `flights`.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["steps", "flights"])))]
     cases: &'static str,
-    /// How far ahead a risk should predict, in seconds; null of whole flights.
+    /// How far ahead a risk should predict, in seconds; null for whole flights.
     horizon_s: Option<f64>,
     /// The number of flights.
     flights: usize,
@@ -52,24 +52,24 @@ struct EstimatorDocument<'a> {
     description: &'a str,
     #[serde(flatten)]
     all: ScoresDocument,
-    /// Only of steps, which have a time before and after.
-    /// Over steps without a critical error in the 5 s before.
+    /// The scores over steps without a critical error in the 5 s before. Only for steps, because flights have no time
+    /// before.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "ScoresDocument"))]
     quiet: Option<ScoresDocument>,
-    /// Over steps without a critical error in the 10 s before.
+    /// The scores over steps without a critical error in the 10 s before.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "ScoresDocument"))]
     onset: Option<ScoresDocument>,
     by_vehicle: Vec<OfVehicle<'a>>,
     by_kind: Vec<OfKind<'a, ScoresDocument>>,
-    /// Of a risk in %, by tenths of the scale; null of other scores.
+    /// The reliability of a risk in %, by tenths of the scale; null for other scores.
     reliability: Option<Vec<BandDocument>>,
-    /// Only of profiles.
+    /// The warnings, only for profiles.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "ProfileWarnings<'_>"))]
     warnings: Option<ProfileWarnings<'a>>,
-    /// Of profiles, on flights.
+    /// The alarms, only for profiles on flights.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "AlarmsDocument<'_>"))]
     alarms: Option<AlarmsDocument<'a>>,
@@ -102,36 +102,36 @@ struct ScoresDocument {
     pr_auc: Option<f64>,
     /// Its 95 % interval.
     pr_auc_interval: Option<[f64; 2]>,
-    /// Why there is no area, such as `no critical step`.
+    /// The reason why there is no area, such as `no critical step`.
     no_auc: Option<String>,
-    /// The mean over the flights that have critical cases and others.
+    /// The mean over the flights that have both critical and other cases.
     within_flight_auc: Option<f64>,
     /// Its 95 % interval.
     within_flight_auc_interval: Option<[f64; 2]>,
     /// The number of those flights.
     within_flight_flights: usize,
-    /// The cases with a score.
+    /// The number of cases with a score.
     cases: usize,
-    /// The critical ones of them.
+    /// The number of critical ones among them.
     critical: usize,
-    /// The cases without a score.
+    /// The number of cases without a score.
     unknown: usize,
 }
 
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct BandDocument {
-    /// The lower end of the band in %; it belongs to it.
+    /// The lower end of the band in %, inclusive.
     from_pct: f64,
-    /// The upper end in %; 100 belongs to the last band.
+    /// The upper end in %, exclusive except for 100.
     to_pct: f64,
-    /// The cases with such a risk.
+    /// The number of cases with such a risk.
     cases: u64,
-    /// The critical ones of them.
+    /// The number of critical ones among them.
     critical: u64,
     /// The share of critical cases, from 0 to 1.
     critical_share: Option<f64>,
-    /// The mean of their risks in %.
+    /// The mean of these risks in %.
     risk_mean_pct: Option<f64>,
 }
 
@@ -156,13 +156,14 @@ struct WarningsDocument<'a> {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct AlarmsDocument<'a> {
-    /// At least 20 s, from 5 s after take-off, 10 s away from any error over 5 degrees and any tilt over 45 degrees.
+    /// Alarms in calm stretches: at least 20 s, from 5 s after take-off, 10 s away from any error over 5 degrees and
+    /// any tilt over 45 degrees.
     calm_stretches: NeedlessDocument,
-    /// Flights whose error over 1 s never exceeds 5 degrees, with a tilt under 45 degrees and without an upset.
+    /// Alarms in ordinary flights: error over 1 s never above 5 degrees, tilt under 45 degrees, no upset.
     ordinary_flights: NeedlessDocument,
     /// The upsets of flights, found by any alarm.
     upsets: UpsetsDocument<'a>,
-    /// The upsets of flights, found by FAIL alone.
+    /// The upsets of flights, found by FAIL only.
     upsets_by_fail: UpsetsDocument<'a>,
     by_kind: Vec<OfKind<'a, AlarmsOfKind<'a>>>,
 }
@@ -177,23 +178,23 @@ struct AlarmsOfKind<'a> {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct NeedlessDocument {
-    /// The flights with such times and a verdict.
+    /// The number of flights with such times and a verdict.
     flights: usize,
-    /// The flights with such times whose verdict is NA.
+    /// The number of flights with such times whose verdict is NA.
     not_assessed: usize,
-    /// The length of these times.
+    /// The length of these times in hours.
     hours: f64,
-    /// How many flights were GOOD, WARN and FAIL.
+    /// The number of flights with each verdict.
     verdicts: Verdicts,
-    /// Times of WARN or FAIL; one that turns into the other counts once.
+    /// The number of periods of WARN or FAIL; a WARN that is raised to FAIL counts once.
     alarms: usize,
     alarms_per_hour: Option<f64>,
     alarms_per_hour_interval: Option<[f64; 2]>,
-    /// Times of FAIL.
+    /// The number of periods of FAIL.
     fails: usize,
     fails_per_hour: Option<f64>,
     fails_per_hour_interval: Option<[f64; 2]>,
-    /// The share of these times with an alarm on.
+    /// The share of these times during which an alarm was on.
     share_of_time_on: Option<f64>,
     share_of_time_on_interval: Option<[f64; 2]>,
 }
@@ -210,7 +211,7 @@ struct Verdicts {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct UpsetsDocument<'a> {
-    /// The upsets of flights with a verdict.
+    /// The number of upsets in flights with a verdict.
     assessed: usize,
     #[serde(flatten)]
     upsets: &'a Upsets,
@@ -220,11 +221,11 @@ struct UpsetsDocument<'a> {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct RecordDocument<'a> {
-    /// The log.
+    /// The name of the log.
     file: &'a str,
-    /// The serial number of the board, or the header's `vehicle_id` or `vehicle`.
+    /// The serial number of the board, or `vehicle_id` or `vehicle` of the header.
     vehicle: Option<&'a str>,
-    /// What the flight was about, as its header says.
+    /// The kind of flight, from its header.
     kind: &'a str,
     /// The judged time, in seconds.
     judged_s: f64,
@@ -232,13 +233,13 @@ struct RecordDocument<'a> {
     in_air_s: f64,
     /// The largest attitude error over a second in the air, in degrees.
     largest_error_deg: Option<f64>,
-    /// When the vehicle was upset, in seconds.
+    /// The times at which the vehicle was upset, in seconds.
     upsets_s: Vec<f64>,
     /// The number of steps.
     steps: usize,
     /// The number of critical steps.
     critical: usize,
-    /// What each profile reported, by its name.
+    /// The results of each profile, by its name.
     profiles: BTreeMap<&'a str, SaidDocument<'a>>,
 }
 
@@ -247,13 +248,13 @@ struct RecordDocument<'a> {
 struct SaidDocument<'a> {
     /// Its verdict of the flight.
     verdict: VerdictWord,
-    /// Times of WARN or FAIL.
+    /// Periods of WARN or FAIL.
     alarms: &'a [Span],
-    /// Times of FAIL.
+    /// Periods of FAIL.
     fails: &'a [Span],
-    /// Times of critical error.
+    /// Periods of critical error.
     episodes: Vec<EpisodeDocument>,
-    /// Times of WARN or FAIL that count as warnings.
+    /// Periods of WARN or FAIL that count as warnings.
     warnings: Vec<WarningDocument>,
 }
 
@@ -262,9 +263,9 @@ struct SaidDocument<'a> {
 struct EpisodeDocument {
     #[serde(flatten)]
     episode: Span,
-    /// Since when the warning was on that announced or answered it.
+    /// The start of the warning that announced or answered the episode, in seconds.
     warned_s: Option<f64>,
-    /// How long before the episode, in seconds; negative after its start.
+    /// How long before the episode the warning began, in seconds; negative after its start.
     lead_s: Option<f64>,
 }
 
@@ -278,7 +279,7 @@ struct WarningDocument {
 }
 
 impl<'a> Document<'a> {
-    /// Of an evaluation.
+    /// Creates the document of an evaluation.
     pub fn new(evaluation: &'a Evaluation) -> Document<'a> {
         let first = evaluation.estimators.first();
         let estimators = evaluation.estimators.iter().enumerate();

@@ -1,23 +1,23 @@
-//! Who is compared: the profiles, and the baselines that need no rules.
+//! The estimators that are compared: profiles, and baselines without rules.
 
 use flagred::estimator::Estimator;
 
 use crate::baseline::Baseline;
 
-/// All that are compared: profiles first, then the baselines of [`crate::Baseline::all`].
+/// All estimators that are compared: profiles first, then the baselines of [`crate::Baseline::all`].
 pub struct Estimators {
     pub(crate) profiles: Vec<Named>,
     pub(crate) baselines: [Baseline; 9],
 }
 
-/// A profile and what it goes by.
+/// A profile with the name that identifies it.
 pub(crate) struct Named {
     pub(crate) name: String,
     pub(crate) estimator: Estimator,
 }
 
 impl Default for Estimators {
-    /// The baselines alone.
+    /// Only the baselines.
     fn default() -> Estimators {
         Estimators {
             profiles: Vec::new(),
@@ -27,12 +27,12 @@ impl Default for Estimators {
 }
 
 impl Estimators {
-    /// Whether a profile goes by this name.
+    /// Whether a profile has this name.
     pub fn has(&self, name: &str) -> bool {
         self.profiles.iter().any(|profile| profile.name == name)
     }
 
-    /// Adds a profile, which goes by its own name, or by `otherwise` where another is called the same.
+    /// Adds a profile, named by its own name, or by `otherwise` if another profile has the same name.
     pub fn add(&mut self, otherwise: &str, estimator: Estimator) {
         let own = &estimator.profile().name;
         let name = match self.has(own) {
@@ -42,7 +42,7 @@ impl Estimators {
         self.profiles.push(Named { name, estimator });
     }
 
-    /// The name of each with what it is.
+    /// The name and description of each estimator.
     pub fn names(&self) -> impl Iterator<Item = (&str, &str)> {
         let profiles = self.profiles.iter().map(|profile| {
             let description = profile.estimator.profile().description.as_deref();
@@ -52,7 +52,7 @@ impl Estimators {
         profiles.chain(baselines.map(|baseline| (baseline.name, baseline.description)))
     }
 
-    /// The signals beside the motors that any of them looks at.
+    /// The signals, except those of the motors, that any of them reads.
     pub fn signals(&self) -> Vec<&str> {
         let profiles = self.profiles.iter();
         let mut names: Vec<&str> = profiles

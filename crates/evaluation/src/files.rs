@@ -1,4 +1,4 @@
-//! Which files there are to evaluate.
+//! Finds the files to evaluate.
 
 use std::{
     fs,
@@ -9,16 +9,16 @@ use flagred_flightlog::ReadError;
 
 /// A file to evaluate.
 pub struct Candidate {
-    /// Where it is.
+    /// The path of the file.
     pub path: PathBuf,
-    /// Whether the user named it, and not only a folder that it is in, which may hold other things than flights.
+    /// Whether the user named the file itself. If it was found in a folder, it may be something else than a flight.
     pub is_named: bool,
 }
 
-/// The files, and those in the folders and their folders, in the order of their names.
+/// Returns the files, and the files in the folders and their subfolders, sorted by name.
 ///
 /// # Errors
-/// A folder that cannot be read.
+/// If a folder cannot be read.
 pub fn files(paths: &[PathBuf]) -> Result<Vec<Candidate>, ReadError> {
     let mut found = Vec::new();
     for path in paths {
@@ -47,7 +47,7 @@ fn walk(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), ReadError> {
     };
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let entry = entry.map_err(unreadable)?;
-        // A link could lead back to where it came from.
+        // A link could lead back to its own folder.
         let kind = entry.file_type().map_err(unreadable)?;
         if kind.is_dir() {
             walk(&entry.path(), found)?;

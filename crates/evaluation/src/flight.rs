@@ -1,4 +1,4 @@
-//! One flight under evaluation: its steps with the scores of every estimator, its episodes and upsets, and the alarms.
+//! The evaluation of one flight: its steps with the scores of every estimator, its episodes and upsets, and the alarms.
 
 use std::path::Path;
 
@@ -20,96 +20,98 @@ use crate::{
     upset::upset_s,
 };
 
-/// How far apart steps are, in seconds.
+/// The distance between steps, in seconds.
 const STEP_S: f64 = 0.5;
 
-/// Where the log does not say what is judged, steps begin so many seconds after take-off: the shortest window is full.
+/// If the log does not define the judged time, steps begin this time after take-off, in seconds, when the shortest
+/// window is full.
 const FIRST_STEP_S: f64 = 2.0;
 
-/// A step is quiet without a critical error in so many seconds before it, and an onset after so many.
+/// A step is quiet if there was no critical error in this time before it, in seconds, and an onset if there was none in
+/// the second of these times.
 const QUIET_S: f64 = 5.0;
 const ONSET_S: f64 = 10.0;
 
-/// A baseline forgets what was before so long a time without a sample, in seconds.
+/// A baseline is reset after this time without a sample, in seconds.
 const LONGEST_GAP_S: f64 = 2.0;
 
-/// Sums of time steps are off by less than this.
+/// A tolerance for sums of time steps, in seconds.
 const ROUNDING_S: f64 = 1e-6;
 
-/// What became of a flight.
+/// An evaluated flight.
 pub struct Record {
     pub(crate) file: String,
-    /// `None` where the log names no vehicle.
+    /// The vehicle; `None` if the log does not identify it.
     pub(crate) vehicle: Option<String>,
-    /// What the flight was about, as its header says: `gusts`, `calm`, `manoeuvre`.
+    /// The kind of flight, from its header: `gusts`, `calm`, `manoeuvre`.
     pub(crate) kind: String,
     pub(crate) judged_s: f64,
     pub(crate) air: Vec<Span>,
-    /// The stretches in which nothing happens.
+    /// The calm stretches.
     pub(crate) calm: Vec<Span>,
-    /// The largest attitude error over a second, and the largest tilt, in the air.
+    /// The largest attitude error over a second, and the largest tilt, in the air, in degrees.
     pub(crate) largest_error_deg: Option<f64>,
     pub(crate) largest_tilt_deg: Option<f64>,
     pub(crate) upsets: Vec<Upset>,
     pub(crate) steps: Vec<Step>,
-    /// For each profile.
+    /// The results of each profile.
     pub(crate) said: Vec<Said>,
 }
 
-/// The first upset of a time in the air.
+/// The first upset in a time in the air.
 pub(crate) struct Upset {
     pub(crate) t_s: f64,
     pub(crate) air: Span,
 }
 
-/// A moment and what was said of it.
+/// A time of the flight with the scores for it.
 pub(crate) struct Step {
     pub(crate) t_s: f64,
     pub(crate) is_critical: bool,
     pub(crate) is_quiet: bool,
     pub(crate) is_onset: bool,
-    /// For each estimator; NaN is unknown.
+    /// The score of each estimator; NaN is unknown.
     pub(crate) scores: Vec<f64>,
 }
 
-/// What a profile said of a flight.
+/// The results of a profile for a flight.
 #[derive(Default)]
 pub(crate) struct Said {
-    /// `None` is NA.
+    /// The verdict; `None` is NA.
     pub(crate) verdict: Option<Level>,
-    /// WARN or FAIL, from raised until last reached; one that turns into the other is one.
+    /// The periods of WARN or FAIL, from raised until last reached. A WARN that is raised to FAIL counts as one.
     pub(crate) alarms: Vec<Span>,
     pub(crate) fails: Vec<Span>,
-    /// The times at which a level was on, against the episodes.
+    /// The periods at which a level was on, matched with the episodes.
     pub(crate) judged: Judged,
 }
 
-/// Why a flight cannot be evaluated.
+/// The reason why a flight cannot be evaluated.
 #[derive(Debug, thiserror::Error)]
 pub enum Unusable {
-    /// It cannot be read, or is no flight log.
+    /// It cannot be read, or is not a flight log.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// It lacks motors, attitude or times in the air.
+    /// Motors, attitude or times in the air are missing.
     #[error("`{name}` cannot be evaluated: {lacks}")]
     Incomplete {
-        /// The flight, as the user knows it.
+        /// The name of the flight for the user.
         name: String,
-        /// What it lacks.
+        /// The missing information.
         lacks: Incomplete,
     },
-    /// The baselines cannot be computed of it.
+    /// The baselines cannot be computed for it.
     #[error("`{name}` cannot be evaluated: {problem}")]
     Baselines {
-        /// The flight, as the user knows it.
+        /// The name of the flight for the user.
         name: String,
-        /// Why not.
+        /// The reason.
         problem: String,
     },
 }
 
 impl Unusable {
-    /// What to do about it, apart from the message.
+    /// Advice on what to do, in addition to the message.
     pub fn help(&self) -> Option<&str> {
         match self {
             Unusable::Read(error) => error.help(),
@@ -123,16 +125,16 @@ impl Record {
     /// Reads a log and evaluates the flight.
     ///
     /// # Errors
-    /// A file that cannot be read or is no flight log, and as [`Record::new`].
+    /// If the file cannot be read or is not a flight log, and as [`Record::new`].
     pub fn read(path: &Path, estimators: &Estimators, horizon_s: f64) -> Result<Record, Unusable> {
         let flight = flagred_flightlog::open(path, &complete_options(&estimators.signals()))?;
         Record::new(&path.display().to_string(), &flight, estimators, horizon_s)
     }
 
-    /// Evaluates a flight; the risk should predict what comes within `horizon_s` seconds.
+    /// Evaluates a flight; the risk should predict critical errors within `horizon_s` seconds.
     ///
     /// # Errors
-    /// A flight that lacks motors, attitude or times in the air, or of which not all is kept.
+    /// If motors, attitude or times in the air are missing, or if the flight was not kept completely.
     pub fn new(
         name: &str,
         flight: &Flight,
@@ -217,10 +219,10 @@ impl Record {
     }
 }
 
-/// The steps of a flight, without scores yet, where it is known what became of them.
+/// The steps of a flight, without scores yet, at the times for which the outcome is known.
 ///
-/// They are in the judged time that the header of the log gives. Without one they are in the times in the air, from 2 s
-/// after take-off to 1 s before landing, each up to its upset.
+/// They are in the judged time of the log's header. Without one they are in the times in the air, from 2 s after
+/// take-off to 1 s before landing, and end at an upset.
 fn steps(flight: &Flight, upsets: &[Upset], errors: &ErrorRecord, horizon_s: f64) -> Vec<Step> {
     let settings = VerdictSettings {
         quiet_after_take_off_s: FIRST_STEP_S,
@@ -254,17 +256,18 @@ fn step_times(span: &Span) -> impl Iterator<Item = f64> + use<> {
         .take_while(move |t_s| *t_s <= to_s + ROUNDING_S)
 }
 
-/// A profile on its way through a flight.
+/// The state of a profile during a flight.
 struct Running {
-    /// `None` where the flight lacks a signal that the profile needs.
+    /// `None` if a signal that the profile needs is missing from the flight.
     assessor: Option<Assessor>,
     risk_pct: f64,
     warnings: Vec<Span>,
     is_warning: bool,
 }
 
-/// Sends the samples of a flight through all estimators and fills in the scores of the steps: what an estimator says at a
-/// time is what it said after the newest sample. Gives what each profile said, with the times at which a level was on.
+/// Passes the samples of a flight to all estimators and sets the scores of the steps. The score of an estimator at a
+/// step is the one after the latest sample. Returns the results of each profile, with the periods at which a level was
+/// on.
 fn follow(
     flight: &Flight,
     estimators: &Estimators,
@@ -339,7 +342,7 @@ fn follow(
     Ok(said.collect())
 }
 
-/// The times of findings of a level or a higher one.
+/// The periods of findings of a level or a higher one.
 fn alarms(findings: &[Finding], least: Level) -> Vec<Span> {
     let findings = findings.iter().filter(|finding| finding.severity >= least);
     Span::joined(findings.map(|finding| Span {

@@ -1,4 +1,4 @@
-//! How good learned rules are: on samples they were not learned from, and where a rule is missing.
+//! Errors of learned rules: on samples that were not used for learning, and where a rule is missing.
 
 use std::collections::BTreeMap;
 
@@ -12,34 +12,34 @@ use fuzzy::{
 /// A sample to learn from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// A value for each input of the model, then the risk in %.
+    /// The value of each input of the model, then the risk in %.
     pub values: Vec<f64>,
-    /// How much it counts.
+    /// The weight of the sample.
     pub weight: f64,
-    /// Its group, such as its vehicle. Cross-validation keeps the rows of a group together.
+    /// The group of the sample, such as its vehicle. Cross-validation keeps the rows of a group together.
     pub group: Option<u32>,
 }
 
-/// Errors of predictions on rows, in the unit of the output, weighted by row. NaN where no row was compared.
+/// Errors of predictions on rows, in the unit of the output, weighted by row. NaN if no row was compared.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Errors {
-    /// The rows compared.
+    /// The number of compared rows.
     pub rows: usize,
-    /// The rows for which there was no prediction.
+    /// The number of rows without a prediction.
     pub without_prediction: usize,
     /// The root mean square of the error.
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub rmse: f64,
-    /// The mean size of the error.
+    /// The mean absolute error.
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub mean_absolute: f64,
-    /// The mean of prediction less truth: above 0 the predictions are too high.
+    /// The mean of prediction minus truth: above 0 the predictions are too high.
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub bias: f64,
 }
 
-/// Sums up errors.
+/// Sums of errors.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tally {
     rows: usize,
@@ -65,7 +65,7 @@ impl Tally {
     }
 
     fn errors(&self) -> Errors {
-        // NaN of nothing: no error at all would be the best there is.
+        // NaN without rows: an error of 0 would be the best possible.
         let mean = |sum: f64| sum / self.weight;
         Errors {
             rows: self.rows,
@@ -77,7 +77,7 @@ impl Tally {
     }
 }
 
-/// Why rules cannot be learned from or compared with rows.
+/// The reason why rules cannot be learned from rows or compared with them.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExamineError {
@@ -90,19 +90,19 @@ pub enum ExamineError {
     /// The rules cannot be evaluated.
     #[error(transparent)]
     Evaluate(#[from] EvaluateError),
-    /// A row cannot be learned from.
+    /// A row cannot be used for learning.
     #[error("row {row}: {refusal}")]
     Refused {
-        /// The row, counted from 0.
+        /// The index of the row, from 0.
         row: usize,
-        /// Why.
+        /// The reason.
         refusal: Refusal,
     },
 }
 
-/// A rule set read anywhere, its gaps filled.
+/// A rule set with filled gaps, which predicts at any inputs.
 struct Predictor {
-    /// None where there are no rules: nothing is predicted then.
+    /// `None` without rules; then there are no predictions.
     rules: Option<Rules>,
 }
 
@@ -128,7 +128,7 @@ impl Predictor {
         Ok(Predictor { rules: Some(rules) })
     }
 
-    /// What the rules themselves say.
+    /// The outcome of the rules, without filling.
     fn outcome(&mut self, inputs: &[f64]) -> Result<Outcome, ExamineError> {
         let Some(rules) = &mut self.rules else {
             return Ok(Outcome::UNDEFINED);
@@ -157,20 +157,20 @@ impl Predictor {
     }
 }
 
-/// Into how many parts rows without groups, or rows of very many groups, are divided.
+/// The number of folds for rows without groups, or with too many groups.
 const FOLDS: u32 = 10;
 
-/// Leaving out one group at a time is affordable up to so many.
+/// The largest number of groups that are left out one at a time.
 const MOST_GROUPS: usize = 50;
 
-/// Cross-validation: learns without a part of the rows and predicts that part, for each part in turn.
+/// Cross-validation: for each fold in turn, learns from all other rows and predicts the fold.
 ///
-/// The parts are the groups where the rows have any (tenths of the groups where there are over 50), else tenths of the
-/// rows, divided by their values so that their order does not matter.
+/// The folds are the groups if the rows have any (10 folds of whole groups if there are over 50), otherwise 10 folds
+/// that depend on the values of the rows and not on their order.
 ///
 /// # Errors
 ///
-/// Where a row is refused or the model cannot be learned with.
+/// If a row is refused or the model is not suitable for learning.
 ///
 /// # Example: vehicles that were not learned from
 /// ```
@@ -230,7 +230,7 @@ pub fn cross_validate(
     Ok(tally.errors())
 }
 
-/// The part each row belongs to.
+/// The fold of each row.
 fn parts(rows: &[Row]) -> Vec<u32> {
     let mut groups: Vec<u32> = rows.iter().filter_map(|row| row.group).collect();
     groups.sort_unstable();
@@ -238,7 +238,7 @@ fn parts(rows: &[Row]) -> Vec<u32> {
     rows.iter()
         .map(|row| match row.group {
             Some(group) if groups.len() <= MOST_GROUPS => group,
-            // By its rank: numbers that share their last digit would all be one part.
+            // By rank: otherwise groups whose numbers have the same last digit would all be in one fold.
             Some(group) => groups.partition_point(|other| *other < group) as u32 % FOLDS,
             None => (fingerprint(&row.values) % u64::from(FOLDS)) as u32,
         })
@@ -253,18 +253,18 @@ fn fingerprint(values: &[f64]) -> u64 {
     let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     });
-    // The low bits of the product depend on the low bits of the bytes alone.
+    // The low bits of the product depend only on the low bits of the bytes.
     hash ^ (hash >> 32)
 }
 
-/// How well each gap method predicts cells whose rule was removed.
+/// The errors of each gap method in cells whose rule was removed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GapComparison {
-    /// The rules left out, one at a time: those with samples in the gap they leave.
+    /// The number of rules that were removed, one at a time: those with samples in the gap they leave.
     pub rules: u32,
-    /// The predictions of the rules themselves, none left out: what a method can hope for.
+    /// The errors of the rules themselves, none removed: a lower bound to aim for.
     pub with_the_rule: MethodErrors,
-    /// Each method's errors.
+    /// The errors of each method.
     pub methods: Vec<(GapMethod, MethodErrors)>,
 }
 
@@ -272,22 +272,22 @@ pub struct GapComparison {
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MethodErrors {
-    /// Each row counts.
+    /// Errors in which each row counts the same.
     pub by_row: Errors,
-    /// Each rule counts the same, however many samples it has: the mean of its mean absolute error. Rules none of whose
-    /// rows could be predicted do not count; NaN where that is all of them.
+    /// The mean over rules of their mean absolute error, so that each rule counts the same, however many samples it
+    /// has. Rules without any predicted row do not count; NaN if there are no others.
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub by_rule_mean_absolute: f64,
 }
 
-/// Removes each rule in turn, fills its gap by each method, and compares the filling with the rows there.
+/// Removes each rule in turn, fills its gap with each method, and compares the filled values with the rows there.
 ///
-/// Rows belong to the rule that fires most strongly on them. Rows that other rules cover too, or that none covers,
+/// Rows belong to the rule that fires most strongly on them. Rows that other rules also cover, or that no rule covers,
 /// are ignored.
 ///
 /// # Errors
 ///
-/// Where the rules do not compile.
+/// If the rules do not compile.
 ///
 /// # Example
 /// ```
@@ -386,7 +386,7 @@ pub fn leave_one_rule_out(
 mod tests {
     use super::*;
 
-    /// Risk falls evenly with the margin; nothing depends on the spread.
+    /// The risk falls linearly with the margin and does not depend on the spread.
     fn rows(groups: Option<u32>) -> Vec<Row> {
         (0..400)
             .map(|i| {
@@ -436,7 +436,7 @@ rules: []
         };
         let errors = validate(None, |_| {});
         assert_eq!((errors.rows, errors.without_prediction), (400, 0));
-        // The centroid of the outer terms stays 8 % away from the ends, and each rule covers 25 %.
+        // The centroid of the outer terms is 8 % away from the ends, and each rule covers 25 %.
         assert!(
             errors.rmse < 8.0 && errors.mean_absolute <= errors.rmse,
             "{errors:?}"
@@ -455,9 +455,9 @@ rules: []
         assert_eq!(compared.rules, 10);
         assert_eq!(compared.methods.len(), 4);
         for (method, errors) in &compared.methods {
-            // Half way between two terms the neighbour covers the row as well: 20 of 400 rows lie there.
+            // Half way between two terms the neighbour covers the row as well, which applies to 20 of 400 rows.
             assert_eq!(errors.by_row.rows, 380, "{method:?}");
-            // A neighbour across the spread knows the same as the rule that is gone.
+            // A neighbour along the spread predicts the same as the removed rule.
             assert!(errors.by_rule_mean_absolute < 15.0, "{method:?} {errors:?}");
         }
     }

@@ -1,12 +1,14 @@
-//! How good are the risks of profiles, beside predictors that need no rules?
+//! Measures how well the risks of profiles predict critical attitude errors, compared with predictors without rules.
 //!
-//! A *step* is a time of a flight with the scores of the [`Estimators`]: the risks of profiles, and the [`Baseline`]s. It is
-//! critical where the attitude error, root mean square over a second, exceeds 5 degrees within a horizon after it
-//! ([`ErrorRecord`]). An estimator is measured by how well it ranks critical steps above the others ([`Ranking`]), how often a risk
-//! of so many percent became critical ([`reliability`]), and which episodes its warnings announce ([`judge`]).
+//! A *step* is a time of a flight with the scores of the [`Estimators`]: the risks of profiles, and the [`Baseline`]s.
+//! It is critical if the attitude error, root mean square over a second, exceeds 5 degrees within a horizon after it
+//! ([`ErrorRecord`]). The measures of an estimator are how well it ranks critical steps above the others ([`Ranking`]),
+//! how often steps with a given risk were critical ([`reliability`]), and which episodes its warnings announce
+//! ([`judge`]).
 //!
-//! A [`Record`] is a flight with its steps; an [`Evaluation`] has the measures over many of them, as text ([`words`]), as a
-//! [`Document`] for programs, as a picture ([`svg`]) and as a [`page`]. [`learning`] measures the errors of learned rules.
+//! A [`Record`] is a flight with its steps. An [`Evaluation`] contains the measures over many of them and can be output
+//! as text ([`words`]), as a [`Document`] for programs, as a picture ([`svg`]) and as a [`page`]. [`learning`] measures
+//! the errors of learned rules.
 
 mod alarms;
 mod announced;
@@ -61,18 +63,18 @@ use alarms::Alarms;
 use scores::{APART, Evaluated};
 use warnings::Warnings;
 
-/// A file that is not among the flights, and why.
+/// A file that is not among the evaluated flights, and the reason.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LeftOut {
-    /// Its name.
+    /// The name of the file.
     file: String,
-    /// Why it is not among the flights.
+    /// The reason why it was left out.
     reason: String,
 }
 
 impl LeftOut {
-    /// A file of this name; the reason does not repeat it.
+    /// Creates an entry for a file; the reason does not repeat its name.
     pub fn new(file: String, why: &Unusable) -> LeftOut {
         let reason = why.to_string().replace(&format!("`{file}`"), "");
         let reason = reason.trim_start_matches([' ', ',']).to_owned();
@@ -80,16 +82,16 @@ impl LeftOut {
     }
 }
 
-/// What came of it all.
+/// The results of an evaluation.
 pub struct Evaluation {
-    /// What the cases are: `steps` or `flights`.
+    /// The kind of cases: `steps` or `flights`.
     cases: &'static str,
     horizon_s: Option<f64>,
     flights: usize,
     critical: usize,
     left_out: Vec<LeftOut>,
     estimators: Vec<Evaluated>,
-    /// Of each profile: over all flights, and by kind.
+    /// The warnings of each profile: over all flights, and by kind.
     warnings: Vec<(Warnings, Vec<(String, Warnings)>)>,
     alarms: Vec<Alarms>,
     records: Vec<Record>,
@@ -97,8 +99,8 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// Of flights that were evaluated with the same estimators and horizon; `None` where they have no step. `done` is called
-    /// after each estimator.
+    /// Evaluates flights that were read with the same estimators and horizon; `None` if they have no step. `done` is
+    /// called after each estimator.
     pub fn of_flights(
         estimators: &Estimators,
         horizon_s: f64,
@@ -146,7 +148,7 @@ impl Evaluation {
         })
     }
 
-    /// Of cases that are flights. `done` is called after each estimator.
+    /// Evaluates cases that are whole flights. `done` is called after each estimator.
     pub fn of_cases(
         estimators: &Estimators,
         cases: Vec<Case>,
@@ -168,12 +170,12 @@ impl Evaluation {
         }
     }
 
-    /// The steps or flights that it rests on.
+    /// The steps or flights that were evaluated.
     pub fn cases(&self) -> &[Case] {
         &self.all
     }
 
-    /// The flights that it rests on; none where the cases are flights.
+    /// The flights that were evaluated; none if the cases are whole flights.
     pub fn records(&self) -> &[Record] {
         &self.records
     }
@@ -188,7 +190,7 @@ impl Evaluation {
     }
 }
 
-/// The example of the README, run.
+/// Runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

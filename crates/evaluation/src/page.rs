@@ -1,4 +1,4 @@
-//! The evaluation as HTML: its picture and its tables.
+//! The evaluation as an HTML page with its picture and tables.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -7,7 +7,7 @@ use crate::{
     tables::{self, Table},
 };
 
-/// The body of a page, as `flagred_report::page::around` takes it.
+/// The body of the page, for `flagred_report::page::around`.
 pub fn body(evaluation: &Evaluation) -> String {
     let body = html! {
         h1 { "How good the risks are" }

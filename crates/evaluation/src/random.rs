@@ -1,4 +1,4 @@
-//! A generator of random numbers that gives the same ones everywhere.
+//! A random number generator that is the same on all platforms.
 
 /// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
 #[derive(Debug, Clone)]
@@ -17,7 +17,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A whole number below `n`, which is above 0.
+    /// A random integer below `n`, which must be above 0.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.next()) * n as u128) >> 64) as usize
     }

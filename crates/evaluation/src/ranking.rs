@@ -1,4 +1,4 @@
-//! How well scores rank critical cases above the others.
+//! Measures how well scores rank critical cases above the others.
 
 use std::collections::BTreeMap;
 
@@ -7,15 +7,15 @@ use crate::bootstrap::{Interval, bootstrap};
 /// A score and the outcome.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
-    /// The score; the higher, the more critical. Finite.
+    /// The score: finite; higher means more critical.
     pub score: f64,
-    /// Whether the case became critical.
+    /// Whether the case was critical.
     pub critical: bool,
-    /// Its group, such as a flight. Predictions of a group are not independent.
+    /// The group, such as a flight. Predictions of a group are not independent.
     pub group: u32,
 }
 
-/// Predictions in order of their scores.
+/// Predictions sorted by their scores.
 ///
 /// # Example: one pair of four is ranked wrong
 ///
@@ -32,12 +32,12 @@ pub struct Prediction {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Ranking {
-    /// The highest score first.
+    /// The predictions, highest score first.
     places: Vec<Place>,
     groups: usize,
 }
 
-/// What a group has counted so far, from the highest score down.
+/// The counts of a group so far, from the highest score down.
 #[derive(Debug, Clone, Copy, Default)]
 struct GroupCount {
     critical: f64,
@@ -60,17 +60,17 @@ impl GroupCount {
 struct Place {
     group: u32,
     critical: bool,
-    /// Whether the next place has a lower score.
+    /// Whether the next prediction has a lower score.
     ends_tie: bool,
 }
 
-/// The areas under the two curves.
+/// The areas under the ROC curve and the precision-recall curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Areas {
-    /// Under the receiver operating characteristic: the share of pairs of a critical prediction and another in which the
-    /// critical one has the higher score, equal scores counting half.
+    /// The area under the receiver operating characteristic: the share of pairs of a critical and another prediction in
+    /// which the critical one has the higher score; equal scores count half.
     pub roc: f64,
-    /// Under the curve of precision over recall, as average precision: `sum (recall_n - recall_n-1) precision_n` over the
+    /// The area under precision over recall, as average precision: `sum (recall_n - recall_n-1) precision_n` over the
     /// scores from the highest down.
     pub precision_recall: f64,
 }
@@ -78,9 +78,9 @@ pub struct Areas {
 /// The intervals of [`Areas`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intervals {
-    /// Of the area under the receiver operating characteristic.
+    /// The interval of the area under the receiver operating characteristic.
     pub roc: Interval,
-    /// Of the average precision.
+    /// The interval of the average precision.
     pub precision_recall: Interval,
 }
 
@@ -91,21 +91,21 @@ pub struct WithinGroups {
     pub roc: f64,
     /// Its interval; `None` without resamples.
     pub interval: Option<Interval>,
-    /// The groups that have critical predictions and others.
+    /// The number of groups with both critical and other predictions.
     pub groups: usize,
 }
 
 /// A point of the receiver operating characteristic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RocPoint {
-    /// The share of the others that are at or above a score.
+    /// The share of the other predictions with a score at or above this point.
     pub false_positive_rate: f64,
-    /// The share of the critical predictions that are at or above it.
+    /// The share of the critical predictions with a score at or above this point.
     pub true_positive_rate: f64,
 }
 
 impl Ranking {
-    /// Ranks predictions; one whose score is not finite is left out.
+    /// Ranks predictions; those with a score that is not finite are ignored.
     pub fn new(predictions: impl IntoIterator<Item = Prediction>) -> Ranking {
         let mut kept: Vec<Prediction> = predictions
             .into_iter()
@@ -136,25 +136,25 @@ impl Ranking {
         self.places.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no predictions.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
 
-    /// The number of critical ones.
+    /// The number of critical predictions.
     pub fn critical(&self) -> usize {
         self.places.iter().filter(|place| place.critical).count()
     }
 
-    /// The areas under the curves; `None` where all predictions are critical, or none is.
+    /// The areas under the curves; `None` unless there are both critical and other predictions.
     pub fn areas(&self) -> Option<Areas> {
         self.weighted_areas(&vec![1; self.groups])
     }
 
-    /// 95 % intervals of the areas, over resamples that draw whole groups with replacement.
+    /// The 95 % intervals of the areas, over resamples that draw whole groups with replacement.
     ///
-    /// The same seed gives the same intervals. `None` as for [`Ranking::areas`]; resamples without critical predictions,
-    /// or without others, are left out.
+    /// The same seed gives the same intervals. `None` as for [`Ranking::areas`]; resamples without both critical and
+    /// other predictions are ignored.
     pub fn bootstrap(&self, resamples: usize, seed: u64) -> Option<Intervals> {
         let [roc, precision_recall] = bootstrap(self.groups, resamples, seed, |weights| {
             let areas = self.weighted_areas(weights)?;
@@ -166,8 +166,9 @@ impl Ranking {
         })
     }
 
-    /// The area under the receiver operating characteristic within each group, and its mean over the groups that have
-    /// critical predictions and others: whether scores tell when, and not only in which group. `None` where no group has both.
+    /// The mean area under the receiver operating characteristic within groups, over the groups that have both critical
+    /// and other predictions. It measures whether scores predict the time, and not only the group. `None` if no group
+    /// has both.
     ///
     /// # Example: two flights that the score tells apart, but not their moments
     /// ```
@@ -180,7 +181,7 @@ impl Ranking {
     /// # Ok::<(), &str>(())
     /// ```
     pub fn within_groups(&self, resamples: usize, seed: u64) -> Option<WithinGroups> {
-        // Ties are those of all predictions: a group counts its own of each when the tie ends.
+        // Ties are those of all predictions: each group's counts are added when the tie ends.
         let mut counts = vec![GroupCount::default(); self.groups];
         let mut tied = Vec::new();
         for place in &self.places {
@@ -221,7 +222,7 @@ impl Ranking {
         })
     }
 
-    /// The areas where every prediction counts as often as its group.
+    /// The areas when every prediction counts as often as its group.
     fn weighted_areas(&self, weights: &[u32]) -> Option<Areas> {
         let (mut critical, mut others) = (0_u64, 0_u64);
         let (mut critical_of_tie, mut others_of_tie) = (0_u64, 0_u64);
@@ -250,7 +251,7 @@ impl Ranking {
         })
     }
 
-    /// The receiver operating characteristic from (0, 0) to (1, 1), in steps of about `1 / steps` along it.
+    /// The receiver operating characteristic from (0, 0) to (1, 1), in steps of about `1 / steps` along the curve.
     pub fn roc(&self, steps: u32) -> Vec<RocPoint> {
         let critical = self.critical();
         let others = self.len() - critical;
@@ -281,22 +282,22 @@ impl Ranking {
     }
 }
 
-/// How many predictions of a band of risk became critical.
+/// The predictions in a band of risk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
-    /// The lower end of the band in %; it belongs to it.
+    /// The lower end of the band in %, inclusive.
     pub from_pct: f64,
-    /// The upper end in %; 100 belongs to the last band.
+    /// The upper end in %, exclusive except for 100.
     pub to_pct: f64,
-    /// How many predictions fell into it.
+    /// The number of predictions in the band.
     pub predictions: u64,
-    /// How many of them were critical.
+    /// The number of critical ones among them.
     pub critical: u64,
-    /// The mean of their risks in %; `None` without one.
+    /// The mean of their risks in %; `None` without predictions.
     pub mean_risk_pct: Option<f64>,
 }
 
-/// The share of predictions that became critical, for each tenth of the risk from 0 to 100 %.
+/// Returns how many predictions were critical, for each tenth of the risk from 0 to 100 %.
 ///
 /// # Example
 /// ```
@@ -336,7 +337,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// 200 predictions of 10 groups with many equal scores, by whole-number arithmetic.
+    /// 200 predictions in 10 groups with many equal scores, computed with integers.
     fn predictions() -> Vec<Prediction> {
         (0..200_u32)
             .map(|i| {
@@ -449,7 +450,7 @@ mod tests {
             match ranking.areas() {
                 Some(areas) => {
                     prop_assert!((areas.roc - in_order / pairs).abs() < 1e-12);
-                    // The curve itself has that area under it.
+                    // The curve itself has this area under it.
                     let trapezoids: f64 = ranking.roc(1_000_000).windows(2).map(|p| {
                         (p[1].false_positive_rate - p[0].false_positive_rate)
                             * (p[0].true_positive_rate + p[1].true_positive_rate) / 2.0

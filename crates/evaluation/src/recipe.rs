@@ -1,14 +1,16 @@
-//! Inputs of profiles from a table that has one row for each flight: means and standard deviations of the commands.
+//! Computes inputs of profiles from a table with one row for each flight, from means and standard deviations of the
+//! commands.
 //!
-//! Such tables hold statistics of the normalised command c on the full range. Of a command all moments convert exactly
-//! to the effective range, `e = (c - low) / (high - low)`; and by the law of total variance the variance of all motors
-//! and times is that of the motors' mean over time, plus the mean of the variance between motors.
+//! Such tables contain statistics of the normalised command c on the full range. Moments of a command convert exactly
+//! to the effective range, `e = (c - low) / (high - low)`. By the law of total variance, the variance over all motors
+//! and times is the variance over time of the mean of the motors, plus the mean over time of the variance between
+//! motors.
 
 use flagred::source::{Motors, Signal, Source, Statistic};
 
-/// How an input is made of columns, and of the limits of the effective range.
+/// How an input is computed from columns, and from the limits of the effective range.
 pub struct Recipe {
-    /// The columns that it takes.
+    /// The columns that it reads.
     pub columns: &'static [&'static str],
     make: Make,
 }
@@ -16,11 +18,11 @@ pub struct Recipe {
 type Make = fn(&[f64], f64, f64) -> f64;
 
 impl Recipe {
-    /// The value in a row. `cell` gives the number in a column, and `None` where there is no such column; without limits the
-    /// effective range is the full one.
+    /// The value for a row. `cell` returns the number in a column, or `None` if there is no such column; without limits
+    /// the effective range is the full range.
     ///
     /// # Errors
-    /// What `cell` has against a number.
+    /// The errors of `cell`.
     pub fn value<E>(&self, cell: impl Fn(&str) -> Result<Option<f64>, E>) -> Result<f64, E> {
         let low = cell("c_limit_low")?.unwrap_or(0.0);
         let high = cell("c_limit_high")?.unwrap_or(1.0);
@@ -30,7 +32,7 @@ impl Recipe {
     }
 }
 
-/// The recipe of a source, where such tables tell it.
+/// The recipe of a source, if it can be computed from such tables.
 pub fn recipe(source: &Source) -> Option<Recipe> {
     let spread: Make = |values, low, high| values[0] / (high - low);
     let (columns, make): (&'static [&'static str], Make) =
@@ -66,7 +68,7 @@ pub fn recipe(source: &Source) -> Option<Recipe> {
     Some(Recipe { columns, make })
 }
 
-/// A mean margin on the effective range; exact where all commands lie on one side of the middle of both ranges.
+/// A mean margin on the effective range; exact if all commands are on the same side of the middle of both ranges.
 fn effective_margin(values: &[f64], low: f64, high: f64) -> f64 {
     let nearer = if values[1] < 0.5 {
         values[0] - low

@@ -1,4 +1,4 @@
-//! Whole flights under evaluation: a table with a row for each.
+//! The evaluation of whole flights from a table with one row for each flight.
 
 use flagred::{profile::CRITICAL_ERROR_DEG, source::Source};
 
@@ -9,18 +9,18 @@ use crate::{
     scores::Case,
 };
 
-/// The column with the attitude error of a flight, which a table must have.
+/// The required column with the attitude error of a flight.
 pub const ERROR: &str = "att_rmse_deg";
 
-/// A table with a row for each flight.
+/// A table with one row for each flight.
 pub struct Rows<'a, E> {
-    /// The names of its columns.
+    /// The names of the columns.
     pub columns: Vec<&'a str>,
-    /// How many rows it has.
+    /// The number of rows.
     pub len: usize,
-    /// The number in a row and column, or what is wrong with it.
+    /// Returns the number in a row and column, or an error.
     pub number: &'a dyn Fn(usize, usize) -> Result<f64, E>,
-    /// The text in a row and column.
+    /// Returns the text in a row and column.
     pub text: &'a dyn Fn(usize, usize) -> &'a str,
 }
 
@@ -35,18 +35,18 @@ impl<E> Rows<'_, E> {
     }
 }
 
-/// Where a table has the value of an input.
+/// The columns of a table that contain the value of an input.
 enum Column {
-    /// In a column of its own.
+    /// A column of its own.
     Own(usize),
-    /// In columns that it can be computed from.
+    /// Columns from which it is computed.
     Of(Recipe),
-    /// Nowhere: the rules do not read it.
+    /// None, because the rules do not read the input.
     Unread,
 }
 
 impl Column {
-    /// Under one of the names, or from columns that a table of flights has.
+    /// Finds a column with one of the names, or columns from which the input can be computed.
     fn of<E>(table: &Rows<'_, E>, names: &[&str], source: &Source) -> Option<Column> {
         let mut own = names.iter().filter_map(|name| table.column(name));
         if let Some(column) = own.next() {
@@ -67,13 +67,13 @@ impl Column {
     }
 }
 
-/// The rows of a table as cases, each a flight of its own unless a column `file` says which belong together; and what is
-/// to be said about it.
+/// Converts the rows of a table to cases, each a separate flight unless a column `file` groups them; also returns notes
+/// for the user.
 ///
-/// A row is critical where its attitude error (`att_rmse_deg`) is 5 degrees or more, or it crashed.
+/// A row is critical if its attitude error (`att_rmse_deg`) is 5 degrees or more, or if it crashed.
 ///
 /// # Errors
-/// A cell that is not the number it should be.
+/// If a cell does not contain the required number.
 pub fn cases<E>(
     table: &Rows<'_, E>,
     estimators: &Estimators,
@@ -111,19 +111,19 @@ pub fn cases<E>(
         .baselines
         .iter()
         .map(|baseline| {
-            // What `flagred dataset` calls the mean margin, and what a table of flights calls the wind.
+            // The name of the mean margin in tables of `flagred dataset`, and of the wind in tables of flights.
             let other = match baseline.name {
                 "margin_mean" => "margin",
                 "true_wind" => "wind_mean",
                 name => name,
             };
             let names: &[&str] = match baseline.name {
-                // On the full range it is something else.
+                // On the full range, `margin_mean` has another value.
                 "margin_mean" => &[other],
                 name => &[name, other],
             };
             let column = match baseline.per_motor {
-                // A row says nothing of single motors.
+                // A row contains no values of single motors.
                 Some(_) => None,
                 None => Column::of(table, names, &baseline.source),
             };
@@ -153,7 +153,7 @@ pub fn cases<E>(
         }
         let group = match text(file) {
             "" => row,
-            // Rows of a file stand together.
+            // Rows of a file are consecutive.
             file if groups.last() == Some(&file) => groups.len() - 1,
             file => {
                 groups.push(file);

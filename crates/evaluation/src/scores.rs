@@ -1,4 +1,4 @@
-//! How well each estimator ranks what became critical, over everything, by vehicle and by kind.
+//! The scores of each estimator: how well it ranks critical cases, over all cases, by vehicle and by kind.
 
 use std::collections::BTreeMap;
 
@@ -8,52 +8,52 @@ use crate::ranking::{
     Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
 };
 
-/// The kind of flight that is reported apart: its attitude errors are real, but commanded.
+/// The kind of flight that is reported separately: its attitude errors are real, but commanded.
 pub(crate) const APART: &str = "manoeuvre";
 
-/// How often whole flights are drawn for an interval, and from which seed.
+/// The number of resamples of whole flights for an interval, and their random seed.
 pub(crate) const RESAMPLES: usize = 1000;
 pub(crate) const SEED: u64 = 1;
 
-/// Steps along the curve that is drawn.
+/// The number of steps along the drawn curve.
 const ROC_STEPS: u32 = 200;
 
-/// A moment or a flight that was predicted.
+/// A step or a flight that was predicted.
 pub struct Case {
     /// The index of its flight.
     pub group: u32,
-    /// Its time on the flight's clock; `None` of a whole flight.
+    /// The time on the flight's clock, in seconds; `None` for a whole flight.
     pub t_s: Option<f64>,
-    /// What flew.
+    /// The vehicle.
     pub vehicle: String,
-    /// What the flight was about.
+    /// The kind of flight.
     pub kind: String,
-    /// Whether it became critical.
+    /// Whether it was critical.
     pub is_critical: bool,
-    /// No critical error in the 5 s before.
+    /// Whether there was no critical error in the 5 s before.
     pub is_quiet: bool,
-    /// No critical error in the 10 s before.
+    /// Whether there was no critical error in the 10 s before.
     pub is_onset: bool,
-    /// For each estimator; NaN is unknown.
+    /// The score of each estimator; NaN is unknown.
     pub scores: Vec<f64>,
 }
 
-/// What an estimator comes to.
+/// The measures of an estimator over some cases.
 pub(crate) struct Scores {
-    /// The cases in which it said something.
+    /// The number of cases with a score.
     pub(crate) cases: usize,
-    /// Those in which it did not.
+    /// The number of cases without a score.
     pub(crate) unknown: usize,
     pub(crate) critical: usize,
-    /// `None` where all cases are critical, or none is.
+    /// The areas; `None` unless there are both critical and other cases.
     pub(crate) areas: Option<Areas>,
     pub(crate) intervals: Option<Intervals>,
-    /// Within single flights; `None` where none has critical cases and others.
+    /// The mean area within single flights; `None` if no flight has both critical and other cases.
     pub(crate) within: Option<WithinGroups>,
 }
 
 impl Scores {
-    /// Why there is no area; `cases` is what the cases are: `steps`.
+    /// The reason why there is no area; `cases` is the kind of cases, such as `steps`.
     pub(crate) fn no_area(&self, cases: &str) -> Option<String> {
         let case = cases.trim_end_matches('s');
         match (self.areas, self.cases, self.critical) {
@@ -66,23 +66,23 @@ impl Scores {
     }
 }
 
-/// An estimator under evaluation.
+/// An evaluated estimator.
 pub(crate) struct Evaluated {
     pub(crate) name: String,
     pub(crate) description: String,
-    /// Over all kinds but the one apart.
+    /// The scores over all kinds except [`APART`].
     pub(crate) all: Scores,
-    /// Over the quiet steps of those, and over the onsets.
+    /// The scores over the quiet steps of those, and over the onsets.
     pub(crate) quiet: Scores,
     pub(crate) onset: Scores,
     pub(crate) by_vehicle: Vec<(String, Scores)>,
     pub(crate) by_kind: Vec<(String, Scores)>,
-    /// Of risks in %; other scores have no scale.
+    /// The reliability of risks in %; other scores have no scale.
     pub(crate) reliability: Option<[Band; 10]>,
     pub(crate) roc: Vec<RocPoint>,
 }
 
-/// Scores every estimator; the first `risks` of them give risks in %. `done` is called after each.
+/// Scores every estimator; the first `risks` of them are risks in %. `done` is called after each.
 pub(crate) fn score<'a>(
     names: impl Iterator<Item = (&'a str, &'a str)>,
     risks: usize,

@@ -1,6 +1,6 @@
-//! Times of a flight.
+//! Periods of a flight.
 
-/// A time of a flight, both ends included, in seconds.
+/// A period of a flight, both ends included, in seconds.
 ///
 /// # Example
 /// ```
@@ -12,24 +12,24 @@
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Span {
-    /// Where it begins.
+    /// The start in seconds.
     pub from_s: f64,
-    /// Where it ends.
+    /// The end in seconds.
     pub to_s: f64,
 }
 
 impl Span {
-    /// Its length in seconds.
+    /// The length in seconds.
     pub fn length_s(&self) -> f64 {
         self.to_s - self.from_s
     }
 
-    /// Whether a time lies in it.
+    /// Whether a time is within the span.
     pub fn contains(&self, t_s: f64) -> bool {
         (self.from_s..=self.to_s).contains(&t_s)
     }
 
-    /// Spans in order of time, those that touch joined.
+    /// Sorts spans by time and joins those that touch.
     pub fn joined(spans: impl IntoIterator<Item = Span>) -> Vec<Span> {
         let mut spans: Vec<Span> = spans.into_iter().collect();
         spans.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
@@ -43,15 +43,16 @@ impl Span {
         spans
     }
 
-    /// The length that two spans share, in seconds; 0 where they share nothing.
+    /// The length of the overlap of two spans, in seconds; 0 without overlap.
     pub fn shared_s(&self, other: &Span) -> f64 {
         let to_s = self.to_s.min(other.to_s);
         (to_s - self.from_s.max(other.from_s)).max(0.0)
     }
 
-    /// Adds a time at which something is the case or not: the last of `spans` grows or ends, or a new one begins.
+    /// Extends `spans` by a time at which a condition is true or false: the last span grows or ends, or a new one
+    /// begins.
     ///
-    /// `open` keeps whether it was the case the time before.
+    /// `open` stores whether the condition was true at the time before.
     pub fn follow(spans: &mut Vec<Span>, open: &mut bool, t_s: f64, is_so: bool) {
         match spans.last_mut().filter(|_| *open && is_so) {
             Some(span) => span.to_s = t_s,

@@ -52,7 +52,7 @@ fn name(evaluated: &Evaluated) -> String {
     format!("{} {area}", evaluated.name)
 }
 
-/// The mean risk and the critical share of a band in percent; `None` where there are too few predictions in it.
+/// The mean risk and the critical share of a band in percent; `None` if it contains too few predictions.
 fn point(band: &Band) -> Option<(f64, f64)> {
     const FEWEST: u64 = 5;
     let risk_pct = band.mean_risk_pct.filter(|_| band.predictions >= FEWEST)?;

@@ -1,25 +1,26 @@
-//! Upsets: times at which the attitude was lost, and whether an alarm came before.
+//! Upsets: times at which the attitude was lost, and whether an alarm preceded them.
 
 use flagred_flightlog::Attitude;
 
 use crate::{critical::ErrorRecord, span::Span};
 
-/// The attitude is lost where its error, root mean square over a second, is over so many degrees ...
+/// The attitude is lost if its error, root mean square over a second, exceeds this, in degrees, ...
 const ERROR_DEG: f64 = 30.0;
 
-/// ... or where the vehicle tilts further than this ...
+/// ... or if the vehicle tilts by more than this, in degrees, ...
 const TILT_DEG: f64 = 60.0;
 
-/// ... and its set point does not.
+/// ... while its set point tilts by less than this.
 const COMMANDED_TILT_DEG: f64 = 50.0;
 
-/// A set point that tilts further than [`TILT_DEG`] is a flip that is flown on purpose, and so are so many seconds around it.
+/// A set point that tilts by more than [`TILT_DEG`] is an intentional flip, which is excluded with this time around it,
+/// in seconds.
 const FLIP_S: f64 = 2.0;
 
-/// An alarm counts as one before an upset if it was on in so many seconds before it.
+/// An alarm counts as before an upset if it was on within this time before it, in seconds.
 const BEFORE_S: f64 = 10.0;
 
-/// It counts as one just after it if it came within so many seconds.
+/// It counts as just after the upset if it was raised within this time after it, in seconds.
 const AFTER_S: f64 = 1.0;
 
 /// How an upset was found by alarms.
@@ -37,17 +38,17 @@ const AFTER_S: f64 = 1.0;
 pub enum UpsetAlarm {
     /// An alarm was on at some time in the 10 s before.
     Before {
-        /// How long before the upset that alarm was raised, in seconds; at most since take-off.
+        /// How long before the upset that alarm was raised, in seconds; not counted before take-off.
         lead_s: f64,
     },
     /// An alarm was raised within 1 s after.
     After,
-    /// Neither.
+    /// Neither of these.
     Never,
 }
 
 impl UpsetAlarm {
-    /// Of an upset at `upset_s` in a time in the air, by the alarms of the flight.
+    /// Classifies an upset at `upset_s` in a time in the air, by the alarms of the flight.
     pub fn of(upset_s: f64, air: Span, alarms: &[Span]) -> UpsetAlarm {
         let earliest_s = air.from_s.max(upset_s - BEFORE_S);
         let before = alarms
@@ -68,10 +69,10 @@ impl UpsetAlarm {
     }
 }
 
-/// When the attitude was first lost in a time in the air: the error over a second is over 30 degrees, or the vehicle tilts
-/// by more than 60 degrees while its set point tilts by less than 50. `None` where it never was.
+/// The time at which the attitude was first lost in a time in the air: the error over a second exceeds 30 degrees, or
+/// the vehicle tilts by more than 60 degrees while its set point tilts by less than 50. `None` if it never was.
 ///
-/// Flips that are flown on purpose do not count: times within 2 s of a set point that tilts by more than 60 degrees.
+/// Intentional flips do not count: times within 2 s of a set point that tilts by more than 60 degrees.
 pub fn upset_s(errors: &ErrorRecord, attitudes: &[(f64, Attitude)], air: Span) -> Option<f64> {
     let inside = || attitudes.iter().filter(|(t_s, _)| air.contains(*t_s));
     let flips = inside().filter(|(_, attitude)| attitude.commanded_tilt_deg() > TILT_DEG);
@@ -126,7 +127,7 @@ mod tests {
 
     #[test]
     fn the_attitude_is_lost_by_its_error_or_by_a_tilt_that_nobody_commanded() {
-        // At 10 Hz; a roll from 40 s on for a fifth of a second or for good.
+        // At 10 Hz; a roll from 40 s on, for a fifth of a second or permanently.
         let upset = |roll_deg: f64, roll_des_deg: f64, until_s: f64| {
             let attitudes: Vec<(f64, Attitude)> = (0..600)
                 .map(|i| {
@@ -151,10 +152,10 @@ mod tests {
         assert_eq!(upset(61.0, 0.0, 40.2), Some(40.0));
         assert_eq!(upset(61.0, 51.0, 60.0), None);
         assert_eq!(upset(59.0, 0.0, 40.2), None);
-        // 40 degrees for a share x of the second make 40 sqrt(x): over 30 from x = 0.5625 on.
+        // 40 degrees for a share x of the second result in 40 sqrt(x): over 30 from x = 0.5625 on.
         assert_eq!(upset(40.0, 0.0, 60.0), Some(40.5));
         assert_eq!(upset(29.0, 0.0, 60.0), None);
-        // A flip on purpose.
+        // An intentional flip.
         assert_eq!(upset(100.0, 61.0, 42.0), None);
     }
 }

@@ -1,4 +1,4 @@
-//! What the warnings of a profile are worth, over many flights.
+//! The quality of the warnings of a profile, over many flights.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::{
     scores::{APART, median},
 };
 
-/// An episode that starts within so many seconds after another one ended belongs to the same group.
+/// An episode that starts within this time after another one ended, in seconds, belongs to the same group.
 const SAME_GROUP_S: f64 = 5.0;
 
 /// The warnings of a profile over a number of flights.
@@ -20,27 +20,27 @@ pub(crate) struct Warnings {
     pub(crate) flights: usize,
     /// The judged time in hours.
     pub(crate) hours: f64,
-    /// Times of critical error.
+    /// The number of periods of critical error.
     pub(crate) episodes: usize,
-    /// Episodes with a warning on that began before them.
+    /// The number of episodes at whose start a warning was on that began earlier.
     pub(crate) announced: usize,
-    /// The median of how long before, in seconds, over those that were announced.
+    /// The median lead time of announced episodes, in seconds.
     pub(crate) lead_s_median: Option<f64>,
-    /// Groups of episodes that follow each other within 5 s.
+    /// The number of groups of episodes that follow each other within 5 s.
     pub(crate) groups: usize,
-    /// Groups whose first episode was announced: a warning that stays on announces all the others.
+    /// The number of groups whose first episode was announced: a warning that stays on would announce all others.
     pub(crate) groups_announced: usize,
-    /// The median of how long before these, in seconds.
+    /// The median lead time of announced groups, in seconds.
     pub(crate) group_lead_s_median: Option<f64>,
-    /// Episodes that were not announced, but answered by a warning before they were over.
+    /// The number of episodes that were not announced, but during which a warning began.
     pub(crate) answered: usize,
-    /// The median of how long that took from their start, in seconds.
+    /// The median time from their start to that warning, in seconds.
     pub(crate) answer_s_median: Option<f64>,
-    /// Times of WARN or FAIL.
+    /// The number of periods of WARN or FAIL.
     pub(crate) warnings: usize,
-    /// Warnings without an episode.
+    /// The number of warnings without an episode.
     pub(crate) false_warnings: usize,
-    /// The share of the time that a warning was on.
+    /// The share of the time during which a warning was on.
     pub(crate) share_of_time_on: Option<f64>,
 }
 
@@ -50,7 +50,7 @@ impl Warnings {
         (self.hours > 0.0).then(|| self.false_warnings as f64 / self.hours)
     }
 
-    /// Of a profile over flights.
+    /// Counts the warnings of a profile over flights.
     pub(crate) fn of<'a>(profile: usize, records: impl Iterator<Item = &'a Record>) -> Warnings {
         let mut sum = Warnings::default();
         let (mut leads, mut group_leads, mut answers, mut on_s) = (vec![], vec![], vec![], 0.0);
@@ -95,7 +95,7 @@ impl Warnings {
         sum
     }
 
-    /// Of a profile over all flights but the kind apart, and over each kind.
+    /// Counts the warnings of a profile over all flights except the kind [`APART`], and over each kind.
     pub(crate) fn by_kind(
         profile: usize,
         records: &[Record],

@@ -1,4 +1,4 @@
-//! The evaluation in words.
+//! The evaluation as text.
 
 use crate::{
     Evaluation,
@@ -41,7 +41,7 @@ fn write(text: &mut String, table: &Table) {
     }
 }
 
-/// A line of cells; those after the last column stand as they are.
+/// Appends a line of cells; those after the last column are not padded.
 fn line<'a>(
     text: &mut String,
     indent: &str,

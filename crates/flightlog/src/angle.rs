@@ -1,6 +1,6 @@
-//! Angles of an attitude.
+//! Attitude angles from quaternions.
 
-/// Angles of an attitude, in the order yaw, pitch, roll (ZYX).
+/// An attitude angle, in the order yaw, pitch, roll (ZYX).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Angle {
     Roll,

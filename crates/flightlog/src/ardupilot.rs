@@ -1,4 +1,4 @@
-//! The motors by ArduPilot's parameters, and the range of their commands; its flight modes.
+//! The motors, the range of their commands and the flight modes of ArduPilot, from its parameters.
 
 mod vehicle;
 
@@ -8,7 +8,7 @@ use crate::outputs::{FRACTIONS, PULSES_US};
 use crate::parameters::{Parameters, name_of};
 use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
 
-/// Whether the log has any SERVOn_FUNCTION: firmware before 3.5 has none.
+/// Whether the log has a SERVOn_FUNCTION parameter. Firmware before 3.5 has none.
 pub(crate) fn has_functions(parameters: &Parameters) -> bool {
     (1..=32).any(|output| parameters.get(&format!("SERVO{output}_FUNCTION")).is_some())
 }
@@ -25,9 +25,9 @@ fn motor_of_function(function: i64) -> Option<u16> {
     u16::try_from(number).ok()
 }
 
-/// The motors of a vehicle and the number of the output (from 1) of each, in order of their
-/// own numbers: by SERVOn_FUNCTION; where the log has none (firmware before 3.5), the
-/// outputs 1 to N with N from the frame. `name` is what the log calls an output.
+/// The motors of a vehicle in order of their numbers, each with the number of its output, from 1. They are named by
+/// SERVOn_FUNCTION. If the log has none (firmware before 3.5), they are the outputs 1 to N with N from the frame.
+/// `name` is the name of an output in the log.
 pub(crate) fn motors(
     parameters: &Parameters,
     vehicle: &Vehicle,
@@ -60,7 +60,7 @@ pub(crate) fn motors(
     motors
 }
 
-/// Motors 1 to `motors`, on outputs of the same number.
+/// Motors 1 to `motors`, on the outputs with the same numbers.
 pub(crate) fn numbered_motors(
     motors: u16,
     name: impl Fn(u16) -> String,
@@ -79,16 +79,16 @@ fn motor(number: u16, output: String, source: &str) -> Motor {
     }
 }
 
-/// Motors of a tricopter: 1, 2 and 4. Motor 7 stands for the servo that tilts the rear motor.
+/// Motors of a tricopter: 1, 2 and 4. Number 7 is the servo that tilts the rear motor.
 const TRI: u16 = 3;
 const REAR_OF_TRI: u16 = 4;
 const SERVO_OF_TRI: u16 = 7;
 
-/// Changes of armed, or of in the air, that are kept where the commands tell them.
+/// The number of changes of armed, or of in the air, that are kept if they are derived from the commands.
 const MOST_CHANGES: usize = 10_000;
 
-/// Armed and in-air times from the commands alone, for logs without events: armed while
-/// any motor runs, in the air while the mean command is above 0.2. Changes after the last that is kept are counted.
+/// Armed and in-air times derived from the commands, for logs without events: armed while any motor runs, in the air
+/// while the mean command is above 0.2. Changes beyond [`MOST_CHANGES`] are counted in `left_out`.
 pub(crate) fn air_from_commands(
     flight: &Flight,
     left_out: &mut u64,
@@ -98,7 +98,7 @@ pub(crate) fn air_from_commands(
     };
     let first_s = flight.commands.t_s().first().copied().unwrap_or_default();
     let running = |row: &[f64], _| row.iter().any(|&raw| raw > range.low + 1.0);
-    // Motors that are unknown may run: they end no flight.
+    // Motors whose commands are unknown may be running, so they do not end a flight.
     let flying = |row: &[f64], before: bool| {
         let known: Vec<f64> = row.iter().filter_map(|&raw| flight.command(raw)).collect();
         known.iter().sum::<f64>() > 0.2 * known.len() as f64 || before && known.len() < row.len()
@@ -136,7 +136,7 @@ pub(crate) enum Mode {
 }
 
 impl Mode {
-    /// Its name. Numbers mean different modes on different vehicles.
+    /// The name of the mode. The same number means different modes on different vehicles.
     pub(crate) fn name(self, kind: VehicleKind) -> String {
         match (self, kind) {
             (Self::Name(name), _) => name,
@@ -181,8 +181,8 @@ const COPTER_MODES: &[&str] = &[
     "TURTLE",
 ];
 
-/// Full range of the motor outputs: MOT_PWM_MIN/MAX if both are above 0, else
-/// RCn_MIN/MAX of the throttle channel n. `None` where they are no pulses of a speed controller.
+/// Full range of the motor outputs: MOT_PWM_MIN/MAX if both are above 0, otherwise RCn_MIN/MAX of the throttle channel
+/// n. `None` if these are not pulse widths of a speed controller.
 pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
     let range = |(low, high), source| Range {
         low,
@@ -211,7 +211,7 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
     Some(range(radio, source))
 }
 
-/// Why MOT_SPIN_MIN and MOT_SPIN_MAX, where both are set, are no limits of commands.
+/// The reason why MOT_SPIN_MIN and MOT_SPIN_MAX, if both are set, cannot be limits of the commands.
 pub(crate) fn effective_doubt(parameters: &Parameters) -> Option<String> {
     let [low, high] = ["MOT_SPIN_MIN", "MOT_SPIN_MAX"].map(|name| parameters.get(name));
     let (low, high) = low.zip(high)?;
@@ -219,15 +219,15 @@ pub(crate) fn effective_doubt(parameters: &Parameters) -> Option<String> {
         .then(|| format!("MOT_SPIN_MIN/MAX, {low} and {high}, are no limits"))
 }
 
-/// Whether parameters name limits of the commands, even if these are implausible.
+/// Whether there are parameters with limits of the commands, even if these are implausible.
 pub(crate) fn has_limits(parameters: &Parameters) -> bool {
     let is_known = |name: &str| parameters.get(name).is_some();
     is_known("MOT_SPIN_MIN") && is_known("MOT_SPIN_MAX") || is_known("THR_MIN")
 }
 
-/// The part of the range that is used in flight: MOT_SPIN_MIN to MOT_SPIN_MAX. Before firmware
-/// 3.4 it begins at THR_MIN per mille; firmware 3.3 goes up to the share MOT_THST_MAX of what
-/// is left, and 3.1 and 3.2 to MOT_TCRV_MAXPCT percent of all, if that curve is in use.
+/// The part of the range that is used in flight: MOT_SPIN_MIN to MOT_SPIN_MAX. Before firmware 3.4 it begins at THR_MIN
+/// per mille. In firmware 3.3 it ends at the share MOT_THST_MAX of the rest; in 3.1 and 3.2 at MOT_TCRV_MAXPCT percent
+/// of the whole range, if that curve is in use.
 pub(crate) fn effective_range(parameters: &Parameters) -> Range {
     let range = |low, high, source: String| Range {
         low,
@@ -258,12 +258,12 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
     }
 }
 
-/// Share of the commands that may be above an upper limit that is in force, and from how far
-/// above they count, as a fraction of the range: single damaged samples do not count.
+/// The share of commands that may be above an upper limit that is in force, and the distance above it from which they
+/// count, as a fraction of the range. Single damaged samples are thus ignored.
 const ABOVE: (f64, f64) = (1e-4, 0.006);
 
-/// The effective range of a flight. Before firmware 3.4 a limit may be set without being in
-/// force: then the commands go beyond it.
+/// The effective range of a flight. Before firmware 3.4 a limit may be set without being in force; the commands then
+/// exceed it.
 pub(crate) fn range_in_force(parameters: &Parameters, flight: &Flight) -> Range {
     let effective = effective_range(parameters);
     let is_new = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX").is_some();
@@ -301,7 +301,7 @@ mod tests {
         pairs.iter().copied().collect()
     }
 
-    /// Limits of no speed controller would hide a motor at its limit.
+    /// Limits that no speed controller has would hide a motor at its limit.
     #[test]
     fn limits_that_cannot_be_are_no_limits() {
         for (low, high) in [

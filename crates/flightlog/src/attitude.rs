@@ -1,11 +1,11 @@
-//! The attitude of a flight beside its set point.
+//! The attitude of a flight and its set point.
 
 use crate::Flight;
 
-/// The signals that an [`Attitude`] consists of.
+/// The names of the signals that form an [`Attitude`].
 pub const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
 
-/// Wanted and actual roll and pitch in degrees.
+/// Desired and actual roll and pitch in degrees.
 ///
 /// # Example: a pitch that lags behind
 /// ```
@@ -16,32 +16,32 @@ pub const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "p
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attitude {
-    /// The roll that the controller wants.
+    /// The roll set point of the controller.
     pub roll_des_deg: f64,
     /// The roll of the vehicle.
     pub roll_deg: f64,
-    /// The pitch that the controller wants.
+    /// The pitch set point of the controller.
     pub pitch_des_deg: f64,
     /// The pitch of the vehicle.
     pub pitch_deg: f64,
 }
 
 impl Attitude {
-    /// `(roll_des - roll)^2 + (pitch_des - pitch)^2` in square degrees, each difference taken the short way
-    /// round. (Eq. 1 of the paper prints a minus between the squares, which would let a roll error hide a
-    /// pitch error: an erratum.)
+    /// `(roll_des - roll)^2 + (pitch_des - pitch)^2` in square degrees, each difference taken the shorter way around.
+    /// (Eq. 1 of the paper prints a minus between the squares, which would let a roll error cancel a pitch error: an
+    /// erratum.)
     pub fn squared_error_deg2(&self) -> f64 {
         let roll = libm::remainder(self.roll_des_deg - self.roll_deg, 360.0);
         let pitch = libm::remainder(self.pitch_des_deg - self.pitch_deg, 360.0);
         roll * roll + pitch * pitch
     }
 
-    /// How far the vehicle tilts from level, in degrees: `acos(cos(roll) cos(pitch))`.
+    /// The tilt of the vehicle from level, in degrees: `acos(cos(roll) cos(pitch))`.
     pub fn tilt_deg(&self) -> f64 {
         tilt_deg(self.roll_deg, self.pitch_deg)
     }
 
-    /// How far the set point tilts from level, in degrees.
+    /// The tilt of the set point from level, in degrees.
     pub fn commanded_tilt_deg(&self) -> f64 {
         tilt_deg(self.roll_des_deg, self.pitch_des_deg)
     }
@@ -91,7 +91,7 @@ mod tests {
     fn errors_in_roll_and_pitch_add_up() {
         assert_eq!(error(3.0, 0.0, 4.0, 0.0), 25.0);
         assert_eq!(error(0.0, 3.0, 0.0, 4.0), 25.0);
-        // With the printed minus this would read 0.
+        // With the printed minus this would be 0.
         assert_eq!(error(4.0, 0.0, 4.0, 0.0), 32.0);
     }
 

@@ -1,46 +1,46 @@
-//! The clock of a log: which time stamps to accept, and where the autopilot booted again.
+//! The clock of a log: decides which timestamps to accept, and detects reboots of the autopilot.
 
-/// Steps from one message to the next that are always accepted, in seconds. The limit back is
-/// larger than forward: the message before may be the damaged one.
+/// Steps from one message to the next that are always accepted, in seconds. The limit for steps back is larger than for
+/// steps forward, because the previous message may be the damaged one.
 const BACK_S: f64 = -2.5;
 const FORWARD_S: f64 = 2.0;
 /// The longest step from one message to the next that is accepted in slow logs.
 const SLOWEST_S: f64 = 60.0;
-/// A clock that goes back by more than this, in seconds, was started again.
+/// A clock that goes back by more than this, in seconds, was restarted.
 const BOOT_STEP_S: f64 = -10.0;
-/// No log pauses for longer, in seconds: a time that is further ahead is damage, however many messages have it.
+/// The longest pause of a log, in seconds. A time that is further ahead is damage, however many messages have it.
 const LONGEST_PAUSE_S: f64 = 7.0 * 86_400.0;
-/// No clock shows more, in seconds: thrice the time since 1970.
+/// The latest plausible time of a clock, in seconds: about three times the time since 1970.
 const LATEST_S: f64 = 5e9;
 
-/// Boots that are kept of a log.
+/// The number of boots that are kept of a log.
 const MOST_BOOTS: usize = 1000;
 
-/// What to do with a message, by its time stamp.
+/// How to handle a message, by its timestamp.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Checked {
-    /// Take it, at this time.
+    /// Accept it, at this time.
     At(f64),
-    /// Its time jumps: keep it until the next message confirms or refutes it.
+    /// Its time jumps: hold it until the next message confirms or refutes it.
     Wait,
-    /// The message that waited was right: take it at the first time, this one at the second.
+    /// The held message was right: accept it at the first time, and this one at the second.
     Confirmed(f64, f64),
-    /// The message that waited was wrong: drop it, take this one.
+    /// The held message was wrong: drop it, and accept this one.
     Refuted(f64),
-    /// The message that waited was wrong, and this one waits now.
+    /// The held message was wrong, and this one is held now.
     RefutedWait,
 }
 
-/// Detects damaged time stamps and boots. One message with a time that jumps is
-/// damage; two in a row that agree are a pause in the log or, when the time goes back,
-/// another boot: then the clock continues from the end of the boot before.
+/// Detects damaged timestamps and boots. A single message whose time jumps is damaged. If the next message agrees with
+/// it, there is a pause in the log or, if the time goes back, another boot: the clock then continues from the end of
+/// the previous boot.
 #[derive(Debug)]
 pub(crate) struct Clock {
     offset_s: f64,
     first_s: Option<f64>,
     last_s: Option<f64>,
     waiting_s: Option<f64>,
-    /// The longest step that is accepted now: a multiple of the last one.
+    /// The longest step that is accepted now, a multiple of the previous step.
     longest_s: f64,
     boot_hint: bool,
     boots_s: Vec<f64>,
@@ -61,7 +61,7 @@ impl Default for Clock {
 }
 
 impl Clock {
-    /// The log starts again here (its definitions are repeated).
+    /// Notes that the log restarts here, because its definitions are repeated.
     pub(crate) fn expect_boot(&mut self) {
         self.boot_hint = true;
     }
@@ -70,7 +70,7 @@ impl Clock {
         &self.boots_s
     }
 
-    /// What is added to the times of this boot.
+    /// The offset that is added to the times of this boot.
     pub(crate) fn offset_s(&self) -> f64 {
         self.offset_s
     }
@@ -80,7 +80,7 @@ impl Clock {
         self.first_s
     }
 
-    /// The latest accepted time, on the clock that continues over boots.
+    /// The latest accepted time, on the clock that continues across boots.
     pub(crate) fn now_s(&self) -> Option<f64> {
         self.last_s.map(|last| last + self.offset_s)
     }
@@ -120,7 +120,7 @@ impl Clock {
         }
     }
 
-    /// Whether a message at `t_s` may follow one at `last_s`; if so, it becomes the last.
+    /// Whether a message at `t_s` may follow one at `last_s`; if so, it becomes the latest.
     fn follows(&mut self, last_s: f64, t_s: f64) -> bool {
         let step_s = t_s - last_s;
         let follows = (BACK_S..=self.longest_s).contains(&step_s);
@@ -131,7 +131,7 @@ impl Clock {
         follows
     }
 
-    /// Whether a time stamp follows the latest accepted one; the first of all does.
+    /// Whether a timestamp may follow the latest accepted one; the first timestamp always may.
     #[cfg(feature = "mavlink")]
     pub(crate) fn is_next(&self, t_s: f64) -> bool {
         self.last_s
@@ -151,8 +151,8 @@ impl Clock {
     }
 }
 
-/// Seconds since boot from microseconds in 32 bits, which start over after 71 minutes: the time nearest to the last
-/// one that was believed.
+/// Seconds since boot from 32 bits of microseconds, which wrap around after 71 minutes: the candidate nearest to the
+/// last accepted time.
 pub(crate) fn seconds_of(micros: u32, last_s: Option<f64>) -> f64 {
     const ROUND_S: f64 = 4_294.967_296;
     let t_s = f64::from(micros) * 1e-6;
@@ -181,8 +181,8 @@ impl Latest {
         self.latest_s
     }
 
-    /// Whether to accept a time: one too far after all before is damage, unless the
-    /// next such one agrees with it.
+    /// Whether to accept a time. A time too far after all earlier ones is damaged, unless the next such time agrees
+    /// with it.
     pub(crate) fn believe(&mut self, t_s: f64) -> bool {
         let latest_s = *self.latest_s.get_or_insert(t_s);
         let agrees = |with_s: f64| t_s - with_s <= self.longest_pause_s;
@@ -196,7 +196,7 @@ impl Latest {
     }
 }
 
-/// Whether a log can go on at this time after a pause.
+/// Whether a log may continue at this time after a pause.
 fn is_possible(last_s: Option<f64>, t_s: f64) -> bool {
     t_s < LATEST_S && last_s.is_none_or(|last_s| t_s - last_s < LONGEST_PAUSE_S)
 }
@@ -205,7 +205,7 @@ fn is_possible(last_s: Option<f64>, t_s: f64) -> bool {
 mod tests {
     use super::*;
 
-    /// Times at which messages end up; `None` for those thrown away.
+    /// The times at which messages are kept; `None` for dropped ones.
     fn times_kept(times: &[f64]) -> Vec<f64> {
         let mut clock = Clock::default();
         let mut kept = Vec::new();

@@ -2,8 +2,8 @@
 
 use std::io::ErrorKind;
 
-/// A log could not be read. A damaged log is not an error: its undamaged part is read,
-/// and its [`Report`](crate::Report) counts the damage.
+/// An error that prevents reading a log. A damaged log is not an error: its undamaged part is read, and its
+/// [`Report`](crate::Report) counts the damage.
 ///
 /// # Example
 /// ```
@@ -35,25 +35,25 @@ pub enum ReadError {
     NotALog {
         /// The path as the user gave it.
         path: String,
-        /// What it looks like, such as `a PNG picture`.
+        /// The kind of file, such as `a PNG picture`.
         what: String,
     },
-    /// The file is a flight log in a format that is not read.
+    /// The file is a flight log in a format that is not supported.
     #[error("`{path}` is {what}, a format that is not read")]
     NotRead {
         /// The path as the user gave it.
         path: String,
-        /// What it is.
+        /// The format.
         what: String,
     },
-    /// The log contradicts the range of motor outputs that was given for it.
+    /// The log contradicts the range of motor outputs that the user gave for it.
     #[error("`{path}` {problem}")]
     Range {
         /// The path as the user gave it.
         path: String,
-        /// What contradicts it.
+        /// The contradiction.
         problem: String,
-        /// What to do about it.
+        /// What to do.
         help: &'static str,
     },
     /// A flight CSV has columns or header values that cannot be used.
@@ -61,17 +61,17 @@ pub enum ReadError {
     Csv {
         /// The path as the user gave it.
         path: String,
-        /// Line in the file, from 1.
+        /// The line in the file, from 1.
         line: u64,
-        /// What is wrong there.
+        /// The problem in that line.
         problem: String,
-        /// What to do about it.
+        /// What to do.
         help: String,
     },
 }
 
 impl ReadError {
-    /// What to do about it, apart from the message.
+    /// Advice on what to do, in addition to the message.
     pub fn help(&self) -> Option<&str> {
         match self {
             Self::Io { source, .. } => match source.kind() {
@@ -106,7 +106,7 @@ impl ReadError {
         }
     }
 
-    /// The same error about a log of this name, where it was read from bytes that have none.
+    /// The same error with the name of the log, for a log that was read from bytes without a path.
     ///
     /// # Example
     /// ```
@@ -139,7 +139,7 @@ pub(crate) const RULES: &str = "a rule set";
 /// Description of a profile.
 pub(crate) const PROFILE: &str = "a profile";
 
-/// Description of a table with other marks than commas.
+/// Description of a table with separators other than commas.
 pub(crate) const SEMICOLONS: &str = "a table with `;` between its cells";
 
 /// The path in an error until the caller sets it.

@@ -23,7 +23,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// Bytes it takes.
+    /// The size in bytes.
     pub(crate) fn width(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -35,7 +35,7 @@ impl Kind {
 }
 
 impl NumericField {
-    /// The number in `message`; `None` where the message is too short.
+    /// The number in `message`; `None` if the message is too short.
     pub(crate) fn number(self, message: &[u8]) -> Option<f64> {
         let bytes = message.get(self.offset..)?;
         Some(match self.kind {
@@ -53,7 +53,7 @@ impl NumericField {
     }
 }
 
-/// Length of the vector of these numbers; `None` where one is missing.
+/// The length of the vector of these numbers; `None` if one is missing.
 pub(crate) fn vector_length(numbers: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let squares = numbers.map(|number| number.map(|x| x * x));
     squares.sum::<Option<f64>>().map(f64::sqrt)

@@ -2,7 +2,7 @@
 
 use crate::{Geometry, Intervals, Parameter, Report, Series, Signal};
 
-/// The kind of log a flight was read from.
+/// The format of a flight log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(with = "String"))]
@@ -32,7 +32,7 @@ impl std::fmt::Display for Format {
     }
 }
 
-/// What kind of vehicle flew.
+/// The kind of vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(with = "String"))]
@@ -52,13 +52,13 @@ pub enum VehicleKind {
     Submarine,
     /// Something else: antenna tracker, airship ...
     Other,
-    /// The log does not say.
+    /// The kind is not recorded in the log.
     #[default]
     Unknown,
 }
 
 impl VehicleKind {
-    /// The kind that is displayed as `name`; unknown for any other name.
+    /// The kind that is displayed as `name`; `Unknown` for any other name.
     pub(crate) fn from_name(name: &str) -> Self {
         [
             Self::Multirotor,
@@ -96,23 +96,24 @@ impl std::fmt::Display for VehicleKind {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Vehicle {
-    /// What kind it is.
+    /// The kind of vehicle.
     pub kind: VehicleKind,
-    /// Where the kind came from, such as `MSG "ArduCopter V4.5.1"`.
+    /// The source of the kind, such as `MSG "ArduCopter V4.5.1"`.
     pub source: String,
-    /// Frame or type name, such as `QUAD/X`.
+    /// The name of the frame or type, such as `QUAD/X`.
     pub frame: Option<String>,
-    /// Number of motors, where the frame tells it.
+    /// The number of motors, if the frame determines it.
     pub motors: Option<u16>,
-    /// Firmware with version.
+    /// The firmware with its version.
     pub firmware: Option<String>,
-    /// What tells this vehicle from others of its kind: the serial number of the board, or `vehicle_id` of a flight CSV.
+    /// An identifier that distinguishes this vehicle from others: the serial number of the board, or `vehicle_id` of a
+    /// flight CSV.
     pub id: Option<String>,
-    /// Where [`Vehicle::id`] came from, such as `sys_uuid`.
+    /// The source of [`Vehicle::id`], such as `sys_uuid`.
     pub id_source: Option<String>,
-    /// Its MAVLink system id. Vehicles share it unless somebody numbers them: it is 1 on a new autopilot.
+    /// The MAVLink system id. It is 1 on a new autopilot, so several vehicles share it unless their owners change it.
     pub system_id: Option<u8>,
-    /// How often the autopilot booted in its life, as ArduPilot counts it (`STAT_BOOTCNT`).
+    /// The number of boots in the life of the autopilot, as ArduPilot counts them (`STAT_BOOTCNT`).
     pub boot_count: Option<u32>,
 }
 
@@ -122,32 +123,32 @@ pub struct Vehicle {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Motor {
-    /// Motor number of the autopilot, from 1.
+    /// The motor number of the autopilot, from 1.
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub number: u16,
-    /// The output as the log names it, such as `C3` or `actuator_motors.control[2]`.
+    /// The name of the output in the log, such as `C3` or `actuator_motors.control[2]`.
     pub output: String,
-    /// Where the assignment came from, such as `SERVO3_FUNCTION = 35`.
+    /// The source of the assignment, such as `SERVO3_FUNCTION = 35`.
     pub source: String,
 }
 
-/// A range of commands, and where it came from.
+/// A range of commands, and its source.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Range {
-    /// Lower end.
+    /// The lower end.
     pub low: f64,
-    /// Upper end, above `low`.
+    /// The upper end, above `low`.
     pub high: f64,
-    /// Unit of both: `us`, `1` (a fraction) or `raw` (counts of a bus).
+    /// The unit of both: `us`, `1` (a fraction) or `raw` (counts of a bus).
     pub unit: &'static str,
-    /// Where it came from, such as `MOT_PWM_MIN/MAX`.
+    /// The source of the range, such as `MOT_PWM_MIN/MAX`.
     pub source: String,
 }
 
 impl Range {
-    /// The fraction of the range at which `value` lies, clipped to 0..1.
+    /// The position of `value` in the range as a fraction, clipped to 0..1.
     ///
     /// # Example
     /// ```
@@ -161,7 +162,7 @@ impl Range {
     }
 }
 
-/// Motor commands: one row a logged sample, one raw value a motor, on their own time base.
+/// Motor commands: one row for each logged sample, with one raw value for each motor, on their own time base.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Commands {
     t_s: Vec<f64>,
@@ -177,7 +178,7 @@ impl Commands {
         }
     }
 
-    /// Adds a row; missing values become unknown, values beyond the motors are dropped.
+    /// Adds a row. Missing values are stored as unknown; values beyond the number of motors are dropped.
     pub(crate) fn push(&mut self, t_s: f64, row: impl IntoIterator<Item = f64>) {
         self.t_s.push(t_s);
         self.raw.extend(
@@ -192,36 +193,36 @@ impl Commands {
         self.motors
     }
 
-    /// Whether not a single value is known.
+    /// Whether all values are unknown.
     pub(crate) fn are_unknown(&self) -> bool {
         self.raw.iter().all(|raw| raw.is_nan())
     }
 
-    /// Times of the rows, seconds on the log's clock.
+    /// The times of the rows, in seconds on the log's clock.
     pub fn t_s(&self) -> &[f64] {
         &self.t_s
     }
 
-    /// Number of rows.
+    /// The number of rows.
     pub fn len(&self) -> usize {
         self.t_s.len()
     }
 
-    /// No motor command was logged.
+    /// Whether no motor command was logged.
     pub fn is_empty(&self) -> bool {
         self.t_s.is_empty()
     }
 
-    /// Rows in order of time: the time in seconds and the raw value of each motor, in
-    /// the unit of [`Flight::range`]. NaN is a value that is not known.
+    /// Iterates over the rows in order of time: the time in seconds and the raw value of each motor, in the unit of
+    /// [`Flight::range`]. NaN is an unknown value.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = (f64, &[f64])> {
-        // A flight without motors has no rows either, so the width is never 0 here.
+        // A flight without motors has no rows, so the width is never 0 here.
         let rows = self.raw.chunks_exact(self.motors.max(1));
         self.t_s.iter().copied().zip(rows)
     }
 }
 
-/// A message or a change of mode at a time.
+/// A message, or a change of the flight mode, at a time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -229,9 +230,9 @@ impl Commands {
     schemars(with = "crate::serialize::EventFields<'_, T>", rename = "Event")
 )]
 pub struct Event<T = String> {
-    /// Time in microseconds on the log's clock.
+    /// The time in microseconds on the log's clock.
     pub t_us: i64,
-    /// What it was.
+    /// The message or the mode.
     pub what: T,
 }
 
@@ -243,7 +244,7 @@ impl<T> Event<T> {
         }
     }
 
-    /// Time in seconds on the log's clock.
+    /// The time in seconds on the log's clock.
     pub fn t_s(&self) -> f64 {
         self.t_us as f64 * 1e-6
     }
@@ -251,58 +252,58 @@ impl<T> Event<T> {
 
 /// A flight, read from a log.
 ///
-/// Times are in seconds on the log's own clock and never decrease within a series:
-/// since boot for ArduPilot and PX4 logs and for telemetry (since the first packet where motor
-/// commands carry no time), as written for CSV. Where a log holds several boots of the autopilot, the clock continues
-/// at the end of the boot before; [`Flight::boots_s`] has the start of each.
+/// Times are in seconds on the log's own clock and never decrease within a series. The clock counts from boot for
+/// ArduPilot and PX4 logs and for telemetry (from the first packet if motor commands carry no time); in CSV files it is
+/// as written. If a log contains several boots of the autopilot, the clock continues from the end of the previous boot;
+/// [`Flight::boots_s`] contains the start of each.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Flight {
-    /// The kind of log.
+    /// The format of the log.
     pub format: Format,
     /// The vehicle.
     pub vehicle: Vehicle,
-    /// The motors in order of their number; a column of `commands` each.
+    /// The motors in order of their number, one for each column of `commands`.
     pub motors: Vec<Motor>,
-    /// How much each motor rolls, pitches and yaws the vehicle; `None` where the log does not
-    /// tell and the commands do not either.
+    /// How much each motor rolls, pitches and yaws the vehicle; `None` if neither the log nor the commands determine
+    /// it.
     pub geometry: Option<Geometry>,
-    /// Range of the raw commands, 0 % to 100 %; `None` when the log does not tell.
+    /// The range of the raw commands, 0 % to 100 %; `None` if the log does not record it.
     pub range: Option<Range>,
-    /// The part of the range that is used in flight, as fractions of it: a motor at its
-    /// upper end is saturated although the range goes further.
+    /// The part of the range that is used in flight, as fractions of it. A motor at its upper end is saturated even
+    /// though the range extends further.
     pub effective_range: Range,
-    /// Why the used part counts as the whole range although the log tells limits.
+    /// The reason why the whole range is used although the log contains limits.
     pub effective_range_doubt: Option<String>,
-    /// What is assumed of motors, their commands and ranges because the log does not report it, in words; `flagred watch`
-    /// assumes the same of the vehicle. Empty where nothing is.
+    /// What is assumed about motors, their commands and ranges because the log does not record it, in words. `flagred
+    /// watch` assumes the same for the vehicle. Empty without assumptions.
     pub assumed: Vec<String>,
-    /// Parameters of the autopilot that motors and ranges rest on, and gains, as far as the log has them.
+    /// The parameters of the autopilot that determine motors and ranges, and the gains, if the log contains them.
     pub parameters: Vec<Parameter>,
     /// The motor commands.
     pub commands: Commands,
     /// All other signals.
     pub series: Vec<Series>,
-    /// Flight modes, from the time each was entered.
+    /// The flight modes, each from the time at which it was entered.
     pub modes: Vec<Event>,
-    /// Texts the autopilot wrote into the log.
+    /// The texts that the autopilot wrote into the log.
     pub messages: Vec<Event>,
-    /// When the motors were armed; `None` when the log does not tell.
+    /// The times in which the motors were armed; `None` if the log does not record them.
     pub armed: Option<Intervals>,
-    /// When the vehicle was in the air; `None` when the log does not tell. Land detectors
-    /// chatter: landings of less than a second are left out.
+    /// The times in which the vehicle was in the air; `None` if the log does not record them. Landings of less than a
+    /// second are ignored, because land detectors chatter.
     pub in_air: Option<Intervals>,
-    /// UTC at time 0 of the log's clock, in seconds since 1970; `None` when unknown.
+    /// The UTC time at time 0 of the log's clock, in seconds since 1970; `None` if unknown.
     pub utc_at_zero_s: Option<f64>,
-    /// Times at which the autopilot booted again within the log; empty for one boot.
+    /// The times at which the autopilot booted again within the log; empty if it booted once.
     pub boots_s: Vec<f64>,
-    /// The times in the air at which the clock starts again, as after a reboot, or is set back. What came after them may be
+    /// The times in the air at which the clock restarted, as after a reboot, or was set back. Data after them may be
     /// missing from the log.
     pub rebooted_in_air_s: Vec<f64>,
-    /// Header lines of a CSV file as keys and values, in their order.
+    /// The header lines of a CSV file as keys and values, in their order.
     pub header: Vec<(String, String)>,
-    /// Amount of data and damage.
+    /// The amount of data and damage.
     pub report: Report,
 }
 
@@ -337,22 +338,22 @@ impl Flight {
         self.series.iter().flat_map(Series::signals)
     }
 
-    /// The signal of that name.
+    /// The signal with this name.
     pub fn signal(&self, name: &str) -> Option<Signal<'_>> {
         self.signals().find(|signal| signal.label.name == name)
     }
 
-    /// Command on the full range, 0..1: `c = (raw - low) / (high - low)`, clipped.
-    /// `None` when the value or the range is unknown.
+    /// The command on the full range, 0..1: `c = (raw - low) / (high - low)`, clipped. `None` if the value or the range
+    /// is unknown.
     ///
-    /// A PX4 motor that is told to stop is logged as NaN in the file; it is read as 0.
+    /// A PX4 motor that is commanded to stop is NaN in the log file; it is read as 0.
     pub fn command(&self, raw: f64) -> Option<f64> {
         let range = self.range.as_ref()?;
         raw.is_finite().then(|| range.fraction(raw))
     }
 
-    /// Command on the effective range, 0..1: `e = (c - lo) / (hi - lo)`, clipped, where
-    /// `c` is [`Flight::command`] and `lo`, `hi` are [`Flight::effective_range`].
+    /// The command on the effective range, 0..1: `e = (c - lo) / (hi - lo)`, clipped, where `c` is [`Flight::command`]
+    /// and `lo`, `hi` are [`Flight::effective_range`].
     ///
     /// ```
     /// let log = "\
@@ -372,12 +373,12 @@ impl Flight {
         self.command(raw).map(|c| self.effective_range.fraction(c))
     }
 
-    /// Whether the vehicle was in the air at `t_s`; `None` when the log does not tell.
+    /// Whether the vehicle was in the air at `t_s`; `None` if the log does not record it.
     pub fn is_in_air(&self, t_s: f64) -> Option<bool> {
         self.in_air.as_ref().map(|spans| spans.contains(t_s))
     }
 
-    /// First and last time of the motor commands and the signals.
+    /// The first and last time of the motor commands and the signals.
     pub fn time_span_s(&self) -> Option<(f64, f64)> {
         std::iter::once(self.commands.t_s())
             .chain(self.series.iter().map(Series::t_s))
@@ -385,7 +386,7 @@ impl Flight {
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
-    /// Rows of motor commands a second, without pauses; `None` under two rows.
+    /// The rate of rows of motor commands in Hz, without pauses; `None` with fewer than two rows.
     pub fn command_rate_hz(&self) -> Option<f64> {
         crate::signal::rate_hz(self.commands.t_s())
     }

@@ -1,15 +1,15 @@
-//! Information that a log lacks.
+//! Information that is missing from a log.
 
 use crate::parameters::LOG_BITMASK;
 use crate::{Flight, Format, VehicleKind};
 
-/// Rate in rows a second below which a spread over a window means little.
+/// The rate of motor commands in Hz below which their spread over a window is not meaningful.
 const SLOWEST_HZ: f64 = 5.0;
 
-/// The motors of a tricopter.
+/// The number of motors of a tricopter.
 const LEAST_MOTORS: usize = 3;
 
-/// Whether motor outputs are logged: as RCOU, or as MOT before ArduCopter 3.2.
+/// Whether motor outputs are logged, as RCOU or, before ArduCopter 3.2, as MOT.
 fn logs_motors(log_bitmask: u32) -> bool {
     log_bitmask & (1 << 10) != 0
 }
@@ -21,7 +21,7 @@ fn without_motors(log_bitmask: Option<u32>) -> String {
     })
 }
 
-/// Information that the log lacks: the reason why a value is not available (NA).
+/// Information that is missing from the log: the reason why a value is not available (NA).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(with = "crate::serialize::GapFields"))]
@@ -30,23 +30,23 @@ pub enum Gap {
     /// The vehicle is known and is not a multirotor.
     #[error("the vehicle is a {kind}, not a multirotor ({from})")]
     NotAMultirotor {
-        /// What it is.
+        /// The kind of vehicle.
         kind: VehicleKind,
-        /// How that is known.
+        /// The source of the kind.
         from: String,
     },
     /// No output is known to drive a motor.
     #[error("the log does not say which outputs drive the motors")]
     NoMotors {
-        /// The kind of log.
+        /// The format of the log.
         format: Format,
     },
     /// Some motors are known, but others are missing.
     #[error("outputs are known for {found} of the {expected} motors only")]
     MotorsMissing {
-        /// Motors whose outputs are known.
+        /// The number of motors whose outputs are known.
         found: usize,
-        /// Motors that the vehicle has, by its frame and the numbers of the known ones.
+        /// The number of motors that the vehicle has, by its frame and the numbers of the known ones.
         expected: usize,
     },
     /// Fewer motors are known than the smallest multirotor has.
@@ -58,9 +58,9 @@ pub enum Gap {
     /// Motors are known, but their commands were not logged.
     #[error("the commands of the motors are not in the log{}", without_motors(*log_bitmask))]
     NoCommands {
-        /// The kind of log.
+        /// The format of the log.
         format: Format,
-        /// `LOG_BITMASK` of ArduPilot, where the log has it.
+        /// `LOG_BITMASK` of ArduPilot, if the log contains it.
         log_bitmask: Option<u32>,
     },
     /// Motor commands were logged, but none of them in the air.
@@ -69,7 +69,7 @@ pub enum Gap {
     /// The range of the motor commands is unknown.
     #[error("the range of the motor commands is not in the log")]
     NoRange {
-        /// The kind of log.
+        /// The format of the log.
         format: Format,
     },
     /// The motors were never armed.
@@ -78,27 +78,27 @@ pub enum Gap {
     /// The vehicle never left the ground while motor commands were logged.
     #[error("the vehicle was never in the air")]
     NeverInAir,
-    /// The log does not tell when the vehicle was in the air.
+    /// The log does not record when the vehicle was in the air.
     #[error("the log does not tell when the vehicle was in the air")]
     AirUnknown {
-        /// The kind of log.
+        /// The format of the log.
         format: Format,
     },
-    /// Attitude and its set point are not both logged.
+    /// The attitude, its set point or both were not logged.
     #[error("attitude and its set point are not both in the log")]
     NoAttitude,
-    /// Motor commands come too rarely for a spread.
+    /// The rate of motor commands is too low to compute a spread.
     #[error("motor commands are logged at {rate_hz:.1} Hz, too slow for a spread")]
     TooSlow {
-        /// Rows a second.
+        /// The rate in Hz.
         rate_hz: f64,
-        /// The kind of log.
+        /// The format of the log.
         format: Format,
     },
 }
 
 impl Gap {
-    /// What the pilot can do so that the next log of this kind has it.
+    /// Advice for the pilot: how to record it in the next log of this kind.
     ///
     /// # Example
     /// ```
@@ -193,8 +193,8 @@ impl Gap {
 }
 
 impl Flight {
-    /// Everything that this log lacks, most important first; empty for a complete log. For a
-    /// vehicle that is not a multirotor, that is the only gap.
+    /// All information that is missing from this log, most important first; empty for a complete log. For a vehicle
+    /// that is not a multirotor, this is the only gap.
     ///
     /// ```
     /// let log = "t_s,motor1,motor2,motor3\n0,0.5,0.5,0.5\n1,0.4,0.4,0.4\n2,0.4,0.4,0.4\n";
@@ -254,7 +254,8 @@ impl Flight {
         gaps
     }
 
-    /// Why no time is known in which the vehicle was in the air: all that a profile lacks which reads no motor.
+    /// The reason why no time in the air is known. This is the only gap that prevents an assessment by a profile
+    /// without motor inputs.
     ///
     /// ```
     /// let log = "t_s,load_kg\n0,900\n0.1,950\n";

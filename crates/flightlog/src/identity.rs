@@ -1,12 +1,12 @@
-//! What tells a vehicle from others of its kind: identity of its board, number on the network, boots.
+//! The identity of a vehicle: serial number of its board, MAVLink system id, number of boots.
 
 use crate::Vehicle;
 use crate::parameters::Parameters;
 
-/// Parameters with the MAVLink system id: of ArduPilot up to 4.6 and later, and of PX4.
+/// Parameters with the MAVLink system id: ArduPilot up to 4.6, ArduPilot later, PX4.
 const SYSTEM_ID: [&str; 3] = ["SYSID_THISMAV", "MAV_SYSID", "MAV_SYS_ID"];
 
-/// Adds what parameters tell. A serial number that a person wrote counts where the board told none.
+/// Adds the identity from parameters. A serial number that a person entered is used only if the board reports none.
 pub(crate) fn add(vehicle: &mut Vehicle, parameters: &Parameters) {
     let whole = |name: &str| {
         let value = parameters.get(name)?;
@@ -23,14 +23,14 @@ pub(crate) fn add(vehicle: &mut Vehicle, parameters: &Parameters) {
     vehicle.boot_count = whole("STAT_BOOTCNT");
 }
 
-/// Names the vehicle.
+/// Sets the id of the vehicle and its source.
 pub(crate) fn name(vehicle: &mut Vehicle, id: String, source: &str) {
     vehicle.id = Some(id);
     vehicle.id_source = Some(source.to_owned());
 }
 
-/// The id that AUTOPILOT_VERSION tells and the field it is in: `uid2` as PX4 writes it into its logs as `sys_uuid`, else `uid`.
-/// Zeros stand for unknown.
+/// The id in AUTOPILOT_VERSION and its field: `uid2` in the form that PX4 writes into its logs as `sys_uuid`, otherwise
+/// `uid`. Zeros mean unknown.
 pub(crate) fn of_version(uid: &[u8], uid2: &[u8]) -> Option<(String, &'static str)> {
     let hexadecimal = |bytes: &mut dyn Iterator<Item = &u8>| -> String {
         bytes.map(|byte| format!("{byte:02x}")).collect()
@@ -39,7 +39,7 @@ pub(crate) fn of_version(uid: &[u8], uid2: &[u8]) -> Option<(String, &'static st
     if is_known(uid2) {
         return Some((hexadecimal(&mut uid2.iter()), "AUTOPILOT_VERSION.uid2"));
     }
-    // A number of 64 bits, the lowest byte first.
+    // A 64-bit number, lowest byte first.
     is_known(uid).then(|| (hexadecimal(&mut uid.iter().rev()), "AUTOPILOT_VERSION.uid"))
 }
 

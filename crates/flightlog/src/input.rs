@@ -1,8 +1,8 @@
-//! A sliding window over a stream: readers see slices, and memory is bounded.
+//! A sliding window over a stream: readers process slices, and memory is bounded.
 
 use std::io::{self, BufRead, Read};
 
-/// Bytes seen at a time; every record of every format is much shorter.
+/// The size of the window in bytes; every record of every format is much shorter.
 const WINDOW: usize = 1 << 18;
 
 pub(crate) struct Input<'r> {
@@ -11,10 +11,10 @@ pub(crate) struct Input<'r> {
     start: usize,
     end: usize,
     taken: u64,
-    /// The byte taken last.
+    /// The last consumed byte.
     last: Option<u8>,
     at_end: bool,
-    /// Compressed data may end early or be damaged: then what came before counts.
+    /// Whether the source is compressed. Compressed data may end early or be damaged; the data before that is used.
     compressed: bool,
     failure: Option<String>,
 }
@@ -34,7 +34,7 @@ impl<'r> Input<'r> {
         }
     }
 
-    /// Fills the window and shows it: a whole window, or all that is left with `true`.
+    /// Fills the window and returns it, with `true` if it contains all remaining bytes.
     pub(crate) fn window(&mut self) -> io::Result<(&[u8], bool)> {
         self.buffer.copy_within(self.start..self.end, 0);
         self.end -= self.start;
@@ -45,8 +45,8 @@ impl<'r> Input<'r> {
         Ok((&self.buffer[..self.end], self.at_end))
     }
 
-    /// Passes window after window to `scan`, which returns how many bytes of each are done:
-    /// some of every window, and at the end of the log (`true`) all that it can use.
+    /// Passes windows to `scan`, which returns the number of bytes it processed: at least one of every window, and at
+    /// the end of the log (`true`) all that it can use.
     pub(crate) fn scan(&mut self, mut scan: impl FnMut(&[u8], bool) -> usize) -> io::Result<()> {
         loop {
             let (window, at_end) = self.window()?;
@@ -72,22 +72,22 @@ impl<'r> Input<'r> {
         Ok(())
     }
 
-    /// Bytes taken so far.
+    /// The number of bytes consumed so far.
     pub(crate) fn taken(&self) -> u64 {
         self.taken
     }
 
-    /// Whether what was taken so far ends with the end of a line.
+    /// Whether the bytes consumed so far end with a line end.
     pub(crate) fn is_at_line_end(&self) -> bool {
         matches!(self.last, None | Some(b'\n' | b'\r'))
     }
 
-    /// Why the stream ended before its time, if it did.
+    /// The reason why the stream ended early, if it did.
     pub(crate) fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
     }
 
-    /// Everything from here on, the bytes in the window first.
+    /// The rest of the stream, starting with the bytes in the window.
     pub(crate) fn into_rest(self) -> impl Read + 'r {
         let seen = io::Cursor::new(self.buffer[self.start..self.end].to_vec());
         seen.chain(self.source)

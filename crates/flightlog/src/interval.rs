@@ -5,16 +5,16 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Interval {
-    /// Start in seconds.
+    /// The start in seconds.
     pub start_s: f64,
-    /// End in seconds; the last time of the log where the interval was still open.
+    /// The end in seconds; the last time of the log if the interval was still open.
     pub end_s: f64,
-    /// The interval was still open at the end of the log.
+    /// Whether the interval was still open at the end of the log.
     pub ends_with_log: bool,
 }
 
 impl Interval {
-    /// Length in seconds.
+    /// The length in seconds.
     pub fn duration_s(&self) -> f64 {
         self.end_s - self.start_s
     }
@@ -24,7 +24,7 @@ impl Interval {
     }
 }
 
-/// Intervals in order of time, and the rule by which they were found.
+/// Intervals in order of time, and the rule that determined them.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -34,14 +34,14 @@ impl Interval {
 pub struct Intervals {
     /// The intervals, in order of time, without overlap.
     pub spans: Vec<Interval>,
-    /// How they were found, such as `EV 28 (not landed) to EV 18 (land complete)`.
+    /// The rule that determined them, such as `EV 28 (not landed) to EV 18 (land complete)`.
     pub rule: String,
-    /// Whether they are derived or assumed because the log has no reports of the autopilot.
+    /// Whether they are derived or assumed because the log contains no reports of the autopilot.
     pub is_assumed: bool,
 }
 
 impl Intervals {
-    /// Whether `t_s` lies in one of the intervals (start included, end not).
+    /// Whether `t_s` is in one of the intervals (including their start, not their end).
     ///
     /// # Example
     /// ```
@@ -60,7 +60,7 @@ impl Intervals {
             .is_some_and(|span| span.contains(t_s))
     }
 
-    /// The times that lie within one of the intervals, their ends not included.
+    /// The times that are inside one of the intervals, ends excluded.
     pub(crate) fn within(&self, times_s: &[f64]) -> Vec<f64> {
         let is_within = |t_s: f64| {
             self.spans
@@ -74,7 +74,7 @@ impl Intervals {
             .collect()
     }
 
-    /// Sum of the lengths of all intervals, in seconds.
+    /// The sum of the lengths of all intervals, in seconds.
     pub fn duration_s(&self) -> f64 {
         self.spans.iter().map(Interval::duration_s).sum()
     }
@@ -92,7 +92,7 @@ impl Intervals {
         self
     }
 
-    /// From a state that is reported repeatedly; the first value also holds before it.
+    /// Intervals from a state that is reported repeatedly; the first value also applies to the time before it.
     pub(crate) fn from_states(
         states: &[(f64, bool)],
         (first_s, last_s): (f64, f64),
@@ -106,8 +106,8 @@ impl Intervals {
         Self::from_changes(&within, before, first_s, last_s, rule)
     }
 
-    /// From changes of state: each is the time from which the state holds.
-    /// `before` is the state from `first_s` to the first change.
+    /// Intervals from changes of a state: each change applies from its time on. `before` is the state from `first_s` to
+    /// the first change.
     pub(crate) fn from_changes(
         changes: &[(f64, bool)],
         before: bool,
@@ -156,7 +156,8 @@ impl Intervals {
     }
 }
 
-/// The conjunction of two states, from the changes of each; the first value of each also holds before it.
+/// The changes of the conjunction of two states, from the changes of each; the first value of each also applies to the
+/// time before it.
 pub(crate) fn both_hold(a: &[(f64, bool)], b: &[(f64, bool)]) -> Vec<(f64, bool)> {
     let mut times: Vec<f64> = a.iter().chain(b).map(|(t_s, _)| *t_s).collect();
     times.sort_by(f64::total_cmp);

@@ -1,22 +1,22 @@
-//! The signals that the readers find in logs.
+//! The signals that the readers of logs provide.
 
 use std::collections::BTreeMap;
 
 use crate::{Format, dataflash, tlog, ulog};
 
-/// A signal that logs of some formats carry. A flight CSV can name any other.
+/// A signal that logs of some formats contain. A flight CSV may have signals with any name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct KnownSignal {
-    /// Its name: `battery_v`.
+    /// The name, such as `battery_v`.
     pub name: &'static str,
-    /// Its unit, `1` for a share; empty for a count or a code.
+    /// The unit; `1` for a share, empty for a count or a code.
     pub unit: &'static str,
-    /// The formats whose logs can have it, in the order DataFlash, ULog, tlog.
+    /// The formats whose logs can contain it, in the order DataFlash, ULog, tlog.
     pub formats: Vec<Format>,
 }
 
-/// All signals that the readers of DataFlash logs, ULogs and tlogs know, by name.
+/// Returns all signals that the readers of DataFlash logs, ULogs and tlogs know, sorted by name.
 ///
 /// # Example
 /// ```

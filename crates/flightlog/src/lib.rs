@@ -1,10 +1,9 @@
 //! Reads the flight logs of multirotors into one type, [`Flight`].
 //!
-//! [`open`] and [`read`] detect the format by its content and unpack gzip. They give the
-//! vehicle, its motors with their geometry and the range of their commands (each with its
-//! source), signals on their own time bases, and the times in the air. Unknown values are
-//! `None` or a [`Gap`], never a number. The undamaged part of a damaged log is read, and a
-//! [`Report`] counts the damage.
+//! [`open`] and [`read`] detect the format by its content and decompress gzip. They return the vehicle, its motors with
+//! their geometry and the range of their commands (each with its source), signals on their own time bases, and the
+//! times in the air. Unknown values are `None` or a [`Gap`], never a number. The undamaged part of a damaged log is
+//! read, and a [`Report`] counts the damage.
 //!
 //! ```
 //! let log = "\

@@ -7,12 +7,12 @@ use crate::VehicleKind;
 pub(crate) struct MavType {
     pub(crate) kind: VehicleKind,
     pub(crate) name: &'static str,
-    /// Number of motors, where the type tells it.
+    /// The number of motors, if the type determines it.
     pub(crate) motors: Option<u16>,
 }
 
-/// The meaning of a MAV_TYPE; `None` for a generic vehicle and for what does not fly or
-/// drive, such as a ground station or a gimbal.
+/// The meaning of a MAV_TYPE; `None` for a generic vehicle and for types that are not vehicles, such as a ground
+/// station or a gimbal.
 pub(crate) fn mav_type(number: i64) -> Option<MavType> {
     use VehicleKind::{Helicopter, Multirotor, Other, Plane, Rover, Submarine, Vtol};
     let (kind, name, motors) = match number {

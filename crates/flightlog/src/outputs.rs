@@ -3,20 +3,20 @@
 use crate::Commands;
 use crate::signal::{Order, SetBack};
 
-/// Stands for an output that was not logged in a row, or is damaged.
+/// The value of an output that was not logged in a row, or is damaged.
 const MISSING: u16 = u16::MAX;
 /// Pulses longer than this are damaged, in us.
 pub(crate) const LONGEST_PULSE_US: f64 = 3000.0;
 
-/// Limits (lowest, highest) of a range of commands, and its smallest width, in the unit of the
-/// range. What is outside cannot be meant: a range too wide or too narrow hides a motor at its limit.
+/// Limits (lowest, highest) of a range of commands, and its minimum width, in the unit of the range. Ranges outside
+/// these limits are implausible; a range that is too wide or too narrow would hide a motor at its limit.
 pub(crate) struct Bounds {
     pub(crate) least: f64,
     pub(crate) most: f64,
     pub(crate) width: f64,
 }
 
-/// Pulse widths that a servo or a speed controller takes, in us.
+/// The pulse widths that servos and speed controllers accept, in us.
 pub(crate) const PULSES_US: Bounds = Bounds {
     least: 500.0,
     most: 2500.0,
@@ -36,26 +36,25 @@ impl Bounds {
     }
 }
 
-/// Outputs that may be motors where nothing else names them. A motor has at least this standard
-/// deviation, in us, and this correlation with the mean of the first four outputs.
+/// The number of outputs that may be motors if nothing else names them. A motor has at least this standard deviation,
+/// in us, and this correlation with the mean of the first four outputs.
 const MOST_LIKE: usize = 8;
 const LEAST_MOVE_US: f64 = 20.0;
 const TOGETHER: f64 = 0.6;
 
-/// Rows of pulse widths, a column an output.
+/// Rows of pulse widths, with one column for each output.
 #[derive(Debug, Default)]
 pub(crate) struct Outputs {
     t_s: Vec<f64>,
-    /// Columns by output number less one; shorter than `t_s` while nothing was logged since,
-    /// empty while all was 0.
+    /// Columns by output number minus one; shorter than `t_s` if nothing was logged since, empty if all values were 0.
     columns: Vec<Vec<u16>>,
     set_back: SetBack,
 }
 
 impl Outputs {
-    /// Adds the values (output from 1, pulse in us) of a message. Outputs above 14 come in
-    /// messages of their own, which complete the row that the `first` message began.
-    /// Gives whether a row had to be dropped because its time goes back.
+    /// Adds the values (output from 1, pulse in us) of a message. Outputs above 14 arrive in separate messages, which
+    /// complete the row that the `first` message began. Returns whether a row had to be dropped because its time goes
+    /// back.
     pub(crate) fn add(
         &mut self,
         t_s: f64,
@@ -96,21 +95,22 @@ impl Outputs {
         order != Order::Last
     }
 
-    /// Moves all rows in time.
+    /// Shifts the times of all rows.
     pub(crate) fn shift(&mut self, by_s: f64) {
         self.t_s.iter_mut().for_each(|t_s| *t_s += by_s);
         self.set_back.shift(by_s);
     }
 
-    /// The times at which the clock started again, in order: these boots, and where it was set back so that rows were dropped.
+    /// The times at which the clock restarted, ascending: the given boots, and the times at which it was set back so
+    /// that rows were dropped.
     pub(crate) fn restarts_s(&self, boots_s: &[f64]) -> Vec<f64> {
         let mut restarts_s = [self.set_back.at_s(), boots_s].concat();
         restarts_s.sort_by(f64::total_cmp);
         restarts_s
     }
 
-    /// Number of motors, where nothing else gives it: 4, 6 or 8 if that many of the first outputs,
-    /// and not the next ones, move together.
+    /// The number of motors, if nothing else determines it: 4, 6 or 8 if that many of the first outputs, and not the
+    /// next ones, move together.
     pub(crate) fn like_motors(&self) -> Option<u16> {
         let row = |row: usize| -> [f64; MOST_LIKE] {
             std::array::from_fn(|output| {
@@ -161,7 +161,7 @@ impl Outputs {
             .map(|output| self.columns.get(usize::from(*output).checked_sub(1)?))
             .map(|column| column.filter(|column| !column.is_empty()))
             .collect();
-        // Outputs that were never logged give no commands.
+        // Without any logged output there are no commands.
         if columns.iter().all(Option::is_none) {
             return commands;
         }

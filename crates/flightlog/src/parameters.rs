@@ -2,18 +2,19 @@
 
 use std::collections::BTreeMap;
 
-/// Parameters by name; of a log each with its FIRST value: failure tests and learning change parameters in flight.
+/// Parameters by name. For a log, the first value of each is kept, because failure tests and learning change parameters
+/// in flight.
 #[derive(Debug, Default)]
 pub(crate) struct Parameters {
     values: BTreeMap<String, f64>,
     left_out: u64,
 }
 
-/// The parameter of ArduPilot that chooses what is logged.
+/// The parameter of ArduPilot that selects what is logged.
 pub(crate) const LOG_BITMASK: &str = "LOG_BITMASK";
-/// Parameters that are kept; vehicles have up to about 2,000.
+/// The maximum number of parameters that are kept; vehicles have up to about 2,000.
 const MOST: usize = 1 << 14;
-/// Bytes of a name; autopilots allow 16.
+/// The maximum length of a name in bytes; autopilots allow 16.
 const LONGEST_NAME: usize = 64;
 
 impl Parameters {
@@ -27,7 +28,7 @@ impl Parameters {
         }
     }
 
-    /// Sets a parameter that is known anew.
+    /// Sets a parameter, replacing an earlier value.
     pub(crate) fn set(&mut self, name: &str, value: f64) {
         if let Some(known) = self.values.get_mut(name) {
             *known = value;
@@ -38,13 +39,13 @@ impl Parameters {
         self.values.get(name).copied()
     }
 
-    /// Values beyond the bounds, which were not kept.
+    /// The number of values beyond these limits, which were not kept.
     pub(crate) fn left_out(&self) -> u64 {
         self.left_out
     }
 
-    /// The parameters that an assessment rests on, where a log or a vehicle told them: range and limits of the motors,
-    /// frame, the gains of the control loops, and what is logged. `source` is what told them.
+    /// The known parameters that an assessment depends on: range and limits of the motors, frame, gains of the control
+    /// loops, and the selection of what is logged. `source` is where they come from.
     pub(crate) fn of_motors(&self, source: &str) -> Vec<Parameter> {
         let throttle = format!("RC{}", self.get("RCMAP_THROTTLE").unwrap_or(3.0));
         let kept = self
@@ -82,13 +83,14 @@ impl<'a> FromIterator<(&'a str, f64)> for Parameters {
 pub struct Parameter {
     /// Its name.
     pub name: String,
-    /// Its first value: failure tests and learning change parameters in flight.
+    /// The first value, because failure tests and learning change parameters in flight.
     pub value: f64,
-    /// What told it, such as `PARM` or `PARAM_VALUE`.
+    /// The message that contains it, such as `PARM` or `PARAM_VALUE`.
     pub source: String,
 }
 
-/// Whether a parameter is of the motors or of the loops that command them. What drives which motor is told by the motors.
+/// Whether a parameter belongs to the motors or to the loops that command them. The assignment of outputs is not
+/// included; it is part of the motors.
 fn is_of_motors(name: &str, throttle: &str) -> bool {
     const BEGINNINGS: [&str; 15] = [
         "MOT_PWM_",
@@ -112,7 +114,7 @@ fn is_of_motors(name: &str, throttle: &str) -> bool {
     is_throttle || BEGINNINGS.iter().any(begins) && !name.contains("_FUNC")
 }
 
-/// The name of a number in a table with gaps; `what` and the number where the table has none.
+/// The name of a number in a table with gaps; `what` and the number if the table has no name.
 pub(crate) fn name_of(names: &[&str], number: i64, what: &str) -> String {
     let name = usize::try_from(number)
         .ok()

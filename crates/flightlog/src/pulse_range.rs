@@ -4,8 +4,8 @@ use crate::error::UNNAMED;
 use crate::outputs::PULSES_US;
 use crate::{Flight, Range, ReadError};
 
-/// Range of the motor outputs as pulse widths, for a log or a vehicle that does not report it:
-/// see [`Options::range`](crate::Options::range).
+/// The range of the motor outputs as pulse widths, for a log or a vehicle that does not report it: see
+/// [`Options::range`](crate::Options::range).
 ///
 /// # Example
 /// ```
@@ -22,7 +22,7 @@ pub struct PulseRange {
     high_us: u16,
 }
 
-/// Two pulse widths that are not the range of motor outputs.
+/// Two pulse widths that are not a valid range of motor outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("`{low_us}` to `{high_us}` us is not a range of motor outputs")]
 pub struct PulseRangeError {
@@ -31,7 +31,7 @@ pub struct PulseRangeError {
 }
 
 impl PulseRangeError {
-    /// What a range has to be.
+    /// The requirements for a range.
     pub fn help(&self) -> &'static str {
         "expected two pulse widths from 500 to 2500 us, the second at least 100 above the first"
     }
@@ -39,16 +39,16 @@ impl PulseRangeError {
 
 /// The source of a range that the user gave.
 const GIVEN: &str = "given by the user";
-/// Share of the commands that may be damaged, and how far a command may be above the range, in us.
+/// The share of commands that may be damaged, and the tolerance above the range, in us.
 const DAMAGED: f64 = 1e-4;
 const ROUNDING_US: f64 = 5.0;
 
 impl PulseRange {
-    /// A range from the lowest to the highest pulse width of the motor outputs, in us.
+    /// Creates a range from the lowest to the highest pulse width of the motor outputs, in us.
     ///
     /// # Errors
     ///
-    /// When no speed controller has this range.
+    /// If no speed controller has this range.
     pub fn new(low_us: u16, high_us: u16) -> Result<Self, PulseRangeError> {
         match PULSES_US.allow((low_us.into(), high_us.into())) {
             true => Ok(Self { low_us, high_us }),
@@ -65,17 +65,17 @@ impl PulseRange {
         }
     }
 
-    /// The assumption that an output names because the log or the vehicle does not report its range.
+    /// The assumption to report if the log or the vehicle does not report its range.
     pub(crate) fn assumed(self) -> String {
         let Self { low_us, high_us } = self;
         format!("commands from {low_us} to {high_us} us, {GIVEN}")
     }
 
-    /// Notes in a flight, read with this range, that the range was given.
+    /// Records in a flight, read with this range, that the user gave the range.
     ///
     /// # Errors
     ///
-    /// When the log contradicts the range.
+    /// If the log contradicts the range.
     pub(crate) fn apply(self, flight: &mut Flight) -> Result<(), ReadError> {
         if let Some((problem, help)) = self.contradiction(flight) {
             let path = UNNAMED.into();
@@ -92,7 +92,7 @@ impl PulseRange {
         Ok(())
     }
 
-    /// What in a flight, read with this range, contradicts it, and what to do about it.
+    /// The contradiction between this range and a flight that was read with it, and what to do about it.
     fn contradiction(self, flight: &Flight) -> Option<(String, &'static str)> {
         let range = flight.range.as_ref()?;
         if range.source != GIVEN {

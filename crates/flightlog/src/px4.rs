@@ -1,5 +1,4 @@
-//! The vehicle by PX4's parameters: its kind, its motors, the range of their
-//! commands.
+//! The kind of vehicle, its motors and the range of their commands, from PX4's parameters.
 
 mod allocation;
 
@@ -15,7 +14,7 @@ const LONGEST_PULSE_US: f64 = 2200.0;
 /// (<https://dronecan.github.io/Specification/7._List_of_standard_data_types/#rawcommand>).
 const UAVCAN_FULL: f64 = 8191.0;
 
-/// Full throttle of DShot in `actuator_outputs` of PX4: 2047 less the 48 values that are commands.
+/// Full throttle of DShot in `actuator_outputs` of PX4: 2047 minus the 48 values that are special commands.
 const DSHOT_FULL: f64 = 1999.0;
 
 /// The vehicle from MAV_TYPE (or the type in vehicle_status) and the build information.
@@ -50,7 +49,7 @@ pub(crate) fn vehicle(
     vehicle
 }
 
-/// Version from `ver_sw_release`: major, minor, patch and kind, a byte each.
+/// The version from `ver_sw_release`: major, minor, patch and kind, one byte each.
 pub(crate) fn firmware(release: u32) -> String {
     let [major, minor, patch, kind] = release.to_be_bytes();
     let kind = match kind {
@@ -69,7 +68,7 @@ pub(crate) fn rotor_count(parameters: &Parameters) -> Option<u16> {
     (1.0..=12.0).contains(&count).then_some(count as u16)
 }
 
-/// Replaces number of motors and type by CA_ROTOR_COUNT, where that contradicts them.
+/// Replaces number of motors and type according to CA_ROTOR_COUNT, if it contradicts them.
 pub(crate) fn count_rotors(vehicle: &mut Vehicle, parameters: &Parameters) {
     let Some(count) = rotor_count(parameters) else {
         return;
@@ -105,7 +104,7 @@ pub(crate) fn actuator_motors(parameters: &Parameters, used: u16) -> (Vec<Motor>
     (motors, range)
 }
 
-/// Motors whose commands are computed from torque and thrust set points, and the range of these.
+/// Motors whose commands are computed from torque and thrust set points, and the range of these commands.
 pub(crate) fn computed_motors(motors: usize) -> (Vec<Motor>, Range) {
     let motors = (1..=motors).map(|number| Motor {
         number: number as u16,
@@ -121,9 +120,8 @@ pub(crate) fn computed_motors(motors: usize) -> (Vec<Motor>, Range) {
     (motors.collect(), range)
 }
 
-/// The motors of an instance of `actuator_outputs`: those that PWM_MAIN_FUNCn or
-/// PWM_AUX_FUNCn name (1.13 on), else its first `count` outputs. Gives the index of the
-/// output of each motor, too.
+/// The motors of an instance of `actuator_outputs`, each with the index of its output: the outputs named by
+/// PWM_MAIN_FUNCn or PWM_AUX_FUNCn (from 1.13), otherwise the first `count` outputs.
 pub(crate) fn actuator_outputs(
     parameters: &Parameters,
     instance: u8,
@@ -170,7 +168,7 @@ fn has_static_mixer(parameters: &Parameters) -> bool {
     parameters.get("SYS_CTRL_ALLOC") == Some(0.0)
 }
 
-/// Bank of outputs that an instance of `actuator_outputs` shows.
+/// The bank of outputs of an instance of `actuator_outputs`.
 fn bank(instance: u8) -> &'static str {
     match instance {
         0 => "MAIN",
@@ -178,8 +176,8 @@ fn bank(instance: u8) -> &'static str {
     }
 }
 
-/// Range of `actuator_outputs`, from the build, the parameters of the bank, and the smallest and largest command seen but 0;
-/// `first` is the index of the output of a motor.
+/// The range of `actuator_outputs`, from the build, the parameters of the bank, and the smallest and largest command
+/// except 0; `first` is the index of the output of a motor.
 pub(crate) fn output_range(
     parameters: &Parameters,
     instance: u8,
@@ -214,7 +212,7 @@ pub(crate) fn output_range(
     let output = first + 1;
     let of_output = |end: &str| {
         let own = parameters.get(&format!("PWM_{bank}_{end}{output}"));
-        // -1 stands for the value of the whole bank.
+        // -1 means the value of the whole bank.
         let own = own.filter(|&value| value > 0.0);
         let of_bank = parameters
             .get(&format!("PWM_{bank}_{end}"))
@@ -234,7 +232,7 @@ pub(crate) fn output_range(
         return Some(range(low, high, "us", source));
     }
     match hardware {
-        // RPMMIN and RPMMAX of the driver of Yuneec's TAP ESCs, which has no parameters.
+        // RPMMIN and RPMMAX in the driver of Yuneec's TAP ESCs, which has no parameters.
         "TAP_V1" | "TAP_V2" => Some(range(1200.0, 1900.0, "us", "the TAP ESC driver".into())),
         _ if hardware.contains("SITL") => Some(range(
             1000.0,
@@ -276,7 +274,7 @@ pub(crate) fn nav_state(number: i64) -> String {
     crate::parameters::name_of(NAMES, number, "state")
 }
 
-/// Name of a mode in HEARTBEAT.custom_mode: main mode in byte 2, that of AUTO in byte 3.
+/// Name of a mode in HEARTBEAT.custom_mode: main mode in byte 2, sub-mode of AUTO in byte 3.
 pub(crate) fn custom_mode(number: u32) -> String {
     const MAIN: &[&str] = &[
         "",
@@ -383,9 +381,9 @@ mod tests {
             found.map(|range| (range.low, range.high, range.unit))
         };
         assert_eq!(of(&dshot, (110.0, 1999.0)), Some((110.0, 1999.0, "raw")));
-        // Pulses of another bank, as the values tell.
+        // Pulses of another bank, judging by the values.
         assert_eq!(of(&dshot, (900.0, 1800.0)), Some((1075.0, 1950.0, "us")));
-        // Without the minimum, or where the throttle goes both ways, there is no range.
+        // Without the minimum, or if the throttle works in both directions, there is no range.
         assert_eq!(of(&dshot[..1], (110.0, 1999.0)), None);
         let both_ways = [dshot[0], dshot[1], ("DSHOT_3D_ENABLE", 1.0)];
         assert_eq!(of(&both_ways, (110.0, 1999.0)), None);

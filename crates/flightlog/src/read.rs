@@ -8,7 +8,7 @@ use crate::error::{self, PROFILE, RULES, SEMICOLONS, TEXT, UNNAMED, io_error};
 use crate::input::Input;
 use crate::{Commands, Flight, PulseRange, Range, ReadError, csv, dataflash, geometry, tlog, ulog};
 
-/// What to read.
+/// Options for reading a log.
 ///
 /// # Example: one signal of many
 /// ```
@@ -24,43 +24,41 @@ use crate::{Commands, Flight, PulseRange, Range, ReadError, csv, dataflash, geom
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Names of the signals to keep; `None` keeps all. Motor commands, armed and in-air
-    /// times, modes and messages are always read, and the [`Report`](crate::Report) is the
-    /// same whatever is kept.
+    /// Names of the signals to keep; `None` keeps all. Motor commands, armed and in-air times, modes and messages are
+    /// always read, and the [`Report`](crate::Report) does not depend on this option.
     pub signals: Option<Vec<String>>,
-    /// Range of the motor outputs, for a log that does not report it, such as a telemetry log
-    /// without parameters. The flight's [`assumed`](Flight::assumed) names this range. A log that
-    /// reports a range of its own, or has commands above this one, is refused
-    /// ([`ReadError::Range`]).
+    /// The range of the motor outputs, for a log that does not report it, such as a telemetry log without parameters.
+    /// The flight's [`assumed`](Flight::assumed) mentions this range. A log that reports its own range, or has commands
+    /// above this one, is refused ([`ReadError::Range`]).
     pub range: Option<PulseRange>,
 }
 
 impl Options {
-    /// Whether the signal `name` is to be kept.
+    /// Whether to keep the signal `name`.
     fn keeps(&self, name: &str) -> bool {
         self.signals
             .as_ref()
             .is_none_or(|names| names.iter().any(|wanted| wanted == name))
     }
 
-    /// The range of motor outputs: that of the log, else the given one.
+    /// The range of motor outputs in the log, or the given one if the log has none.
     pub(crate) fn range_or_given(&self, own: Option<Range>) -> Option<Range> {
         own.or_else(|| self.range.map(PulseRange::range))
     }
 
-    /// Whether the signal `name` is to be read: to be kept, or for the geometry.
+    /// Whether to read the signal `name`, either to keep it or for the geometry.
     pub(crate) fn wants(&self, name: &str) -> bool {
         self.keeps(name) || geometry::infer::SIGNALS.contains(&name)
     }
 }
 
-/// Reads the log at `path`; `-` is standard input. The content decides the format, not the
-/// name, and it may be gzipped.
+/// Reads the log at `path`; `-` is standard input. The format is detected from the content, not from the name; the file
+/// may be gzipped.
 ///
 /// # Errors
 ///
-/// When there is no such file, when it is empty, or when it is not a flight log. A damaged
-/// log is not an error: see [`Flight::report`].
+/// If there is no such file, if it is empty, or if it is not a flight log. A damaged log is not an error: see
+/// [`Flight::report`].
 ///
 /// # Example
 /// ```no_run
@@ -110,7 +108,7 @@ pub fn read(source: impl Read, options: &Options) -> Result<Flight, ReadError> {
     read_unpacked(&mut input, options)
 }
 
-/// Shorter times on the ground between two in the air are chatter of the land detector.
+/// The shortest time on the ground between two flights, in seconds; shorter ones are chatter of the land detector.
 const SHORTEST_LANDING_S: f64 = 1.0;
 
 fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, ReadError> {
@@ -172,7 +170,7 @@ enum Content {
     Other(&'static str),
 }
 
-/// Signatures of files that people hand in by mistake.
+/// Signatures of other files that users may pass by mistake.
 const OTHER_FILES: &[(&[u8], &str)] = &[
     (b"\x89PNG", "a PNG picture"),
     (b"\xff\xd8\xff", "a JPEG picture"),
@@ -189,10 +187,10 @@ const OTHER_FILES: &[(&[u8], &str)] = &[
     (b"version https://git-lfs", "a git-lfs pointer"),
 ];
 
-/// The label of the only field of sdlog2's messages of time.
+/// The label of the only field of sdlog2's time messages.
 const SDLOG2: &[u8] = b"StartTime\0";
 
-/// The content of a log from its first bytes; where those are damaged, from what follows.
+/// The kind of content, from the first bytes of a log or, if these are damaged, from the following ones.
 fn sniff(start: &[u8]) -> Content {
     if start.is_empty() {
         return Content::Empty;
@@ -201,7 +199,7 @@ fn sniff(start: &[u8]) -> Content {
         return Content::Other(what);
     }
     if dataflash::looks_like(start) {
-        // PX4 before ULog logged in the same encoding, with messages of its own.
+        // PX4 before ULog used the same encoding with its own messages.
         return match start.windows(SDLOG2.len()).any(|bytes| bytes == SDLOG2) {
             true => Content::Sdlog2,
             false => Content::DataFlash,
@@ -226,7 +224,7 @@ fn sniff(start: &[u8]) -> Content {
     }
 }
 
-/// What a text that is not a log is.
+/// The kind of a text that is not a log.
 fn text_of(text: &str) -> &'static str {
     let starts = |key: &str| text.lines().any(|line| line.starts_with(key));
     let header = text.lines().find(|line| !line.starts_with('#'));

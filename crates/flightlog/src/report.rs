@@ -1,35 +1,35 @@
-//! Report on the reading of a log: amount of data, damage, and what was left out.
+//! The report on reading a log: amount of data, damage, and omitted data.
 
 use std::fmt;
 
-/// Report on the reading of a log.
+/// A report on reading a log.
 ///
-/// `bytes` counts the log itself, after decompression.
+/// Bytes are counted after decompression.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Report {
-    /// Bytes of the log that were read.
+    /// The number of bytes of the log that were read.
     pub bytes: u64,
-    /// Complete messages, kept or not (rows in a CSV file).
+    /// The number of complete messages, kept or not (rows in a CSV file).
     pub messages: u64,
-    /// Bytes that belong to no message.
+    /// The number of bytes that are not part of any message.
     pub skipped_bytes: u64,
-    /// Messages that were recognised and rejected as damaged.
+    /// The number of messages that were recognised and rejected as damaged.
     pub bad_messages: u64,
-    /// The log ends inside a message, or the compressed stream ends early.
+    /// Whether the log ends inside a message, or the compressed stream ends early.
     pub truncated: bool,
     /// The first reason for which bytes were skipped or a message was rejected.
     pub reason: Option<String>,
-    /// What the log has beyond the bounds of what is kept.
+    /// The data beyond the limits of what is kept.
     pub left_out: LeftOut,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) room: Room,
 }
 
-/// What a log has beyond the bounds of what is kept of it: counted only. No flight comes near a bound; damaged and
-/// hostile logs do.
+/// Counts of the data beyond the limits of what is kept. No real flight reaches a limit; damaged and malicious logs
+/// may.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -41,23 +41,23 @@ pub struct LeftOut {
     pub modes: u64,
     /// Values of parameters after the first 16,384 names, and those with names longer than 64 bytes.
     pub parameters: u64,
-    /// Changes of armed and in the air after the first 10,000 of each, where only the commands tell them. Nothing after
-    /// these counts as in the air.
+    /// Changes of armed and in the air after the first 10,000 of each, if they are derived from the commands. The time
+    /// after them does not count as in the air.
     pub changes: u64,
-    /// Messages after those that fill a flight: 67,108,864 numbers, 10,000 events of arming and flying, or 1,000 boots.
-    /// The flight ends there.
+    /// Messages after the flight has reached a limit: 67,108,864 numbers, 10,000 events of arming and flying, or 1,000
+    /// boots. The flight ends there.
     pub messages: u64,
 }
 
 impl LeftOut {
-    /// Whether all of the log was kept.
+    /// Whether the whole log was kept.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 }
 
 impl fmt::Display for LeftOut {
-    /// What was left out, such as `12 texts and 3 flight modes`.
+    /// The omitted data, such as `12 texts and 3 flight modes`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let counts = [
             (self.texts, "texts"),
@@ -75,23 +75,24 @@ impl fmt::Display for LeftOut {
     }
 }
 
-/// Texts that are kept.
+/// The number of texts that are kept.
 const MOST_TEXTS: usize = 10_000;
-/// Changes of the flight mode that are kept.
+/// The number of flight mode changes that are kept.
 const MOST_MODES: usize = 10_000;
-/// Numbers that are kept of all rows, their times included: about three hours of commands and attitude at 400 Hz.
+/// The number of values that are kept in all rows, including their times: about three hours of commands and attitude at
+/// 400 Hz.
 const MOST_NUMBERS: u64 = 1 << 26;
-/// Events of arming and flying that are kept.
+/// The number of events of arming and flying that are kept.
 const MOST_CHANGES: u64 = 10_000;
 
-/// What is kept so far, where rows and changes share a bound.
+/// The amounts that are kept so far, for limits that rows and changes share.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Room {
     numbers: u64,
     changes: u64,
 }
 
-/// What is kept depends on the options; a report is the same whatever is kept.
+/// Always equal: the kept amounts depend on the options, but reports must compare equal for any options.
 impl PartialEq for Room {
     fn eq(&self, _: &Room) -> bool {
         true
@@ -101,7 +102,8 @@ impl PartialEq for Room {
 impl Eq for Room {}
 
 impl Report {
-    /// Whether nothing was skipped, rejected or cut off. What was left out is no damage: see [`Report::left_out`].
+    /// Whether nothing was skipped, rejected or cut off. Data beyond the limits does not count as damage: see
+    /// [`Report::left_out`].
     pub fn is_clean(&self) -> bool {
         self.skipped_bytes == 0 && self.bad_messages == 0 && !self.truncated
     }
@@ -112,7 +114,8 @@ impl Report {
         self.because(|| why.into());
     }
 
-    /// Counts a row of so many numbers, with its time; `dropped` tells that one is dropped because its time goes back.
+    /// Counts a row of `numbers` values, with its time; `dropped` means that a row is dropped because its time goes
+    /// back.
     pub(crate) fn row(&mut self, numbers: usize, dropped: bool) {
         self.room.numbers += numbers as u64 + 1;
         if dropped {
@@ -125,7 +128,7 @@ impl Report {
         self.room.changes += 1;
     }
 
-    /// Keeps a state that is reported repeatedly, where it changes.
+    /// Appends a repeatedly reported state if it changes.
     pub(crate) fn state(&mut self, states: &mut Vec<(f64, bool)>, t_s: f64, state: Option<bool>) {
         let last = states.last().map(|(_, last)| *last);
         if let Some(state) = state.filter(|state| last != Some(*state)) {
@@ -134,7 +137,7 @@ impl Report {
         }
     }
 
-    /// Counts a message that is left out because the flight is full, of boots or else; gives whether it is.
+    /// Counts a message as omitted if the flight has reached a limit, of boots or otherwise; returns whether it has.
     pub(crate) fn leaves_out(&mut self, of_boots: bool) -> bool {
         let Room { numbers, changes } = self.room;
         let is_full = of_boots || numbers >= MOST_NUMBERS || changes >= MOST_CHANGES;
@@ -142,12 +145,12 @@ impl Report {
         is_full
     }
 
-    /// Keeps a text among the first.
+    /// Keeps a text, up to the limit.
     pub(crate) fn text<T>(&mut self, texts: &mut Vec<T>, text: T) {
         keep(texts, text, MOST_TEXTS, &mut self.left_out.texts);
     }
 
-    /// Keeps a flight mode among the first.
+    /// Keeps a flight mode, up to the limit.
     pub(crate) fn mode<T>(&mut self, modes: &mut Vec<T>, mode: T) {
         keep(modes, mode, MOST_MODES, &mut self.left_out.modes);
     }

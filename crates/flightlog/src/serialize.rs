@@ -1,4 +1,4 @@
-//! How what is not plain data is serialised: kinds by their names, tables by their columns.
+//! Serialisation of types that are not plain data: kinds by their names, tables by their columns.
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
@@ -16,7 +16,7 @@ macro_rules! by_name {
 
 by_name!(Format, VehicleKind);
 
-/// `{ "t_s": [..], "raw": [[..], ..] }`, a row a sample; what is not known is no number.
+/// `{ "t_s": [..], "raw": [[..], ..] }`, with one row for each sample; unknown values are not numbers.
 impl Serialize for Commands {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let rows: Vec<&[f64]> = self.rows().map(|(_, row)| row).collect();
@@ -75,7 +75,7 @@ impl<T: Serialize> Serialize for Event<T> {
 pub(crate) struct IntervalsFields<'a> {
     /// The sum of their lengths, in seconds.
     duration_s: f64,
-    /// How they were found, such as `EV 28 (not landed) to EV 18 (land complete)`.
+    /// The rule that determined them, such as `EV 28 (not landed) to EV 18 (land complete)`.
     rule: &'a str,
     /// The intervals, in order of time, without overlap.
     spans: &'a [Interval],
@@ -96,9 +96,9 @@ impl Serialize for Intervals {
 #[derive(serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct GapFields {
-    /// What the log lacks.
+    /// The missing information.
     reason: String,
-    /// What the pilot can do.
+    /// Advice for the pilot.
     help: Option<&'static str>,
 }
 

@@ -1,22 +1,21 @@
-//! Signals: named values over time, each group of them on a time base of its own.
+//! Signals: named values over time, each group on its own time base.
 
-/// Name, unit and source of a signal.
+/// The name, unit and source of a signal.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Label {
-    /// Name with the unit in it, such as `roll_deg`.
+    /// The name, which includes the unit, such as `roll_deg`.
     pub name: String,
-    /// Unit, such as `deg`; empty when the value has none or none is known.
+    /// The unit, such as `deg`; empty if the value has none or it is unknown.
     pub unit: String,
-    /// Where it came from, such as `ATT.Roll`.
+    /// The source, such as `ATT.Roll`.
     pub source: String,
 }
 
-/// Signals that share one time base, as the fields of one log message do.
+/// Signals that share a time base, like the fields of one log message.
 ///
-/// A value that is not known at some time is stored as NaN; [`Signal::at`] and
-/// [`Hold::at`] give `None` for it.
+/// Unknown values are stored as NaN; [`Signal::at`] and [`Hold::at`] return `None` for them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Series {
     t_s: Vec<f64>,
@@ -34,13 +33,13 @@ impl Series {
         }
     }
 
-    /// Moves all rows in time.
+    /// Shifts the times of all rows.
     pub(crate) fn shift(&mut self, by_s: f64) {
         self.t_s.iter_mut().for_each(|t_s| *t_s += by_s);
     }
 
-    /// Adds one row; `values` are in the order of the labels. `true` tells that a row was
-    /// dropped, this or the last: see [`Order`].
+    /// Adds one row; `values` are in the order of the labels. Returns `true` if a row was dropped, this one or the
+    /// last: see [`Order`].
     pub(crate) fn push(&mut self, t_s: f64, values: impl IntoIterator<Item = f64>) -> bool {
         let order = Order::of(&self.t_s, t_s);
         match order {
@@ -61,7 +60,7 @@ impl Series {
         order != Order::Last
     }
 
-    /// Times of the rows, in seconds on the log's clock, never decreasing.
+    /// The times of the rows, in seconds on the log's clock, never decreasing.
     pub fn t_s(&self) -> &[f64] {
         &self.t_s
     }
@@ -92,8 +91,8 @@ impl Series {
     }
 }
 
-/// Series in the order of preference for their signals: of signals with the same name the
-/// first stays, and series without rows or signals go.
+/// Orders series by preference. Of signals with the same name only the first is kept, and series without rows or
+/// signals are removed.
 pub(crate) fn preferred(mut series: Vec<Series>) -> Vec<Series> {
     let mut names = std::collections::BTreeSet::new();
     series.retain(|series| !series.t_s.is_empty());
@@ -104,27 +103,27 @@ pub(crate) fn preferred(mut series: Vec<Series>) -> Vec<Series> {
     series
 }
 
-/// One signal: what it is, when, and its values.
+/// One signal with its times and values.
 #[derive(Debug, Clone, Copy)]
 pub struct Signal<'a> {
-    /// Name, unit and source.
+    /// The name, unit and source.
     pub label: &'a Label,
-    /// Times in seconds on the log's clock, never decreasing.
+    /// The times in seconds on the log's clock, never decreasing.
     pub t_s: &'a [f64],
-    /// One value for each time; NaN where it is not known.
+    /// One value for each time; NaN is unknown.
     pub values: &'a [f64],
 }
 
 impl<'a> Signal<'a> {
-    /// The latest value at or before `t_s` (zero-order hold); `None` before the first
-    /// sample and where the value is not known.
+    /// The latest value at or before `t_s` (zero-order hold); `None` before the first sample and if the value is
+    /// unknown.
     pub fn at(&self, t_s: f64) -> Option<f64> {
         let after = self.t_s.partition_point(|&t| t <= t_s);
         let value = *self.values.get(after.checked_sub(1)?)?;
         value.is_finite().then_some(value)
     }
 
-    /// A cursor for reading the signal at times that only go forward.
+    /// Returns a cursor that reads the signal at ascending times.
     pub fn hold(&self) -> Hold<'a> {
         Hold {
             t_s: self.t_s,
@@ -133,14 +132,13 @@ impl<'a> Signal<'a> {
         }
     }
 
-    /// Samples a second without pauses; `None` under two samples.
+    /// The sample rate in Hz, without pauses; `None` with fewer than two samples.
     pub fn rate_hz(&self) -> Option<f64> {
         rate_hz(self.t_s)
     }
 }
 
-/// Zero-order hold over a signal for times that only go forward: one pass over the
-/// signal in all, however many times are asked for.
+/// A zero-order hold of a signal at ascending times, which reads the signal in a single pass.
 ///
 /// # Example: the roll angle at each motor sample
 ///
@@ -164,7 +162,7 @@ pub struct Hold<'a> {
 }
 
 impl Hold<'_> {
-    /// The latest value at or before `t_s`; `t_s` must not be before that of the last call.
+    /// The latest value at or before `t_s`, which must not be before the `t_s` of the previous call.
     pub fn at(&mut self, t_s: f64) -> Option<f64> {
         while self.t_s.get(self.after).is_some_and(|&t| t <= t_s) {
             self.after += 1;
@@ -174,13 +172,13 @@ impl Hold<'_> {
     }
 }
 
-/// The order of a row and the rows before it. Times never go back: where one does, either it
-/// or the last before it is damaged.
+/// The order of a row relative to the rows before it. Times never go back: if one does, either this row or the previous
+/// one is damaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Order {
-    /// It comes last.
+    /// It is later than all rows.
     Last,
-    /// It fits once the last row, which was too far ahead, is dropped.
+    /// It is later than all rows except the last, which was too far ahead and is dropped.
     Replaces,
     /// It goes back even then, and is dropped itself.
     Back,
@@ -196,21 +194,22 @@ impl Order {
     }
 }
 
-/// A clock that goes back by more than this for two rows or more, in seconds, was set back or started again.
+/// A clock that goes back by more than this for two rows or more, in seconds, was set back or restarted.
 pub(crate) const SET_BACK_S: f64 = 0.2;
-/// Times at which a clock was set back that are kept of a log.
+/// The number of times at which a clock was set back that are kept of a log.
 const MOST_SET_BACK: usize = 1000;
 
-/// Detects a clock that is set back. The rows that are dropped for it leave no gap in the times of the others.
+/// Detects a clock that is set back. The rows that are dropped because of it leave no gap in the times of the other
+/// rows.
 #[derive(Debug, Default)]
 pub(crate) struct SetBack {
-    /// The time of the row before, where it was dropped.
+    /// The time of the previous row, if it was dropped.
     dropped_s: Option<f64>,
     at_s: Vec<f64>,
 }
 
 impl SetBack {
-    /// Takes the order and the time of a row, and the time of the last row that was kept before it.
+    /// Processes the order and the time of a row, with the time of the last kept row before it.
     pub(crate) fn see(&mut self, order: Order, t_s: f64, last_s: Option<&f64>) {
         if order != Order::Back {
             self.dropped_s = None;
@@ -231,14 +230,14 @@ impl SetBack {
         &self.at_s
     }
 
-    /// Moves all times.
+    /// Shifts all times.
     pub(crate) fn shift(&mut self, by_s: f64) {
         self.at_s.iter_mut().for_each(|t_s| *t_s += by_s);
     }
 }
 
-/// Samples a second: the inverse of the mean time step, without pauses. A step is a pause
-/// when it is over 2 s and over ten times the median step. `None` without any step.
+/// The sample rate in Hz: the inverse of the mean time step, without pauses. A step is a pause if it is over 2 s and
+/// over ten times the median step. `None` without any step.
 pub(crate) fn rate_hz(t_s: &[f64]) -> Option<f64> {
     let steps = || {
         t_s.windows(2).filter_map(|pair| match pair {

@@ -4,35 +4,35 @@ use crate::{Flight, Gap};
 
 /// Margin and command over all motors and all samples in the air, on one range.
 ///
-/// The margin of a command `c` is `min(c, 1 - c)`; standard deviations are those of the
-/// whole population (divided by the number of values, not by one less).
+/// The margin of a command `c` is `min(c, 1 - c)`. Standard deviations are those of the population (divided by the
+/// number of values).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Statistics {
-    /// Rows of motor commands in the air.
+    /// The number of rows of motor commands in the air.
     pub samples: usize,
-    /// Mean margin.
+    /// The mean margin.
     pub margin_mean: f64,
-    /// Smallest margin.
+    /// The smallest margin.
     pub margin_min: f64,
-    /// Standard deviation of the margin.
+    /// The standard deviation of the margin.
     pub margin_std: f64,
-    /// Mean over the rows of the smallest margin of the motors.
+    /// The mean over the rows of the smallest margin of the motors.
     pub margin_mean_of_min: f64,
-    /// Mean command.
+    /// The mean command.
     pub command_mean: f64,
-    /// Standard deviation of the command.
+    /// The standard deviation of the command.
     pub command_std: f64,
 }
 
 impl Flight {
-    /// Statistics on the effective range.
+    /// Computes the statistics on the effective range.
     ///
     /// # Errors
     ///
-    /// The first gap of the log that prevents them: no motors, no range, never in the air ...
+    /// The first gap of the log that prevents this, such as no motors, no range or no flight.
     ///
     /// ```
     /// let log = "t_s,motor1,motor2\n0,0.5,0.4\n0.1,0.5,0.8\n";
@@ -46,7 +46,7 @@ impl Flight {
         self.statistics_of(|raw| self.effective_command(raw))
     }
 
-    /// Statistics on the full range, where a motor at its limit still shows a margin.
+    /// Computes the statistics on the full range, where a motor at its limit still has a margin.
     ///
     /// # Errors
     ///
@@ -96,7 +96,7 @@ impl Flight {
     }
 }
 
-/// Mean and variance in one pass (Welford 1962), which does not cancel.
+/// Mean and variance in one pass (Welford 1962), without cancellation.
 #[derive(Default)]
 struct Moments {
     count: f64,

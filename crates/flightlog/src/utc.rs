@@ -1,9 +1,8 @@
-//! From GPS time to UTC.
+//! Converts GPS time to UTC.
 
 /// GPS time starts on 6 January 1980, in seconds since 1970.
 const GPS_EPOCH_S: f64 = 315_964_800.0;
-/// UTC seconds from which GPS is ahead of UTC by so many leap seconds
-/// (IERS Bulletin C).
+/// The UTC times, in seconds, from which GPS is ahead of UTC by this number of leap seconds (IERS Bulletin C).
 const LEAPS: &[(f64, f64)] = &[
     (1_483_228_800.0, 18.0),
     (1_435_708_800.0, 17.0),
@@ -11,7 +10,7 @@ const LEAPS: &[(f64, f64)] = &[
     (1_230_768_000.0, 15.0),
 ];
 
-/// Seconds since 1970 of a GPS week and the seconds in it.
+/// The seconds since 1970 of a GPS week and the seconds in it.
 pub(crate) fn from_gps_s(week: f64, seconds: f64) -> f64 {
     let gps_s = GPS_EPOCH_S + week * 604_800.0 + seconds;
     let leap = LEAPS.iter().find(|(from_s, leap)| gps_s - leap >= *from_s);

@@ -1,10 +1,11 @@
-//! Rule blocks, and what outputs have of their own: a rule set has either once for all, or for each.
+//! Rule blocks and settings of single outputs. A rule set has each of these once for all, or separately for each.
 
 use fuzzy::model::{Activation, Aggregation, Block, Model, Operators, Rule};
 
 use crate::draft::Draft;
 
-/// Gives a model the blocks that its rules were read from. A single one is the rule set itself.
+/// Sets the blocks from which the rules of a model were read. The settings of a single block become those of the rule
+/// set.
 pub(crate) fn settle(model: &mut Model, mut blocks: Vec<Block>) {
     if let [block] = &blocks[..]
         && block.enabled
@@ -31,7 +32,8 @@ pub(crate) fn settle(model: &mut Model, mut blocks: Vec<Block>) {
     model.blocks = blocks;
 }
 
-/// Gives a model the aggregation of each output: that of the first one is the rule set's, others are their own.
+/// Sets the aggregation of each output: that of the first output becomes the default of the rule set, different ones
+/// are stored with their outputs.
 pub(crate) fn aggregate(model: &mut Model, found: &[Option<Aggregation>]) {
     let common = found.iter().flatten().next().copied().unwrap_or_default();
     model.operators.aggregation = common;
@@ -40,7 +42,8 @@ pub(crate) fn aggregate(model: &mut Model, found: &[Option<Aggregation>]) {
     }
 }
 
-/// Tells where the aggregation of an output with computed values joins rules, which a rule set weighs each.
+/// Reports a loss if the aggregation of an output with computed values joins rules, because a rule set weighs each rule
+/// separately.
 pub(crate) fn joined(draft: &mut Draft<'_>, output: &str, part: &str, help: &str) {
     let rules = draft.model.rules.iter();
     let consequents = rules.flat_map(|rule| &rule.rule.consequents);
@@ -60,13 +63,13 @@ pub(crate) fn joined(draft: &mut Draft<'_>, output: &str, part: &str, help: &str
     }
 }
 
-/// The rules that share operators.
+/// Rules that share operators.
 pub(crate) struct Rules<'m> {
     pub(crate) name: &'m str,
     pub(crate) enabled: bool,
     pub(crate) operators: Operators,
     pub(crate) activation: Activation,
-    /// Each with its number from 1.
+    /// The rules with their numbers, from 1.
     pub(crate) rules: Vec<(usize, &'m Rule)>,
 }
 

@@ -1,12 +1,12 @@
-//! Comments that a rule set has a place for: the one that a text begins with is its description, the one behind a rule on
-//! its line is the rule's note.
+//! Comments that are kept: the comment at the start of a text becomes the description, and the comment after a rule on
+//! its line becomes the rule's note.
 
 use fuzzy::{format::Spans, model::Model};
 
-/// The marks that begin a comment, and end it where it may stop before the line does.
+/// The start of a comment, and its end if it may end before the line does.
 const MARKS: [(&str, &str); 5] = [("#", ""), ("%", ""), ("//", ""), ("/*", "*/"), ("(*", "*)")];
 
-/// A comment that a text begins with, and what is behind it.
+/// The comment at the start of a text, and the rest after it.
 fn first(text: &str) -> Option<(&str, &str)> {
     let (open, close) = MARKS.iter().find(|(open, _)| text.starts_with(open))?;
     let inner = text.get(open.len()..)?;
@@ -25,7 +25,7 @@ fn is_space(c: char) -> bool {
     c.is_whitespace() || c == '\u{feff}'
 }
 
-/// A text behind the comments that it begins with.
+/// The text after the comments at its start.
 pub(crate) fn behind(text: &str) -> &str {
     let mut rest = text.trim_start_matches(is_space);
     while let Some((_, after)) = first(rest) {
@@ -34,7 +34,7 @@ pub(crate) fn behind(text: &str) -> &str {
     rest
 }
 
-/// Gives a model that was read from a text the comments that have a place in it.
+/// Stores the comments of a text in the model that was read from it.
 pub(crate) fn keep(text: &str, model: &mut Model, spans: &Spans) {
     let mut rest = text.trim_start_matches(is_space);
     let mut lines = vec![];
@@ -56,7 +56,8 @@ pub(crate) fn keep(text: &str, model: &mut Model, spans: &Spans) {
     }
 }
 
-/// The words of a comment in one line, without marks and rulings, and without what a program writes about itself.
+/// The words of a comment on one line, without comment signs and rulings, and without lines that a program writes about
+/// itself.
 fn plain(comment: &str) -> String {
     let lines = comment
         .lines()

@@ -1,4 +1,4 @@
-//! Conditions without NOT before brackets, which only YAML has.
+//! Conditions without NOT before brackets, which only YAML supports.
 
 use fuzzy::{
     model::{Conjunction, Disjunction, Operators},
@@ -18,8 +18,8 @@ pub(crate) fn dual(and: Conjunction) -> Disjunction {
     }
 }
 
-/// The condition with every NOT at a proposition: `NOT (a AND b)` is `NOT a OR NOT b` where the operators are dual; `None`
-/// where they are not.
+/// The condition with every NOT moved to a proposition: `NOT (a AND b)` becomes `NOT a OR NOT b` if the operators are
+/// dual; `None` if they are not.
 pub(crate) fn without_not(condition: &Condition, operators: Operators) -> Option<Condition> {
     let all = |parts: &[Condition], negated: bool| {
         let negate = |part: &Condition| match negated {

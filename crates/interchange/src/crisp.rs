@@ -1,4 +1,4 @@
-//! Crisp limits: `steps` as rectangles of other programs, and back.
+//! Crisp limits: converts `steps` to rectangles of other programs, and back.
 
 use fuzzy::{
     Diagnostic, Findings, Model,
@@ -21,7 +21,7 @@ pub(crate) fn written(model: &Model) -> Vec<Diagnostic> {
     noted.collect()
 }
 
-/// A document whose steps are rectangles again, with notes about neighbouring rectangles that share a limit.
+/// Converts rectangles back to steps, with notes about neighbouring rectangles that share a limit.
 pub(crate) fn read(mut document: Document, text: &str) -> Document {
     let outputs = &mut document.model.outputs;
     let outputs = outputs.iter_mut().map(|output| &mut output.variable);
@@ -50,7 +50,7 @@ pub(crate) fn read(mut document: Document, text: &str) -> Document {
     document
 }
 
-/// The terms of a variable as rectangles, where all of them have vertical sides.
+/// The terms of a variable as rectangles, if all of them have vertical sides.
 fn rectangles(variable: &Variable) -> Option<Vec<Term>> {
     let rectangle = |term: &Term| {
         let corners = term.membership_function.corners()?;

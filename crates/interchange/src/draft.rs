@@ -1,4 +1,4 @@
-//! A model that is being read, and what is found on the way.
+//! A model that is being read, and its findings so far.
 
 use std::ops::Range;
 
@@ -15,11 +15,11 @@ use crate::{
     words::{self, Words},
 };
 
-/// Inputs, and outputs, of a rule set.
+/// The maximum number of inputs, and of outputs, of a rule set.
 pub(crate) const MOST_VARIABLES: usize = 1000;
-/// Terms of an input or output.
+/// The maximum number of terms of a variable.
 pub(crate) const MOST_TERMS: usize = 1000;
-/// Rule blocks of a rule set.
+/// The maximum number of rule blocks of a rule set.
 pub(crate) const MOST_BLOCKS: usize = 1000;
 
 /// A model that is being read from a text.
@@ -42,20 +42,20 @@ impl<'t> Draft<'t> {
         }
     }
 
-    /// Where a part of the text stands in it.
+    /// The location of a part of the text.
     pub(crate) fn span(&self, part: &str) -> Range<usize> {
         let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
         start..start + part.len()
     }
 
-    /// Something that makes the text unreadable.
+    /// Reports an error that makes the text unreadable.
     pub(crate) fn error(&mut self, code: &'static str, part: &str, message: String, help: &str) {
         self.findings
             .push(Diagnostic::error(code, self.span(part), message).help(help));
     }
 
-    /// Something that the model cannot carry, so that its answers would be others: an error, or a warning where losses are
-    /// accepted.
+    /// Reports something that the model cannot represent, so that its results would differ: an error, or a warning if
+    /// losses are accepted.
     pub(crate) fn loss(&mut self, code: &'static str, part: &str, message: String, help: &str) {
         let span = self.span(part);
         let finding = match self.losses {
@@ -65,19 +65,19 @@ impl<'t> Draft<'t> {
         self.findings.push(finding.help(help));
     }
 
-    /// Something that has no meaning here, and is left out.
+    /// Warns about something that has no meaning here and is ignored.
     pub(crate) fn warning(&mut self, code: &'static str, part: &str, message: String, help: &str) {
         self.findings
             .push(Diagnostic::warning(code, self.span(part), message).help(help));
     }
 
-    /// Something that was decided without a word in the text.
+    /// Notes a decision that the text does not specify.
     pub(crate) fn note(&mut self, code: &'static str, part: &str, message: String, help: &str) {
         self.findings
             .push(Diagnostic::note(code, self.span(part), message).help(help));
     }
 
-    /// A number; what is none is an error.
+    /// A number; otherwise an error is reported.
     pub(crate) fn number(&mut self, word: &str) -> Option<f64> {
         let number = number(word);
         if number.is_none() {
@@ -95,7 +95,8 @@ impl<'t> Draft<'t> {
         number
     }
 
-    /// Whether the parameters of a shape, in numbers and in words, are finite where it needs finite ones; an error if not.
+    /// Whether the parameters of a shape, in numbers and in words, are finite where they must be; otherwise an error is
+    /// reported.
     pub(crate) fn is_finite(&mut self, shape: Shape, numbers: &[f64], words: &[&str]) -> bool {
         let Some(index) = shapes::not_finite(shape, numbers) else {
             return true;
@@ -107,8 +108,8 @@ impl<'t> Draft<'t> {
         false
     }
 
-    /// The value of a word; `part` is the part of the text to show where it has none. `what` says in a message what it should
-    /// name.
+    /// The value of a word; `part` is the part of the text to show in an error. `what` is the kind of word for the
+    /// message.
     pub(crate) fn word<T: Copy>(
         &mut self,
         format: Format,
@@ -123,7 +124,7 @@ impl<'t> Draft<'t> {
         value
     }
 
-    /// A word that is none of those known.
+    /// Reports an unknown word.
     pub(crate) fn unknown_word(
         &mut self,
         format: Format,
@@ -143,7 +144,7 @@ impl<'t> Draft<'t> {
         self.error("unknown-word", part, message, &help);
     }
 
-    /// The ends of a range. An output that computes its values needs none, so `0 0` becomes a range around it.
+    /// The ends of a range. For an output with computed values, which needs no range, `0 0` becomes a range around it.
     pub(crate) fn range(
         &mut self,
         part: &str,
@@ -159,8 +160,8 @@ impl<'t> Draft<'t> {
         (low - 0.5, high + 0.5)
     }
 
-    /// Whether there may be one more than `count`; an error, reported once, if not. What is read is compared with what was read
-    /// before, so that the time grows by the square of the number.
+    /// Whether one more than `count` items are allowed; otherwise an error is reported, once. Every item is compared
+    /// with the earlier ones, so the time grows with the square of their number.
     pub(crate) fn has_room(&mut self, count: usize, most: usize, what: &str, part: &str) -> bool {
         let is_told = |finding: &Diagnostic| finding.code == "too-large";
         if count >= most && !self.findings.last().is_some_and(is_told) {
@@ -181,7 +182,7 @@ impl<'t> Draft<'t> {
         self.has_room(variable.terms.len(), MOST_TERMS, &what, part)
     }
 
-    /// Whether something makes the text unreadable.
+    /// Whether an error makes the text unreadable.
     pub(crate) fn has_errors(&self) -> bool {
         let error = fuzzy::diagnostic::Severity::Error;
         self.findings
@@ -189,7 +190,7 @@ impl<'t> Draft<'t> {
             .any(|finding| finding.severity == error)
     }
 
-    /// The model, or what keeps the text from being read.
+    /// The model, or the errors that make the text unreadable.
     pub(crate) fn finish(mut self) -> Result<Document, Findings> {
         comments::keep(self.text, &mut self.model, &self.spans);
         let findings = Findings::locate(self.findings, self.text);
@@ -200,7 +201,7 @@ impl<'t> Draft<'t> {
     }
 }
 
-/// A number in digits, `inf`, `-inf` or `nan`.
+/// Parses a number in digits, `inf`, `-inf` or `nan`.
 pub(crate) fn number(word: &str) -> Option<f64> {
     let digits = word.trim_start_matches(['-', '+']);
     let plain = digits.starts_with(|c: char| c.is_ascii_digit() || c == '.');

@@ -4,8 +4,8 @@ use fuzzy::model::{Formula, MembershipFunction};
 
 use crate::{draft::Draft, words::is_name};
 
-/// A term given by a formula, of words that are parts of the text. `own` is the variable that FLL calls `x`, where the formula is a
-/// fuzzy set.
+/// Reads a term that is given by a formula, from words that are parts of the text. `own` is the variable that FLL calls
+/// `x`, if the formula is a fuzzy set.
 pub(crate) fn read(
     draft: &mut Draft<'_>,
     words: &[&str],
@@ -34,7 +34,7 @@ pub(crate) fn read(
     }
 }
 
-/// A name as formulas write it.
+/// A name in the syntax of formulas.
 pub(crate) fn quoted(name: &str) -> String {
     match is_name(name) {
         true => name.to_owned(),
@@ -59,8 +59,8 @@ pub(crate) fn words(text: &str) -> Vec<&str> {
     words
 }
 
-/// A formula that [`read`] and fuzzylite read. fuzzylite has no signs before operands, and comparisons as functions alone. `own`
-/// is written as `x`.
+/// Writes a formula that [`read`] and fuzzylite can parse. fuzzylite has no signs before operands, and comparisons only
+/// as functions. `own` is written as `x`.
 pub(crate) fn write(formula: &Formula, own: Option<&str>) -> String {
     let number = |value: f64| {
         Written::whole(match value < 0.0 {
@@ -91,7 +91,7 @@ pub(crate) fn renamed(formula: &Formula, name: impl Fn(&str) -> String) -> Formu
     text.parse().unwrap_or_else(|_| formula.clone())
 }
 
-/// A part of a formula, and how tightly its operator binds.
+/// A part of a formula, and the precedence of its operator.
 struct Written {
     text: String,
     binds: u8,
@@ -103,7 +103,7 @@ impl Written {
         Written { text, binds: 4 }
     }
 
-    /// As an operand of an operator: in brackets where it binds less tightly than that one.
+    /// The part as an operand: in brackets if its precedence is lower.
     fn within(self, binds: u8) -> String {
         match self.binds < binds {
             true => format!("({})", self.text),
@@ -123,7 +123,7 @@ fn apply(word: &str, mut operands: Vec<Written>) -> Written {
         && operands.len() == 2
         && let (Some(right), Some(left)) = (operands.pop(), operands.pop())
     {
-        // Powers are put in brackets on both sides: not all programs nest them to the right.
+        // Powers get brackets on both sides, because not all programs nest them to the right.
         let left = left.within(binds + u8::from(word == "^"));
         let text = format!("{left} {word} {}", right.within(binds + 1));
         return Written { text, binds };
@@ -141,7 +141,7 @@ fn apply(word: &str, mut operands: Vec<Written>) -> Written {
     Written::whole(match (word, texts.as_slice()) {
         ("-", [of]) => format!("(0 - ({of}))"),
         ("not", [of]) => format!("eq({of}, 0)"),
-        // Every number but 0 is true.
+        // Every number except 0 is true.
         ("and", [a, b]) => format!("min(neq({a}, 0), neq({b}, 0))"),
         ("or", [a, b]) => format!("max(neq({a}, 0), neq({b}, 0))"),
         _ => format!("{called}({})", texts.join(", ")),

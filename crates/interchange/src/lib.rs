@@ -1,8 +1,8 @@
-//! Rule sets of other programs, in and out: FIS (MATLAB, Octave), FLL (fuzzylite), FCL (IEC 61131-7, jFuzzyLogic and
-//! fuzzylite) and FML (IEEE 1855).
+//! Reads and writes rule sets of other programs: FIS (MATLAB, Octave), FLL (fuzzylite), FCL (IEC 61131-7, jFuzzyLogic
+//! and fuzzylite) and FML (IEEE 1855).
 //!
-//! Text goes in and a [`fuzzy::Model`] comes out, and the other way round. What a format says and the model cannot carry is an
-//! error, unless losses are accepted; then it is a warning. No file is opened here.
+//! It converts text to a [`fuzzy::Model`], and the reverse, and opens no file. Content that the model cannot represent
+//! is an error, or a warning if losses are accepted.
 //!
 //! ```
 //! use flagred_interchange::{Format, Losses};
@@ -52,7 +52,7 @@ mod words;
 /// A format of rule sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// MATLAB's Fuzzy Inference System, which Octave and fuzzylite write as well.
+    /// MATLAB's Fuzzy Inference System, which Octave and fuzzylite write too.
     Fis,
     /// fuzzylite's FuzzyLite Language, versions 5 to 7.
     Fll,
@@ -62,13 +62,13 @@ pub enum Format {
     Fml,
 }
 
-/// What becomes of that which cannot be carried over.
+/// How to treat content that cannot be converted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Losses {
-    /// It is an error: what is read or written gives the same answers, or there is nothing.
+    /// It is an error: a converted rule set always gives the same results.
     #[default]
     Refuse,
-    /// It is left out with a warning, and the answers may be others.
+    /// It is omitted with a warning, and results may differ.
     Accept,
 }
 
@@ -76,7 +76,7 @@ impl Format {
     /// All formats.
     pub const ALL: [Format; 4] = [Format::Fis, Format::Fll, Format::Fcl, Format::Fml];
 
-    /// The ending of file names, in lower case: `fis`.
+    /// The file name extension in lower case, such as `fis`.
     #[must_use]
     pub fn ending(self) -> &'static str {
         match self {
@@ -87,7 +87,7 @@ impl Format {
         }
     }
 
-    /// Its name: `FIS`.
+    /// The name, such as `FIS`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -98,7 +98,7 @@ impl Format {
         }
     }
 
-    /// The format of a text, told by what it begins with behind comments; `None` where it is none of them.
+    /// The format of a text, detected from its start after comments; `None` if it is none of these formats.
     #[must_use]
     pub fn of(text: &str) -> Option<Format> {
         let text = comments::behind(text);
@@ -123,11 +123,11 @@ impl Format {
 
 /// Reads a rule set of another program.
 ///
-/// The spans of the document and of all findings are of `text`.
+/// The spans of the document and of all findings refer to `text`.
 ///
 /// # Errors
 ///
-/// All that keeps the text from being read, and what the model cannot carry where losses are refused.
+/// The errors that make the text unreadable, and content that the model cannot represent if losses are refused.
 pub fn read(text: &str, format: Format, losses: Losses) -> Result<Document, Findings> {
     let document = match format {
         Format::Fis => fis::read(text, losses),
@@ -138,21 +138,21 @@ pub fn read(text: &str, format: Format, losses: Losses) -> Result<Document, Find
     Ok(crisp::read(document, text))
 }
 
-/// Reads one function block of an FCL that has several, by its name.
+/// Reads one function block of an FCL file that contains several, by its name.
 ///
 /// # Errors
 ///
-/// As [`read`]; and no function block has that name.
+/// As [`read`], and if no function block has that name.
 pub fn read_block(text: &str, name: &str, losses: Losses) -> Result<Document, Findings> {
     let document = fcl::read(text, Some(name), losses)?;
     Ok(crisp::read(document, text))
 }
 
-/// Reads a rule set in whatever format it is: one of these, or YAML.
+/// Reads a rule set in any format: one of these, or YAML.
 ///
 /// # Errors
 ///
-/// As [`read`] without losses, and as [`fuzzy::yaml::parse`]; all that is wrong with the model.
+/// As [`read`] without losses, and as [`fuzzy::yaml::parse`]; all errors of the model.
 pub fn document(text: &str) -> Result<Document, Findings> {
     let Some(format) = Format::of(text) else {
         return fuzzy::yaml::parse(text);
@@ -162,7 +162,7 @@ pub fn document(text: &str) -> Result<Document, Findings> {
     Ok(document)
 }
 
-/// A text in whatever format it is, as [`document`] reads it.
+/// Creates a source from a text in any format that [`document`] reads.
 pub fn source(text: impl Into<String>) -> Source {
     let text = text.into();
     match Format::of(&text) {
@@ -174,13 +174,13 @@ pub fn source(text: impl Into<String>) -> Source {
     }
 }
 
-/// What [`write()`] makes.
+/// The result of [`write()`].
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Written {
-    /// The rule set in the format.
+    /// The text in the format.
     pub text: String,
-    /// What the format says in another way, and what it cannot say where losses are accepted.
+    /// Notes about content that is expressed differently, and warnings about accepted losses.
     pub findings: Findings,
 }
 
@@ -188,8 +188,8 @@ pub struct Written {
 ///
 /// # Errors
 ///
-/// What is wrong with the model, and what the format cannot say where losses are refused. What is left with losses must be a rule
-/// set, too: it is read back.
+/// The errors of the model, and content that the format cannot represent if losses are refused. With losses, the result
+/// must still be a valid rule set: it is read back.
 pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, Findings> {
     let invalid = fuzzy::validate(model, &fuzzy::format::Spans::default());
     if !invalid.is_empty() {
@@ -221,7 +221,7 @@ pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, F
     }
 }
 
-/// The example of the README, run.
+/// Runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! Names that a format can write.
+//! Converts names to those that a format allows.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,18 +10,18 @@ use fuzzy::{
 
 use crate::{formula, paper::Paper};
 
-/// What a format takes as a name.
+/// The names that a format allows.
 pub(crate) struct Allowed {
-    /// Characters; others become `_`.
+    /// Whether a character is allowed; others are replaced by `_`.
     pub(crate) is_letter: fn(char) -> bool,
-    /// The first one.
+    /// Whether a character is allowed as the first one.
     pub(crate) is_first: fn(char) -> bool,
-    /// Words that are no names, in lower case.
+    /// Reserved words, in lower case.
     pub(crate) keywords: &'static [&'static str],
 }
 
 impl Allowed {
-    /// The name itself, or one like it that the format takes and that is not taken.
+    /// The name itself or a similar one, which the format allows and which is not in `taken`.
     fn name(&self, name: &str, taken: &BTreeSet<String>) -> String {
         let letter = |c: char| if (self.is_letter)(c) { c } else { '_' };
         let mut plain: String = name.trim().chars().map(letter).collect();
@@ -38,7 +38,7 @@ impl Allowed {
         plain
     }
 
-    /// A name for each of these. Names that the format takes as they are stay, so that no other one takes their place.
+    /// A name for each of these. Allowed names are kept first, so that no converted name replaces them.
     fn names(&self, before: &[&str]) -> Vec<String> {
         let mut taken = BTreeSet::new();
         let mut stays = |name: &&str| {
@@ -67,14 +67,14 @@ pub(crate) fn is_plain_first(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
 
-/// A name that stands alone, as that of the rule set, in the form that a format takes; a note reports a change.
+/// A single name, such as that of the rule set, in the form that a format allows; a note reports a change.
 pub(crate) fn one(name: &str, allowed: &Allowed, paper: &mut Paper) -> String {
     let plain = allowed.name(name, &BTreeSet::new());
     note(paper, name, &plain);
     plain
 }
 
-/// The model with names that a format takes; a note tells those that change.
+/// The model with names that a format allows; notes report changes.
 pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Model {
     let mut model = model.clone();
     let mut variables: BTreeMap<String, (String, BTreeMap<String, String>)> = BTreeMap::new();

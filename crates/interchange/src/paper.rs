@@ -1,4 +1,4 @@
-//! A text that is being written, and what it cannot carry.
+//! A text that is being written, and its findings so far.
 
 use std::fmt::Debug;
 
@@ -39,7 +39,7 @@ impl Paper {
         paper
     }
 
-    /// The coefficient of each input, of a term that is a linear function.
+    /// The coefficient of each input for a term that is a linear function.
     pub(crate) fn coefficients(
         &mut self,
         term: &str,
@@ -67,7 +67,7 @@ impl Paper {
         self.text.push('\n');
     }
 
-    /// Something that the format cannot say: an error, or a warning where losses are accepted.
+    /// Reports content that the format cannot represent: an error, or a warning if losses are accepted.
     pub(crate) fn loss(&mut self, code: &'static str, message: String, help: &str) {
         let finding = match self.losses {
             Losses::Refuse => Diagnostic::error(code, 0..0, message),
@@ -76,19 +76,20 @@ impl Paper {
         self.findings.push(finding.help(help));
     }
 
-    /// Something without which the rest means nothing, such as a term that rules name: an error, also where losses are accepted.
+    /// Reports missing content without which the rest is useless, such as a term that rules refer to: an error even if
+    /// losses are accepted.
     pub(crate) fn refuse(&mut self, code: &'static str, message: String, help: &str) {
         self.findings
             .push(Diagnostic::error(code, 0..0, message).help(help));
     }
 
-    /// Something that is said in another way.
+    /// Notes content that is expressed differently.
     pub(crate) fn note(&mut self, code: &'static str, message: String, help: &str) {
         self.findings
             .push(Diagnostic::note(code, 0..0, message).help(help));
     }
 
-    /// The word of the format for an operator or a defuzzifier, which `what` names.
+    /// The word of the format for an operator or a defuzzifier; `what` is its kind for messages.
     pub(crate) fn word<T: Copy + PartialEq + Debug>(
         &mut self,
         words: &Words<T>,
@@ -118,7 +119,7 @@ impl Paper {
     }
 
     pub(crate) fn finish(self) -> Result<Written, Findings> {
-        // What holds for several outputs is told once.
+        // A finding about several outputs is reported once.
         let mut told: Vec<Diagnostic> = vec![];
         for finding in self.findings {
             if !told.contains(&finding) {
@@ -136,7 +137,7 @@ impl Paper {
     }
 }
 
-/// The word of a rule set for an operator, from its name in Rust: `weighted_average` of `WeightedAverage`.
+/// The word of a rule set for an operator, from its name in Rust: `weighted_average` for `WeightedAverage`.
 fn snake_case(name: &str) -> String {
     let mut word = String::new();
     for c in name.chars() {
@@ -155,12 +156,12 @@ pub(crate) fn one_line(text: &str) -> String {
     words.join(" ")
 }
 
-/// What a message calls a term.
+/// The name of a term in messages.
 pub(crate) fn named(term: &Term, variable: &Variable) -> String {
     format!("`{}` of `{}`", term.name, variable.name)
 }
 
-/// Numbers with blanks between.
+/// Numbers separated by blanks.
 pub(crate) fn numbers(numbers: &[f64]) -> String {
     let written: Vec<String> = numbers.iter().map(f64::to_string).collect();
     written.join(" ")

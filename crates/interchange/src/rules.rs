@@ -1,4 +1,4 @@
-//! Rules in words, as FLL and FCL write them: `if a is very x and (b is y or c is not z) then d is w with 0.5`.
+//! Rules in the syntax of FLL and FCL: `if a is very x and (b is y or c is not z) then d is w with 0.5`.
 
 use fuzzy::{
     model::Operators,
@@ -7,10 +7,11 @@ use fuzzy::{
 
 use crate::{conditions, draft::Draft};
 
-/// Hedges of a conclusion, with those of the conclusions before it.
+/// The maximum number of hedges of a conclusion, including those of the conclusions before it.
 const MOST_HEDGES: usize = 64;
 
-/// A rule of words and brackets, which are parts of the text of `draft`; `None` with a finding where it cannot be read.
+/// Reads a rule from words and brackets, which are parts of the text of `draft`; `None` with a finding if it is
+/// invalid.
 pub(crate) fn read(draft: &mut Draft<'_>, words: &[&str]) -> Option<Rule> {
     let end = words.last().map_or("", |word| &word[word.len()..]);
     let mut reader = Reader {
@@ -23,7 +24,7 @@ pub(crate) fn read(draft: &mut Draft<'_>, words: &[&str]) -> Option<Rule> {
     reader.rule()
 }
 
-/// Words and brackets.
+/// Splits a text into words and brackets.
 pub(crate) fn words(text: &str) -> Vec<&str> {
     let mut words = vec![];
     let mut rest = text.trim_start();
@@ -46,7 +47,7 @@ struct Reader<'r, 't, 'd> {
     words: &'r [&'r str],
     next: usize,
     depth: usize,
-    /// The end of the rule, where something is missing.
+    /// The end of the rule, as the location of something missing.
     end: &'r str,
 }
 
@@ -60,7 +61,7 @@ impl<'r> Reader<'r, '_, '_> {
             .is_some_and(|word| word.eq_ignore_ascii_case(keyword))
     }
 
-    /// Steps over a keyword where it stands next.
+    /// Consumes a keyword if it is next.
     fn take(&mut self, keyword: &str) -> bool {
         let is = self.is(keyword);
         self.next += usize::from(is);
@@ -108,7 +109,7 @@ impl<'r> Reader<'r, '_, '_> {
             let Some(term) = term else {
                 return self.unexpected("a term");
             };
-            // fuzzylite hands a hedged strength on to the conclusions behind.
+            // fuzzylite passes a hedged strength on to the following conclusions.
             hedges.splice(0..0, own);
             if hedges.len() > MOST_HEDGES {
                 return self.unexpected(&format!("at most {MOST_HEDGES} hedges"));
@@ -172,7 +173,7 @@ impl<'r> Reader<'r, '_, '_> {
         condition
     }
 
-    // What recursion passes through has small frames: the rest is in functions of its own.
+    // The recursive functions must have small stack frames, so the rest is in separate functions.
     fn too_deep<T>(&mut self) -> Option<T> {
         let part = self.peek().unwrap_or(self.end);
         let message = format!("a condition has at most {DEEPEST_NESTING} brackets in each other");
@@ -195,7 +196,7 @@ impl<'r> Reader<'r, '_, '_> {
         }))
     }
 
-    /// `variable is hedge* term`. A hedge that no term follows is the term, but for `any`, which needs none.
+    /// `variable is hedge* term`. A hedge that no term follows is a term, except `any`, which needs none.
     fn proposition(&mut self, what: &str) -> Option<(Name, Vec<Hedge>, Option<Name>)> {
         let variable = self.name(what)?;
         self.expect("is")?;
@@ -233,8 +234,8 @@ fn joined(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> C
     }
 }
 
-/// A rule in words that [`read`] reads, or several of the same condition where a conclusion lacks hedges of the one before. `None`
-/// where a NOT stands before brackets that it cannot be taken into.
+/// Writes a rule that [`read`] can parse, or several rules with the same condition if a conclusion lacks hedges of the
+/// one before. `None` if a NOT before brackets cannot be moved inside.
 pub(crate) fn write(rule: &Rule, operators: Operators, and: &str) -> Option<Vec<String>> {
     let condition = conditions::without_not(&rule.condition, operators)?;
     let mut start = String::from("if ");
@@ -251,7 +252,7 @@ pub(crate) fn write(rule: &Rule, operators: Operators, and: &str) -> Option<Vec<
             hedges,
             term,
         } = consequent;
-        // fuzzylite hands the hedges of a conclusion on to those behind.
+        // fuzzylite passes the hedges of a conclusion on to the following ones.
         let own = before.and_then(|before| hedges.strip_suffix(before));
         let mut text = format!("{} is", output.text);
         push_term(&mut text, own.unwrap_or(hedges), Some(term));

@@ -1,18 +1,18 @@
-//! The spellings of membership functions whose parameters are a fixed number of numbers.
+//! The spellings of membership functions with a fixed number of parameters.
 
 use fuzzy::model::{MembershipFunction, Term};
 
 use crate::Format;
 
-/// A shape as fuzzylite orders its parameters.
+/// A shape; parameters are in the order of fuzzylite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shape {
     Triangle,
     Trapezoid,
     Rectangle,
-    /// `[start, end]`: rises from 0 at `start` to 1 at `end`, or falls where `end` is smaller.
+    /// `[start, end]`: rises from 0 at `start` to 1 at `end`, or falls if `end` is smaller.
     Ramp,
-    /// `[end, start]`: a ramp, its end first.
+    /// `[end, start]`: a ramp with its end first.
     RampBack,
     Gaussian,
     /// `[mean, sd, mean, sd]`.
@@ -35,10 +35,10 @@ pub(crate) enum Shape {
     SemiEllipse,
 }
 
-/// A shape, its names, and for each parameter of FIS and FCL the index of that of FLL.
+/// A shape, its names, and for each parameter in FIS and FCL the index of the parameter in FLL.
 struct Spelling {
     shape: Shape,
-    /// In FIS, FLL and FCL; of several names, divided by `|`, the first is written.
+    /// The names in FIS, FLL and FCL. Alternatives are separated by `|`; the first one is written.
     names: [&'static str; 3],
     fis: &'static [usize],
     fcl: &'static [usize],
@@ -126,7 +126,7 @@ impl Spelling {
     }
 }
 
-/// Whether a term is a number that is computed from the inputs, and no fuzzy set.
+/// Whether a term is a number that is computed from the inputs, rather than a fuzzy set.
 pub(crate) fn is_computed(term: &Term) -> bool {
     matches!(
         term.membership_function,
@@ -136,7 +136,7 @@ pub(crate) fn is_computed(term: &Term) -> bool {
     )
 }
 
-/// A linear function, from a coefficient for each input and then the constant; what is missing is 0.
+/// A linear function, from a coefficient for each input followed by the constant; missing ones are 0.
 pub(crate) fn linear(numbers: &[f64], inputs: &[&str]) -> MembershipFunction {
     let coefficients = inputs.iter().zip(numbers);
     let coefficients = coefficients
@@ -148,7 +148,7 @@ pub(crate) fn linear(numbers: &[f64], inputs: &[&str]) -> MembershipFunction {
     }
 }
 
-/// The shape of a name in a format, and how many parameters it has there.
+/// The shape with this name in a format, and the number of its parameters there.
 pub(crate) fn named(format: Format, name: &str) -> Option<(Shape, usize)> {
     let is = |known: &str| known.eq_ignore_ascii_case(name);
     let spelling = SPELLINGS.iter().find(|s| s.names(format).any(is))?;
@@ -162,8 +162,8 @@ pub(crate) fn names(format: Format) -> impl Iterator<Item = &'static str> + Clon
         .filter_map(move |spelling| spelling.names(format).next())
 }
 
-/// The parameter of a shape that is not a finite number, by its index in the order of a format. Only an outer side of a triangle or
-/// a trapezoid may be open: `-inf` on the left or `inf` on the right.
+/// The index, in the order of a format, of a parameter that is not finite but must be. Only an outer side of a triangle
+/// or a trapezoid may be open: `-inf` on the left or `inf` on the right.
 pub(crate) fn not_finite(shape: Shape, written: &[f64]) -> Option<usize> {
     let closed = |from: usize, to: usize| {
         let inner = written.iter().enumerate().take(to).skip(from);
@@ -177,7 +177,7 @@ pub(crate) fn not_finite(shape: Shape, written: &[f64]) -> Option<usize> {
     let is_open = |index: usize, side: f64| has_sides && written.get(index) == Some(&side);
     match (is_open(0, f64::NEG_INFINITY), is_open(last, f64::INFINITY)) {
         (false, false) => closed(0, written.len()),
-        // The top of an open side may be as far away as the side.
+        // The top next to an open side may be infinite too.
         (true, false) if written.get(1) == Some(&f64::NEG_INFINITY) => closed(2, written.len()),
         (true, false) => closed(1, written.len()),
         (false, true) if written.get(last.saturating_sub(1)) == Some(&f64::INFINITY) => {
@@ -188,7 +188,7 @@ pub(crate) fn not_finite(shape: Shape, written: &[f64]) -> Option<usize> {
     }
 }
 
-/// The membership function of a shape, from its parameters in the order of a format, of which none is [`not_finite`].
+/// Creates a membership function from its parameters in the order of a format, after [`not_finite`] returned `None`.
 pub(crate) fn read(format: Format, shape: Shape, written: &[f64]) -> Option<MembershipFunction> {
     use MembershipFunction as To;
     let spelling = SPELLINGS.iter().find(|known| known.shape == shape)?;
@@ -264,7 +264,7 @@ pub(crate) fn read(format: Format, shape: Shape, written: &[f64]) -> Option<Memb
             right_inflection: right,
             right_slope: falling,
         },
-        // MATLAB turns an S whose ends are swapped into a step between them; so does fuzzylite.
+        // MATLAB treats an S with swapped ends as a step between them; so does fuzzylite.
         (Shape::S, [foot, top, ..]) => To::SShape { foot, top },
         (Shape::Z, [top, foot, ..]) => To::ZShape { top, foot },
         (Shape::Pi, [left, left_top, right_top, right]) => To::PiShape {
@@ -285,7 +285,7 @@ pub(crate) fn read(format: Format, shape: Shape, written: &[f64]) -> Option<Memb
     })
 }
 
-/// The name and parameters of a membership function in a format; `None` where it has no such shape.
+/// The name and parameters of a membership function in a format; `None` if the format has no such shape.
 pub(crate) fn write(
     format: Format,
     function: &MembershipFunction,

@@ -4,10 +4,11 @@ use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction};
 
 use crate::Format;
 
-/// A value, and its words in FIS, FLL, FCL and FML. Of several words, divided by `|`, the first is written and all are read.
+/// A value, and its words in FIS, FLL, FCL and FML. Alternatives are separated by `|`; the first is written and all are
+/// read.
 pub(crate) type Words<T> = [(T, [&'static str; 4])];
 
-/// Conjunctions, which are the implications too.
+/// Conjunctions, which are also the implications.
 pub(crate) const CONJUNCTIONS: &Words<Conjunction> = &[
     (Conjunction::Minimum, ["min", "Minimum", "MIN", "MIN"]),
     (
@@ -123,7 +124,7 @@ pub(crate) const AGGREGATIONS: &Words<Aggregation> = &[
     ),
 ];
 
-/// FCL's `COGS` and fuzzylite's `WeightedAverage` are of singletons and constants.
+/// FCL's `COGS` and fuzzylite's `WeightedAverage` apply to singletons and constants.
 pub(crate) const DEFUZZIFIERS: &Words<Defuzzifier> = &[
     (
         Defuzzifier::Centroid,
@@ -153,16 +154,16 @@ pub(crate) const DEFUZZIFIERS: &Words<Defuzzifier> = &[
         Defuzzifier::WeightedSum,
         ["wtsum", "WeightedSum", "COGSS", ""],
     ),
-    // fuzzylite tells it from the terms.
+    // fuzzylite derives it from the terms.
     (Defuzzifier::Tsukamoto, ["", "WeightedAverage", "", ""]),
 ];
 
-/// What can stand in a line and in XML.
+/// Whether a character may occur on a line and in XML.
 pub(crate) fn is_printable(c: char) -> bool {
     !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}')
 }
 
-/// Whether a word is a name without quotes: a letter, then letters, digits and `_`.
+/// Whether a word is a name that needs no quotes: a letter, then letters, digits and `_`.
 pub(crate) fn is_name(word: &str) -> bool {
     let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
     word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') && word.chars().all(is_letter)
@@ -176,7 +177,7 @@ pub(crate) fn is_weighted(defuzzifier: Defuzzifier) -> bool {
     )
 }
 
-/// The value that a word of a format stands for; case does not count.
+/// The value of a word in a format; case is ignored.
 pub(crate) fn value<T: Copy>(words: &Words<T>, format: Format, word: &str) -> Option<T> {
     let of = |entry: &&(T, [&'static str; 4])| {
         entry.1[format as usize]
@@ -186,7 +187,7 @@ pub(crate) fn value<T: Copy>(words: &Words<T>, format: Format, word: &str) -> Op
     words.iter().find(of).map(|entry| entry.0)
 }
 
-/// The word of a format for a value; `None` where it has none.
+/// The word for a value in a format; `None` if it has none.
 pub(crate) fn word<T: Copy + PartialEq>(
     words: &Words<T>,
     format: Format,

@@ -1,5 +1,5 @@
-//! Random rule sets: what is written is read again with the same values, or it is refused. What is written with losses can be read
-//! at least.
+//! Random rule sets: the written text is read back with the same values, or writing is refused. Text written with
+//! losses can at least be read.
 
 #![allow(
     clippy::expect_used,
@@ -12,7 +12,7 @@
 use flagred_interchange::{Format, Losses};
 use fuzzy::{Engine, Model};
 
-/// Names that some format cannot write, or writes like another one of them.
+/// Names that some format cannot write, or writes in the same way as another one.
 const NAMES: [&str; 30] = [
     "3d",
     "two words",
@@ -79,7 +79,7 @@ const MONOTONE: [&str; 4] = [
     "piecewise: [[0, 0], [5, 0.5], [9, 1]]",
 ];
 
-/// Numbers in order, the same in every run.
+/// A deterministic random number generator.
 struct Random(u64);
 
 impl Random {
@@ -95,7 +95,7 @@ impl Random {
         of[self.below(of.len())]
     }
 
-    /// True once in so many times.
+    /// True with a probability of 1 in `count`.
     fn once_in(&mut self, count: usize) -> bool {
         self.below(count) == 0
     }
@@ -115,7 +115,7 @@ fn quoted(name: &str) -> String {
 struct Variable(String, Vec<String>);
 
 fn rule_set(random: &mut Random) -> String {
-    // Half of them have what every format can say, but for names and shapes.
+    // Half of the rule sets have only content that every format supports, apart from names and shapes.
     let is_plain = random.once_in(2);
     let mut names: Vec<&str> = NAMES.to_vec();
     let mut name = |random: &mut Random| match random.once_in(2) {

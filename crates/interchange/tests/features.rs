@@ -1,5 +1,5 @@
-//! The table of docs/interchange.md: what each format says of a rule set. Every cell is measured: the rule set is written,
-//! read again, and both are compared. `UPDATE_DOCUMENTS=1` writes the table.
+//! The table of docs/interchange.md: which content of a rule set each format supports. Every cell is measured: the rule
+//! set is written and read back, and both are compared. `UPDATE_DOCUMENTS=1` writes the table.
 
 #![allow(
     clippy::expect_used,
@@ -14,7 +14,7 @@ use std::{fs, path::Path};
 use flagred_interchange::{Format, Losses};
 use fuzzy::{Engine, Model};
 
-/// A rule set with a place for each part that a feature changes.
+/// A rule set with a placeholder for each part that a feature changes.
 const BASE: &str = "
 fuzzy: 1
 name: base
@@ -27,7 +27,7 @@ operators: {and: <AND>, or: <OR>, implication: <IMPLICATION>, aggregation: <AGGR
 <RULES>
 ";
 
-/// The places of [`BASE`], and what stands there where a feature changes something else.
+/// The placeholders of [`BASE`], and their default texts.
 const PLACES: [(&str, &str); 8] = [
     (
         "RULES",
@@ -45,7 +45,7 @@ const PLACES: [(&str, &str); 8] = [
     ("RULE", "IF a IS low AND b IS low THEN y IS small"),
 ];
 
-/// A feature, the place that it changes, and what stands there.
+/// A feature, its placeholder, and the text for it.
 const FEATURES: &[(&str, &str, &str)] = &[
     (
         "triangles, trapezoids",
@@ -229,7 +229,7 @@ fn rule_set(place: &str, text: &str) -> Model {
         .unwrap_or_else(|findings| panic!("{text}: {findings}"))
 }
 
-/// `carried` where both rule sets give the same values, `refused` where the format cannot say it.
+/// `carried` if both rule sets give the same values, `refused` if the format cannot represent it.
 fn measured(model: &Model, format: Format) -> &'static str {
     let Ok(written) = flagred_interchange::write(model, format, Losses::Refuse) else {
         return "refused";
@@ -239,7 +239,7 @@ fn measured(model: &Model, format: Format) -> &'static str {
     let mut again = document.model;
     for (before, after) in model.outputs.iter().zip(&mut again.outputs) {
         after.samples = before.samples;
-        // FIS says nothing of a value where no rule fires.
+        // FIS does not define a value for points where no rule fires.
         if format == Format::Fis {
             assert_eq!(before.when_no_rule_fires, after.when_no_rule_fires);
         }

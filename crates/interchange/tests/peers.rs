@@ -1,5 +1,5 @@
-//! The models of other programs give the values that those programs compute. They are not shipped: the tests look for them
-//! in the folder `data/models` of FLAGRED_SHARED.
+//! Models of other programs give the values that those programs compute. They are not shipped: the tests search the
+//! folder `data/models` of FLAGRED_SHARED.
 
 #![allow(
     clippy::expect_used,
@@ -26,7 +26,7 @@ fn models() -> PathBuf {
     Path::new(&shared).join("data/models")
 }
 
-/// Inputs and outputs of each row of `in:NAME,...,out:NAME,...`.
+/// Inputs and outputs of each row of a table with the header `in:NAME,...,out:NAME,...`.
 fn points(path: &Path) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut text = String::new();
     flate2::read::GzDecoder::new(fs::File::open(path).unwrap())
@@ -55,7 +55,7 @@ fn largest_difference(model: &Model, points: &[(Vec<f64>, Vec<f64>)]) -> f64 {
     for (inputs, expected) in points {
         let found = engine.evaluate(inputs).unwrap();
         for ((found, expected), output) in found.iter().zip(expected).zip(&model.outputs) {
-            // At the degree 1 a sigmoid has no place: fuzzylite gives infinity.
+            // At degree 1 the inverse of a sigmoid is undefined: fuzzylite returns infinity.
             if expected.is_infinite() {
                 continue;
             }
@@ -76,7 +76,8 @@ fn largest_difference(model: &Model, points: &[(Vec<f64>, Vec<f64>)]) -> f64 {
     largest
 }
 
-/// Reads each model of a folder and compares it with its points; `change` is what the other program does in its own way.
+/// Reads each model of a folder and compares it with its points; `change` adapts the model to deviations of the other
+/// program.
 fn compare(
     files: &[(String, PathBuf, PathBuf)],
     largest: f64,
@@ -127,8 +128,8 @@ fn fuzzylite(file: &str, points: &str) -> Vec<(String, PathBuf, PathBuf)> {
     folders.map(of).collect()
 }
 
-/// fuzzylite's C++ library drops strengths up to 1e-6. Without a default value its mean of maxima is the middle of the range where no
-/// rule fires; here, and in pyfuzzylite 8, there is no value.
+/// fuzzylite's C++ library ignores strengths up to 1e-6. Without a default value, its mean of maxima is the middle of
+/// the range where no rule fires; here, and in pyfuzzylite 8, there is no value.
 fn as_fuzzylite_in_cpp(_: &str, model: &mut Model) {
     model.least_strength = 1e-6;
     for output in &mut model.outputs {
@@ -140,7 +141,7 @@ fn as_fuzzylite_in_cpp(_: &str, model: &mut Model) {
     }
 }
 
-/// The same, with samples at 1000 places.
+/// The same, with 1000 samples.
 fn as_fuzzylite(name: &str, model: &mut Model) {
     as_fuzzylite_in_cpp(name, model);
     for output in &mut model.outputs {
@@ -155,8 +156,8 @@ fn as_fuzzylite(name: &str, model: &mut Model) {
     }
 }
 
-/// The FIS and FCL that fuzzylite writes of its models. Its FIS has lost what these models say: the inputs that rules take from
-/// outputs, the kind of a hybrid, and hedges that Octave reads as cubes.
+/// The FIS and FCL files that fuzzylite writes for its models. Its FIS lacks content of these models: the inputs that
+/// rules take from outputs, the kind of a hybrid system, and hedges that Octave reads as cubes.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_twins_of_fuzzylites_models_equal_them() {
@@ -202,7 +203,7 @@ fn fis_models_equal_fuzzylite() {
         })
         .collect();
     assert_eq!(files.len(), 22);
-    // Hedges of Octave that are cubes are refused where AND is not the product, and hedges in conclusions.
+    // Octave's cubic hedges are refused in conclusions, and where AND is not the product.
     let refused = ["takagi-sugeno_octave_sugeno_tip_calculator.fis"];
     assert_eq!(compare(&files, 1e-3, as_fuzzylite_in_cpp), refused);
     assert_eq!(compare(&files, 1e-9, as_fuzzylite), refused);
@@ -227,7 +228,7 @@ fn fcl_models_equal_jfuzzylogic() {
         };
         let model = document.model;
         let file = name_of(&file);
-        // In hundredths, cut to whole ones, or as they are.
+        // In hundredths, truncated, or unchanged.
         let is_cut = !table.starts_with(|c: char| c.is_ascii_digit());
         let unit = if is_cut { 0.01 } else { 1.0 };
         let memberships = table.starts_with("inVar");
@@ -250,7 +251,7 @@ fn fcl_models_equal_jfuzzylogic() {
                 compared += 1;
             }
             if let (Some(engine), [expected]) = (&engine, values) {
-                // jFuzzyLogic keeps the value before where no rule fires: 0 in the first row.
+                // jFuzzyLogic keeps the previous value if no rule fires: 0 in the first row.
                 let found = engine.evaluate(inputs).unwrap()[0].value();
                 let tolerance = if is_cut { 0.011 } else { 1e-3 };
                 if let Some(found) = found {
@@ -267,7 +268,7 @@ fn fcl_models_equal_jfuzzylogic() {
     assert!(compared > 3_000, "{compared}");
 }
 
-/// Every model that can be used is written in its own format and read again: the model is equal, or its values are.
+/// Every usable model is written in its own format and read back: the model is equal, or its values are.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn models_are_written_back_and_read_again_as_they_were() {
@@ -294,7 +295,7 @@ fn models_are_written_back_and_read_again_as_they_were() {
         let Ok(engine) = Engine::new(&model) else {
             continue;
         };
-        // Only fuzzylite has Tsukamoto's kind in FIS.
+        // Only fuzzylite supports Tsukamoto outputs in FIS.
         if name == "fis/tsukamoto_tsukamoto.fis" {
             continue;
         }
@@ -333,7 +334,7 @@ fn models_are_written_back_and_read_again_as_they_were() {
     assert_eq!((equal, equal_values), (47, 3));
 }
 
-/// FuzzyLogic.jl's tipper, by hand.
+/// The tipper of FuzzyLogic.jl, built by hand.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_fml_tipper_is_the_tipper() {

@@ -1,4 +1,4 @@
-//! What the readers say of mistakes, and that no text makes them panic.
+//! Errors that the readers report, and that no text makes them panic.
 
 #![allow(
     clippy::expect_used,
@@ -132,7 +132,7 @@ fn bracketed(deep: usize) -> [String; 2] {
     ]
 }
 
-/// Brackets are counted, not trusted to the stack: a small thread is enough.
+/// The nesting of brackets is limited by counting, so a small stack is enough.
 #[test]
 fn brackets_in_each_other_are_bounded_and_need_little_stack() {
     let read = || {
@@ -154,7 +154,7 @@ fn brackets_in_each_other_are_bounded_and_need_little_stack() {
     thread.spawn(read).unwrap().join().unwrap();
 }
 
-/// A word of 200 kB is quoted by its beginning, whatever reads it.
+/// A word of 200 kB is quoted only up to a limit, in every format.
 #[test]
 fn long_words_are_cut_in_messages() {
     let long = "x".repeat(200_000);
@@ -204,7 +204,7 @@ fn each_format_becomes_a_rule_set() {
     insta::assert_snapshot!(read);
 }
 
-/// A mistake is a part of a text that is replaced.
+/// Each error is made by replacing a part of a text.
 #[test]
 fn mistakes_are_told_with_their_place() {
     let mistakes = [
@@ -280,7 +280,8 @@ fn what_a_rule_set_cannot_say_is_a_warning_where_losses_are_accepted() {
     assert_eq!(document.warnings.0[0].code, "not-enabled");
 }
 
-/// An FCL with an output of formulas that two rules conclude alike, `accu` before its end and `end` behind its last rule.
+/// An FCL text with an output of formulas and two rules with the same conclusion; `accu` is before its end and `end`
+/// after its last rule.
 fn twice(accu: &str, end: &str) -> String {
     format!(
         "FUNCTION_BLOCK twice\nVAR_INPUT\n  x : REAL;\nEND_VAR\nVAR_OUTPUT\n  y : REAL;\nEND_VAR\n\
@@ -296,7 +297,7 @@ fn rules_that_an_fcl_joins_are_a_loss_where_values_are_computed() {
     let read = |accu: &str, end: &str| {
         flagred_interchange::read(&twice(accu, end), Format::Fcl, Losses::Refuse)
     };
-    // Nothing written is MAX, and NONE in fuzzylite's dialect, which has no `;` behind a rule.
+    // The default is MAX, and NONE in fuzzylite's dialect, which has no `;` after a rule.
     for (accu, end) in [("ACCU : MAX;", ";"), ("", ";"), ("ACCU : BSUM;", "")] {
         let findings = read(accu, end).unwrap_err();
         let told = findings.0.iter().any(|finding| finding.code == "joined");
@@ -363,7 +364,7 @@ fn twenty_thousand_damaged_texts_of_each_format_make_no_reader_panic() {
     damage(20_000);
 }
 
-/// Bytes of each text are replaced, doubled, cut out and swapped.
+/// Bytes of each text are replaced, duplicated, removed and swapped.
 fn damage(rounds: usize) {
     let mut state = 7_u64;
     let mut random = move |below: usize| {
@@ -412,7 +413,7 @@ fn damage(rounds: usize) {
     assert!(readable > 1_000, "{readable}");
 }
 
-/// What is found in a text, by code, and whether it can be read.
+/// The findings of a text, by code, and whether it can be read.
 fn codes(text: &str, format: Format) -> (bool, Vec<&'static str>) {
     match flagred_interchange::read(text, format, Losses::Refuse) {
         Ok(document) => (true, document.warnings.0.iter().map(|f| f.code).collect()),
@@ -567,7 +568,7 @@ fn only_an_outer_side_of_a_shape_may_be_infinite() {
     let fis = |shape: &str| codes(&FIS.replace("'trapmf',[-1 0 1 3]", shape), Format::Fis);
     assert_eq!(fis("'trapmf',[-Inf -Inf 1 3]"), (true, vec![]));
     assert_eq!(fis("'trapmf',[-1 0 1 NaN]"), (false, vec!["not-finite"]));
-    // What is not a shape is found when the rule set is used.
+    // An invalid shape is reported when the rule set is used.
     for (text, format) in [
         (FLL.replace("Discrete 5 0", "Discrete nan 0"), Format::Fll),
         (FLL.replace("with 0.5", "with nan"), Format::Fll),

@@ -1,4 +1,4 @@
-//! What is written is read again, and gives the same values.
+//! Written rule sets are read back with the same values.
 
 #![allow(
     clippy::expect_used,
@@ -11,7 +11,7 @@
 use flagred_interchange::{Format, Losses};
 use fuzzy::{Engine, Model};
 
-/// Rule sets of this repository that formats can say.
+/// Rule sets of this repository that the formats can represent.
 const SETS: [(&str, &str); 5] = [
     ("flagred", include_str!("../../../rules/flagred.yaml")),
     (
@@ -157,7 +157,7 @@ fn steps_are_rectangles_elsewhere_and_steps_again() {
             limits.collect::<Vec<_>>(),
             [Some(vec![36.0, 43.0]), Some(vec![0.0])]
         );
-        // Another program's rectangles share their limits.
+        // Rectangles of another program share their limits.
         let shared = written.text.replace("35.99999999999999", "36");
         let again = flagred_interchange::read(&shared, format, Losses::Refuse).unwrap();
         assert_eq!(again.model.inputs[0].step_limits(), None, "{shared}");
@@ -208,7 +208,7 @@ fn names_of_rule_sets_are_written_so_that_they_can_be_read() {
     }
 }
 
-/// A name that the format takes as it is stays, even where another one before it would become the same.
+/// A name that the format allows is kept, even if another one before it would be converted to the same name.
 #[test]
 fn valid_names_stay_beside_names_that_change() {
     let text = "fuzzy: 1\nname: names\n\

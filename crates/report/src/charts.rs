@@ -1,4 +1,4 @@
-//! The curves of a report, and the data they are drawn from.
+//! The curves of a report and their data.
 
 use flagred::{
     estimator::Estimator,
@@ -17,7 +17,7 @@ use crate::{
     timeline::{Line, Mark, Panel, Phase, Size, Timeline},
 };
 
-/// The signals that a report draws besides those of the profile.
+/// The signals that a report draws in addition to those of the profile.
 pub const SIGNALS: [&str; 6] = [
     "roll_des_deg",
     "roll_deg",
@@ -27,7 +27,7 @@ pub const SIGNALS: [&str; 6] = [
     "battery_remaining_pct",
 ];
 
-/// What is read of a log to assess it, and where it is drawn to draw it: only what is looked at is decoded.
+/// Options for reading a log to assess it and, if `drawn`, to draw it. Only the signals that are needed are decoded.
 pub fn options(estimator: &Estimator, drawn: bool) -> Options {
     let drawn = drawn.then_some(SIGNALS);
     let mut signals: Vec<String> = estimator
@@ -46,10 +46,10 @@ pub fn options(estimator: &Estimator, drawn: bool) -> Options {
 /// The scale of a percentage.
 const PERCENT: (Scale, &str) = (Scale::new(0.0, 100.0), "%");
 
-/// The most events that are drawn; the last one counts the others.
+/// The maximum number of events that are drawn; the last one shows the number of the rest.
 const MOST_EVENTS: usize = 200;
 
-/// The stretch that is drawn: from the first take-off to the last landing, or the whole log where there is none.
+/// The stretch that is drawn: from the first take-off to the last landing, or the whole log if there is none.
 pub(crate) fn stretch(flight: &Flight) -> Stretch {
     let air = flight.in_air.iter().flat_map(|air| &air.spans);
     let hull = air
@@ -65,16 +65,16 @@ pub(crate) fn stretch(flight: &Flight) -> Stretch {
 /// The shortest stretch that is drawn, in seconds.
 const SHORTEST_S: f64 = 0.1;
 
-/// The part of a stretch that lies within another, which is no shorter than the shortest that is drawn.
+/// The part of a stretch that is within another, extended to at least the shortest stretch that is drawn.
 pub(crate) fn within(part: Stretch, whole: Stretch) -> Stretch {
     let latest_s = (whole.end_s - SHORTEST_S).max(whole.start_s);
-    // What is no number gives way to the ends of the whole.
+    // `max` and `min` replace NaN by the ends of the whole.
     let start_s = part.start_s.max(whole.start_s).min(latest_s);
     let end_s = part.end_s.min(whole.end_s).max(start_s + SHORTEST_S);
     Stretch { start_s, end_s }
 }
 
-/// The flight modes, findings and events of a flight over a stretch of time, for all its curves.
+/// The flight modes, findings and events of a flight over a stretch of time, shared by all its curves.
 pub(crate) fn timeline(flight: &Flight, assessed: &Assessment, shown: Stretch) -> Timeline {
     let whole = stretch(flight);
     let stretch = Stretch {
@@ -92,7 +92,7 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment, shown: Stretch) -
             end_s: end_s.min(within.end_s),
         };
         let is_some = |span: Stretch| span.end_s > span.start_s;
-        // Whatever part of the flight is shown, a mode has the same shade.
+        // A mode has the same shade, whatever part of the flight is shown.
         if is_some(span(whole)) && !kinds.contains(&mode.what.as_str()) {
             kinds.push(&mode.what);
         }
@@ -168,13 +168,14 @@ fn of_steps(
     path(points, stretch, gap_s, decimals)
 }
 
-/// A curve is broken where there is no sample for this long: five samples, at least the profile's longest gap.
+/// The longest time without a sample across which a curve is drawn, in seconds: five samples, at least the profile's
+/// longest gap.
 fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
     let longest_gap_s = estimator.profile().sampling.longest_gap_s;
     rate_hz.map_or(longest_gap_s, |rate_hz| longest_gap_s.max(5.0 / rate_hz))
 }
 
-/// Risk and elevated risk; `None` where no risk is known.
+/// Risk and elevated risk; `None` if no risk is known.
 pub(crate) fn risk(
     assessed: &Assessment,
     estimator: &Estimator,
@@ -210,7 +211,7 @@ pub(crate) fn risk(
     })
 }
 
-/// The smallest distance of a motor from its lower and from its upper limit, and the mean margin.
+/// The smallest distance of any motor from its lower and from its upper limit, and the mean margin.
 pub(crate) fn margins(
     flight: &Flight,
     assessed: &Assessment,
@@ -312,7 +313,7 @@ pub(crate) fn attitude_error(
         .attitudes()
         .map(|(t_s, attitude)| (t_s, attitude.squared_error_deg2().sqrt()))
         .collect();
-    // The scale reaches the critical error at least, so that a calm flight looks calm.
+    // The scale includes at least the critical error, so that a calm flight looks calm.
     let largest = errors
         .iter()
         .filter(|(t_s, _)| stretch.contains(*t_s))
@@ -334,7 +335,7 @@ pub(crate) fn attitude_error(
     panel.has_data().then_some(panel)
 }
 
-/// Battery voltage and remaining charge, where the log has them.
+/// Battery voltage and remaining charge, if the log contains them.
 pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
     let panel = |title: &str, scale, signal: Signal<'_>, decimals| {
         let points = signal.t_s.iter().copied();

@@ -1,49 +1,49 @@
-//! A value over time: as the data of an SVG path in the units of the data, and as text.
+//! A value over time, as the data of an SVG path in the units of the values, and as text.
 
 use std::fmt::Write as _;
 
 use fuzzy::drawing::{block, number};
 
-/// The spans of time of a thinned curve; each keeps its first, smallest, largest and last value.
+/// The number of spans of time in a thinned curve; each keeps its first, smallest, largest and last value.
 const SPANS: usize = 500;
 
-/// A stretch that is shorter is drawn with finer times, in seconds.
+/// A stretch shorter than this, in seconds, is drawn with a finer resolution of time.
 const FEW_S: f64 = 2.0;
 
 /// The time that a picture shows, in seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
-    /// Its start.
+    /// The start.
     pub start_s: f64,
-    /// Its end.
+    /// The end.
     pub end_s: f64,
 }
 
-/// Seconds between ticks: the smallest step that gives few enough ticks is taken.
+/// The candidates for the seconds between ticks; the smallest step with few enough ticks is used.
 const STEPS_S: [f64; 16] = [
     0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0, 3600.0,
     7200.0,
 ];
-/// The most ticks that fit along the time, on a phone too.
+/// The maximum number of ticks along the time axis, which must fit on a phone.
 const MOST_TICKS: f64 = 7.0;
 
 impl Stretch {
-    /// Its length, at least a millisecond.
+    /// The length in seconds, at least a millisecond.
     pub fn length_s(&self) -> f64 {
         (self.end_s - self.start_s).max(1e-3)
     }
 
-    /// The position of a time: 0 at the start, 1 at the end, within them.
+    /// The position of a time, clamped to the stretch: 0 at the start, 1 at the end.
     pub fn share(&self, t_s: f64) -> f64 {
         ((t_s - self.start_s) / self.length_s()).clamp(0.0, 1.0)
     }
 
-    /// Whether a time lies within, ends included.
+    /// Whether a time is within the stretch, ends included.
     pub fn contains(&self, t_s: f64) -> bool {
         (self.start_s..=self.end_s).contains(&t_s)
     }
 
-    /// The times to mark, with their labels: whole steps, the last with its unit.
+    /// The times of ticks with their labels: multiples of a step; the last label includes the unit.
     pub fn ticks(&self) -> Vec<(f64, String)> {
         let fits = |step: &&f64| self.length_s() / **step <= MOST_TICKS;
         let step_s = STEPS_S.iter().find(fits).copied();
@@ -59,11 +59,11 @@ impl Stretch {
     }
 }
 
-/// The data of an SVG path through `points` (time in seconds, value or NaN), which are in order of time.
+/// The data of an SVG path through `points` (time in seconds, value or NaN), which must be in order of time.
 ///
-/// Its x is the seconds since the start of the stretch, its y the value: what is drawn can be read back. The line is
-/// broken at unknown values and where there is no point for longer than `gap_s`. Many points are thinned; the smallest
-/// and the largest of each span stay.
+/// Its x is the seconds since the start of the stretch, its y the value, so that a script can read the values back. The
+/// line is interrupted at unknown values and where there is no point for longer than `gap_s`. Many points are thinned;
+/// the smallest and the largest of each span are kept.
 pub(crate) fn path(
     points: impl Iterator<Item = (f64, f64)>,
     stretch: Stretch,
@@ -73,7 +73,7 @@ pub(crate) fn path(
     let mut pen = Pen {
         data: String::new(),
         down: false,
-        // Few seconds are drawn to a tenth of a millisecond: a hundredth of a second would be seen as a stair.
+        // Short stretches are drawn to a tenth of a millisecond: with hundredths of a second, steps would be visible.
         decimals: [if stretch.length_s() < FEW_S { 4 } else { 2 }, decimals],
     };
     let span_s = stretch.length_s() / SPANS as f64;
@@ -107,7 +107,7 @@ struct Span {
 }
 
 impl Span {
-    /// Draws the points that are kept, in order of time, and empties the span.
+    /// Draws the kept points in order of time, and clears the span.
     fn draw(&mut self, pen: &mut Pen) {
         let indices = 0..self.points.len();
         let value = |i: &usize| self.points.get(*i).map_or(f64::NAN, |point| point.1);
@@ -131,7 +131,7 @@ impl Span {
 struct Pen {
     data: String,
     down: bool,
-    /// Of the seconds and of the value.
+    /// The number of decimals of the seconds and of the value.
     decimals: [usize; 2],
 }
 
@@ -143,20 +143,20 @@ impl Pen {
         self.data.push(' ');
         self.data += &number(y, up);
         if !self.down {
-            // A point on its own shows as a dot.
+            // A single point is drawn as a dot.
             self.data += "h0";
         }
         self.down = true;
     }
 }
 
-/// The rows of a picture as text.
+/// The number of rows of a picture as text.
 const ROWS: usize = 5;
 
 /// Values in percent over time as text, `width` columns wide.
 ///
 /// A column shows the highest value of its span of time, so that no peak is lost; `·` marks spans in which all values
-/// are unknown, a blank column a span without points.
+/// are unknown, an empty column a span without points.
 pub(crate) fn over_time_text(points: &[(f64, Option<f64>)], width: usize) -> String {
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return String::new();
@@ -204,7 +204,7 @@ fn cell(column: Option<Option<f64>>, row: usize) -> char {
         Some(None) if row == 0 => '·',
         Some(None) => ' ',
         Some(Some(percent)) => {
-            // At least one eighth: 0 is a known value, and looks known.
+            // At least one eighth, so that 0 is visibly a known value.
             let eighths = ((percent / 100.0 * (ROWS * 8) as f64).round() as usize).max(1);
             block(eighths, row)
         }

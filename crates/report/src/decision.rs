@@ -1,4 +1,4 @@
-//! The flight's path over the decision map, with two inputs of the rules as axes.
+//! The path of the flight over the decision map, with two inputs of the rules as axes.
 
 use std::fmt::Write as _;
 
@@ -11,14 +11,14 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::panel::percent;
 
-/// Cells along each side of the map.
+/// The number of cells along each side of the map.
 const CELLS: usize = 48;
-/// The most steps of a flight that are tried to find the inputs that moved the risk.
+/// The maximum number of steps that are evaluated to find the inputs that affected the risk most.
 const TRIED: usize = 200;
-/// The most points of the path.
+/// The maximum number of points of the path.
 const POINTS: usize = 600;
 
-/// The part of an input's range that is shown: where its terms change, and where the flight was.
+/// The part of an input's range that is shown: the part where its terms change, and where the flight was.
 pub(super) fn focus(model: &Model, name: &str, input: usize, steps: &[Step]) -> Scale {
     let Some(variable) = model.inputs.iter().find(|known| known.name == name) else {
         return Scale::new(0.0, 1.0);
@@ -32,15 +32,15 @@ pub(super) fn focus(model: &Model, name: &str, input: usize, steps: &[Step]) -> 
         })
 }
 
-/// The inputs that are the axes of the map, and the values of the others.
+/// The inputs that are the axes of the map, and the values of the other inputs.
 struct Slice {
     /// The indices of the inputs along the axes: x, y.
     shown: [usize; 2],
-    /// The mean of every input over the flight: inputs that are not shown are held at it.
+    /// The mean of every input over the flight, at which the inputs that are not shown are held.
     means: Vec<f64>,
 }
 
-/// The two inputs that moved the risk most over the flight, each varied alone with the others at their mean.
+/// The two inputs that affected the risk most over the flight, each varied alone with the others at their mean.
 fn slice(estimator: &Estimator, steps: &[&Step]) -> Option<Slice> {
     let inputs = estimator.profile().inputs.len();
     if inputs < 2 || steps.is_empty() {
@@ -71,7 +71,7 @@ fn slice(estimator: &Estimator, steps: &[&Step]) -> Option<Slice> {
     Some(Slice { shown, means })
 }
 
-/// The map with the path; `None` for rules of one input and where no risk is known.
+/// The map with the path; `None` for rules with one input, and if no risk is known.
 pub(super) fn map(estimator: &Estimator, model: &Model, steps: &[Step]) -> Option<Markup> {
     let assessed: Vec<&Step> = steps
         .iter()
@@ -138,7 +138,7 @@ pub(super) fn map(estimator: &Estimator, model: &Model, steps: &[Step]) -> Optio
     })
 }
 
-/// The look of a cell: the twentieth of the range of risk, and whether the risk is interpolated.
+/// The appearance of a cell: the twentieth of the range of risk, and whether the risk is interpolated.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Look {
     twentieth: u32,
@@ -154,7 +154,7 @@ impl Look {
     }
 }
 
-/// The cells of the map, a unit wide and high each.
+/// The cells of the map, each one unit wide and high.
 fn cells(estimator: &Estimator, slice: &Slice, x_scale: Scale, y_scale: Scale) -> String {
     let middle = |scale: Scale, i: usize| scale.value((i as f64 + 0.5) / CELLS as f64);
     let look = |i: usize, j: usize| {
@@ -169,7 +169,7 @@ fn cells(estimator: &Estimator, slice: &Slice, x_scale: Scale, y_scale: Scale) -
         let Some(Look { twentieth, filled }) = look else {
             return;
         };
-        // A little larger, so that no seam shows between neighbours.
+        // Slightly larger, so that there is no gap between neighbours.
         let area = format!(r#"x="{column}" y="{row}" width="{length}.05" height="1.05""#);
         let (from, to) = (twentieth * 5, twentieth * 5 + 5);
         let word = if filled { " interpolated" } else { "" };
@@ -186,7 +186,7 @@ fn cells(estimator: &Estimator, slice: &Slice, x_scale: Scale, y_scale: Scale) -
     drawing
 }
 
-/// The path of the flight, and the time spent in each cell as dots.
+/// The path of the flight, with dots for the time spent in each cell.
 fn path(steps: &[&Step], [x, y]: [usize; 2], x_scale: Scale, y_scale: Scale) -> String {
     let mut visits = vec![0u32; CELLS * CELLS];
     let mut trail = String::new();
@@ -210,7 +210,7 @@ fn path(steps: &[&Step], [x, y]: [usize; 2], x_scale: Scale, y_scale: Scale) -> 
         + &dots(&visits)
 }
 
-/// The time spent in each cell as dots whose area grows with it, in five sizes.
+/// Dots for the time spent in each cell, whose area grows with the time, in five sizes.
 fn dots(visits: &[u32]) -> String {
     let most = visits.iter().copied().max().unwrap_or(0).max(1);
     let mut sizes = [const { String::new() }; 5];

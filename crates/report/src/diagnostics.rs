@@ -1,4 +1,4 @@
-//! Findings in a text, drawn as a compiler draws them.
+//! Displays findings in a text, in the style of a compiler.
 
 use std::{borrow::Cow, cmp::Reverse, ops::Range};
 
@@ -8,26 +8,26 @@ use fuzzy::{
     drawing::{visible, visible_lines},
 };
 
-/// Most bytes between two places of one finding in one line.
+/// The maximum number of bytes between two locations of one finding on the same line.
 const MOST_BETWEEN: usize = 1000;
 
-/// Findings that are drawn of a file, errors first; the others are counted.
+/// The number of findings that are displayed for a file, errors first; the rest is counted.
 const MOST_DRAWN: usize = 100;
 
-/// How findings are drawn.
+/// How findings are displayed.
 #[derive(Debug, Clone, Copy)]
 pub struct Style {
-    /// With the colours of a terminal.
+    /// Whether to use the colours of a terminal.
     pub colored: bool,
-    /// What the program at hand has to offer about a finding of this code.
+    /// Advice of the calling program for findings with this code.
     pub advice: fn(&str) -> Option<&'static str>,
-    /// Where all findings are, when there are too many to draw.
+    /// Where to find all findings, if there are too many to display.
     pub all: &'static str,
-    /// Whether a text is a rule set or a profile. No other file is quoted: it may hold secrets.
+    /// Whether a text is a rule set or a profile. Other files are not quoted, because they may contain secrets.
     pub is_quoted: fn(&str) -> bool,
 }
 
-/// Draws findings with their lines.
+/// Displays findings with their lines.
 ///
 /// # Example
 /// ```
@@ -68,7 +68,7 @@ pub fn draw(findings: &[Diagnostic], file: &str, text: &str, style: Style) -> St
     drawn
 }
 
-/// A finding in the text as it is shown, which may be the same.
+/// A finding with its location in the text as displayed, which may be the same text.
 fn shown(finding: &Diagnostic, text: &str, is_same: bool) -> Diagnostic {
     let at = |offset: usize| match text.get(..offset) {
         Some(before) if !is_same => visible_lines(before).len(),
@@ -135,7 +135,8 @@ fn report<'a>(
     vec![group]
 }
 
-/// Whether a second place can be drawn. Far away in the same line, all text between the two would be drawn, too.
+/// Whether a second location can be displayed: if it is far away on the same line, all the text between the two would
+/// be displayed too.
 fn is_drawn_with(text: &str, first: &Range<usize>, second: &Range<usize>) -> bool {
     let (from, to) = (first.end.min(second.end), first.start.max(second.start));
     to.saturating_sub(from) <= MOST_BETWEEN

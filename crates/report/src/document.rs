@@ -1,4 +1,4 @@
-//! A flight's assessment for programs: one JSON document.
+//! The assessment of a flight as a JSON document for programs.
 
 use std::io::{self, Write};
 
@@ -13,10 +13,10 @@ use serde::Serialize;
 
 use crate::finding::{Teller, numbered};
 
-/// The version of the document's layout; it grows when a name changes its meaning or goes.
+/// The version of the document's layout; it increases when a name changes its meaning or is removed.
 const SCHEMA: &str = "flagred.assess/1";
 
-/// What is said of a flight: `flagred assess --json`. `docs/json.md` describes it.
+/// The assessment of a flight: `flagred assess --json`. `docs/json.md` describes it.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "FlightDocument"))]
@@ -31,38 +31,39 @@ pub struct Document<'a> {
     profile: Profile<'a>,
     #[serde(flatten)]
     verdict: &'a Verdict,
-    /// The gravest first, those of equal severity in order of time; of many the gravest 1,000.
+    /// The findings, the gravest first, those of equal severity in order of time; at most 1,000.
     findings: Vec<FindingDocument<'a>>,
-    /// How many findings were left out.
+    /// The number of findings that were left out.
     findings_left_out: u64,
     summary: &'a Summary,
-    /// The inputs whose values were assumed because the log lacks their signals.
+    /// The inputs whose values were assumed because their signals are missing from the log.
     assumed_inputs: &'a [AssumedInput],
     /// The risk over time. The npm package can leave it out; `flagred assess` never does.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Steps<'_>"))]
     steps: Option<Steps<'a>>,
-    /// Seconds between the steps, where they are further apart than was asked for: 250,000 are kept at most.
+    /// The distance between the steps in seconds, if it is larger than requested because at most 250,000 steps are
+    /// kept.
     widened_step_s: Option<f64>,
 }
 
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Log<'a> {
-    /// Its path, as given.
+    /// The path of the log, as given.
     path: &'a str,
-    /// The kind of log, such as `ArduPilot DataFlash`.
+    /// The format of the log, such as `ArduPilot DataFlash`.
     format: Format,
 }
 
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Vehicle<'a> {
-    /// What kind it is, such as `multirotor`.
+    /// The kind of vehicle, such as `multirotor`.
     kind: VehicleKind,
-    /// Frame or type name, such as `QUAD/X`.
+    /// The name of the frame or type, such as `QUAD/X`.
     frame: Option<&'a str>,
-    /// Firmware with version.
+    /// The firmware with its version.
     firmware: Option<&'a str>,
     /// The motors in order of their number.
     motors: &'a [Motor],
@@ -70,38 +71,38 @@ struct Vehicle<'a> {
     range: Option<&'a Range>,
     /// The part of the range that is used in flight, as fractions of it.
     effective_range: &'a Range,
-    /// Why the used part counts as the whole range although the log reports limits.
+    /// The reason why the whole range is used although the log contains limits.
     effective_range_doubt: Option<&'a str>,
-    /// What is assumed of motors, their commands and ranges because the log does not report it, in words.
+    /// What is assumed about motors, their commands and ranges because the log does not record it, in words.
     assumed: &'a [String],
-    /// Parameters of the autopilot that motors and ranges rest on, and gains, as far as the log has them.
+    /// The parameters of the autopilot that determine motors and ranges, and the gains, if the log contains them.
     parameters: &'a [Parameter],
 }
 
-/// What the verdict rests on beside the flight.
+/// The profile that the assessment used.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Profile<'a> {
-    /// Its name.
+    /// The name of the profile.
     name: &'a str,
     /// The name of its rule set, or its file.
     rules: &'a str,
-    /// When levels are raised and lowered.
+    /// The conditions under which levels are raised and cleared.
     verdict: VerdictSettings,
-    /// How often errors followed a risk; empty where it was not measured.
+    /// How often large attitude errors followed a risk; empty if it was not measured.
     reliability: &'a [Reliability],
 }
 
-/// A finding with the output of its motor, and in words.
+/// A finding with the output of its motor, and its words.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "FlightFinding"))]
 pub struct FindingDocument<'a> {
     #[serde(flatten)]
     finding: Finding,
-    /// The output of the motor, as the log names it.
+    /// The name of the motor's output in the log.
     output: Option<&'a str>,
-    /// What kind of finding it is: a stable word for programs, such as `fighting_gusts`.
+    /// The kind of finding: a stable word for programs, such as `fighting_gusts`.
     code: String,
     /// What happened, and what it means, for pilots.
     text: String,
@@ -110,7 +111,7 @@ pub struct FindingDocument<'a> {
 }
 
 impl<'a> FindingDocument<'a> {
-    /// A finding of the flight that the teller knows.
+    /// Creates the document of a finding of the teller's flight.
     pub fn new(finding: &'a Finding, teller: Teller<'a>) -> Self {
         let Words {
             code, text, advice, ..
@@ -125,7 +126,7 @@ impl<'a> FindingDocument<'a> {
     }
 }
 
-/// The document of one flight without its steps, which may be many.
+/// The document of one flight without its steps, of which there may be many.
 pub fn brief<'a>(
     name: &'a str,
     flight: &'a Flight,
@@ -187,10 +188,10 @@ pub fn document<'a>(
     }
 }
 
-/// Writes documents in JSON: one, or an array of them where there are `several` flights.
+/// Writes documents as JSON: a single one, or an array if there are `several` flights.
 ///
 /// # Errors
-/// When `out` cannot be written.
+/// If writing to `out` fails.
 pub fn write(out: &mut impl Write, documents: &[String], several: bool) -> io::Result<()> {
     if !several || documents.is_empty() {
         for document in documents {

@@ -1,4 +1,4 @@
-//! Findings in words: one line a cause.
+//! Findings in words: one line for each cause.
 
 use flagred::{
     estimator::Estimator,
@@ -8,7 +8,7 @@ use flagred::{
 use flagred_flightlog::Motor;
 use fuzzy::drawing::number;
 
-/// What a finding is told with.
+/// The context for describing findings in words.
 #[derive(Clone, Copy)]
 pub struct Teller<'a> {
     /// The profile and its rule set.
@@ -17,14 +17,14 @@ pub struct Teller<'a> {
     pub motors: &'a [Motor],
 }
 
-/// The findings of one cause.
+/// All findings with the same cause.
 pub struct Line<'a> {
     /// The gravest of them.
     pub worst: &'a Finding,
     count: usize,
 }
 
-/// One line a cause, in the order of the findings: the gravest first.
+/// Groups findings by cause, in the order of the findings: the gravest first.
 pub fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
     let mut lines: Vec<Line<'_>> = Vec::new();
     for finding in findings {
@@ -45,7 +45,7 @@ pub fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
     lines
 }
 
-/// Whether two findings have one cause: an input of the rules, or what a notice is about.
+/// Whether two findings have the same cause: an input of the rules, or the subject of a notice.
 fn is_same(a: &Finding, b: &Finding) -> bool {
     let motor = |finding: &Finding| finding.motor.map(|motor| motor.number);
     match (a.is_of_risk(), b.is_of_risk()) {
@@ -59,7 +59,7 @@ fn is_same(a: &Finding, b: &Finding) -> bool {
     }
 }
 
-/// How bad its peak is: of a reserve, how small.
+/// The severity of its peak; for a reserve, smaller is worse.
 fn gravity(finding: &Finding) -> f64 {
     match finding.measure {
         Measure::Reserve => -finding.value_pct,
@@ -68,13 +68,13 @@ fn gravity(finding: &Finding) -> f64 {
 }
 
 impl<'a> Teller<'a> {
-    /// What a pilot reads of a finding.
+    /// The words of a finding for the pilot.
     pub fn words(&self, finding: &Finding) -> Words {
         numbered(finding, self.motors).words(self.estimator)
     }
 
-    /// The findings of one cause: `3 times, worst 12.0 to 14.5 s: ...`. A finding beside the risk holds until landing, so it
-    /// has only a beginning.
+    /// A line for all findings with one cause: `3 times, worst 12.0 to 14.5 s: ...`. A finding that is not about the
+    /// risk lasts until landing, so the line contains only its start.
     pub fn line(&self, line: &Line<'_>) -> String {
         let Line { worst, count } = line;
         let text = self.words(worst).text;
@@ -86,13 +86,13 @@ impl<'a> Teller<'a> {
         }
     }
 
-    /// One finding: when, and what.
+    /// A line for one finding: its time and its text.
     pub fn finding(&self, finding: &Finding) -> String {
         format!("{}: {}", span(finding), self.words(finding).text)
     }
 
-    /// The facts behind a finding: the input and the rule that raised the risk, the threshold, when its levels were raised, the
-    /// motor's output and margin.
+    /// The details of a finding: the input and the rule that raised the risk, the threshold, the times at which its
+    /// levels were raised, the motor's output and margin.
     pub fn details(&self, finding: &Finding) -> String {
         let mut parts = Vec::new();
         if let Some(cause) = &finding.cause {
@@ -139,7 +139,7 @@ impl<'a> Teller<'a> {
     }
 }
 
-/// The finding with the autopilot's numbers of its motors in place of their places in the samples.
+/// The finding with the autopilot's motor numbers instead of the positions in the samples.
 pub fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
     let mut finding = finding.clone();
     let number_of = |place: usize| {

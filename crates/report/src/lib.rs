@@ -1,7 +1,8 @@
-//! What people read of rule sets and flights, whatever program shows it.
+//! Output for people about rule sets and flights, shared by all programs.
 //!
-//! Findings drawn in their text ([`diagnostics`]); an assessment in words ([`words`], [`finding`]), as one JSON document
-//! ([`document`]), as one HTML page ([`page`]) and as tables ([`steps`], [`table`]). It gives text and opens no file.
+//! Findings displayed in their text ([`diagnostics`]); an assessment in words ([`words`], [`finding`]), as one JSON
+//! document ([`document`]), as one HTML page ([`page`]) and as tables ([`steps`], [`table`]). All functions return or
+//! write text; none opens a file.
 
 mod charts;
 mod curve;
@@ -21,7 +22,7 @@ pub mod words;
 pub use charts::{SIGNALS, options};
 pub use curve::Stretch;
 
-/// The example of the README, run.
+/// Runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

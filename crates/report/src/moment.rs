@@ -1,4 +1,4 @@
-//! What is known at one time of a flight, and why: for programs that follow a cursor.
+//! The state at one time of a flight with an explanation, for programs that follow a cursor.
 
 use std::collections::BTreeMap;
 
@@ -10,29 +10,29 @@ use flagred_flightlog::Flight;
 use fuzzy::engine::{ExplainedInput, FiredRule};
 use serde::Serialize;
 
-/// A time of a flight.
+/// The state at a time of a flight.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Moment<'a> {
-    /// The time that was asked for, in seconds.
+    /// The requested time, in seconds.
     t_s: f64,
     /// The flight mode.
     mode: Option<&'a str>,
-    /// The latest step, where it is not long ago.
+    /// The latest step, if it is recent.
     step: Option<NamedStep<'a>>,
-    /// The distance to the nearest inputs that rules cover, in shares of their ranges, where the risk is interpolated.
+    /// If the risk is interpolated, the distance to the nearest inputs that rules cover, in shares of their ranges.
     filled_from: Option<f64>,
     /// Whether an input was outside its range.
     clamped: bool,
-    /// The inputs with the degrees of their terms; empty where one is unknown.
+    /// The inputs with the degrees of their terms; empty if one is unknown.
     inputs: Vec<ExplainedInput>,
-    /// The units of the inputs that have one.
+    /// The units of the inputs, by name; inputs without a unit are omitted.
     units: BTreeMap<&'a str, &'a str>,
-    /// The rules that fire, the strongest first.
+    /// The rules that fire, strongest first.
     rules: Vec<FiredRule>,
 }
 
-/// What was known at a time, in seconds on the log's clock.
+/// Returns the state at a time, in seconds on the log's clock.
 pub fn moment<'a>(
     flight: &'a Flight,
     estimator: &'a Estimator,
@@ -59,7 +59,7 @@ pub fn moment<'a>(
     }
 }
 
-/// The latest step at or before a time, unless samples are missing since.
+/// The latest step at or before a time, unless samples are missing after it.
 fn latest<'a>(estimator: &Estimator, assessed: &'a Assessment, t_s: f64) -> Option<&'a Step> {
     let after = assessed.steps.partition_point(|step| step.t_s <= t_s);
     let step = assessed.steps.get(after.checked_sub(1)?)?;
@@ -68,8 +68,8 @@ fn latest<'a>(estimator: &Estimator, assessed: &'a Assessment, t_s: f64) -> Opti
     (t_s - step.t_s <= longest_s).then_some(step)
 }
 
-/// Degrees of terms and rules; `None` where an input that the risk depends on is unknown. Another unknown input is left out,
-/// with the rules that depend on it.
+/// The degrees of terms and rules; `None` if an input that the risk depends on is unknown. Other unknown inputs are
+/// omitted, with the rules that depend on them.
 fn explain(estimator: &Estimator, step: &Step) -> Option<(Vec<ExplainedInput>, Vec<FiredRule>)> {
     let (model, profile) = (estimator.model(), estimator.profile());
     let mut unknown: Vec<&str> = Vec::new();
@@ -110,7 +110,7 @@ mod tests {
     fn at(times: &[f64]) -> Vec<serde_json::Value> {
         let mut log = LOG.to_owned();
         for i in 0..600 {
-            // The log has a hole from 20 to 30 s.
+            // The log has a gap from 20 to 30 s.
             let t_s = f64::from(i) * 0.05 + if i < 400 { 0.0 } else { 10.0 };
             log += &format!("{t_s},1500,15{:02},1500,1500,1\n", i % 60);
         }

@@ -1,4 +1,4 @@
-//! The report of one flight, or a comparison of several, as one HTML file that needs nothing beside it; and the parts of both.
+//! The report of one flight, or a comparison of several, as one self-contained HTML file, and the parts of both.
 
 use flagred::{flight::Peak, loaded::Loaded};
 use fuzzy::drawing::{Escaped, Frame, Sheet, number};
@@ -18,7 +18,7 @@ pub use crate::parts::{Part, Report, Subject};
 const CHART_CSS: &str = include_str!("chart.css");
 const PAGE_CSS: &str = include_str!("page.css");
 const PAGE_JS: &str = include_str!("page.js");
-/// The page may load nothing: all that it shows is within it.
+/// The page may not load anything, because it contains all that it shows.
 const POLICY: &str = "default-src 'none';style-src 'unsafe-inline';script-src 'unsafe-inline'";
 
 /// The report of one flight.
@@ -30,7 +30,7 @@ pub fn report(subject: &Subject, loaded: &Loaded) -> String {
     page(subject.title(), &body)
 }
 
-/// A comparison of several flights on one scale of time.
+/// A comparison of several flights on a common time scale.
 pub fn comparison(subjects: &[&Subject], loaded: &Loaded) -> String {
     page(
         &together(subjects),
@@ -38,7 +38,7 @@ pub fn comparison(subjects: &[&Subject], loaded: &Loaded) -> String {
     )
 }
 
-/// The body of [`comparison`] alone; of a stretch of time since the start of each flight, or of all of it.
+/// The body of [`comparison`] alone, for a stretch of time since the start of each flight, or for all of it.
 pub fn comparison_fragment(
     subjects: &[&Subject],
     loaded: &Loaded,
@@ -47,7 +47,7 @@ pub fn comparison_fragment(
     shown(comparison_body(subjects, loaded, since_start))
 }
 
-/// How long the longest of some flights is, in seconds: a comparison shows as much of all.
+/// The length of the longest of some flights, in seconds: a comparison shows the same length of all.
 pub fn longest_s(subjects: &[&Subject]) -> f64 {
     let lengths = subjects.iter().map(|subject| subject.stretch().length_s());
     lengths.fold(0.0, f64::max)
@@ -118,7 +118,7 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
     }
 }
 
-/// The risk over time as an SVG file; `None` where no risk is known.
+/// The risk over time as an SVG file; `None` if no risk is known.
 pub fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
     const STYLE: &str = "text{font:12px system-ui,sans-serif;fill:var(--soft)}.y{text-anchor:end}.x{text-anchor:middle}\
         .key{fill:var(--c)}.title{font-size:16px;font-weight:700;fill:var(--ink)}.verdict{font-size:16px;font-weight:700;fill:var(--c)}";
@@ -143,13 +143,13 @@ pub fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
     Some(sheet.finish(&format!("{verdict} {}", subject.title())))
 }
 
-/// A page that looks like a report, around a body that the caller wrote as HTML: it may load nothing, and shows no control
-/// characters.
+/// A page in the style of a report, around a body that the caller provides as HTML. It may not load anything, and shows
+/// no control characters.
 pub fn around(title: &str, body: String) -> String {
     page(title, &PreEscaped(body))
 }
 
-/// The look of a page, for programs that show its parts in a page of their own.
+/// The style sheet of a page, for programs that embed its parts in their own page.
 pub fn style() -> String {
     [CSS, CHART_CSS, PAGE_CSS].concat()
 }

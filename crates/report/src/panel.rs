@@ -1,4 +1,4 @@
-//! A panel of curves over time as HTML: it takes the width there is, and its text keeps its size.
+//! A panel of curves over time as HTML. It uses the available width, and its text keeps its size.
 
 use fuzzy::drawing::number;
 use maud::{Markup, PreEscaped, html};
@@ -8,7 +8,7 @@ use crate::{
     timeline::{Panel, Size, Timeline},
 };
 
-/// The panel; `input` is the index of the rules' input it shows, which the page's script marks on the map.
+/// Renders a panel; `input` is the index of the rules' input that it shows, which the page's script marks on the map.
 pub(super) fn panel(panel: &Panel, timeline: &Timeline, input: Option<usize>) -> Markup {
     let class = match panel.size {
         Size::Large => "large",
@@ -49,7 +49,7 @@ pub(super) fn panel(panel: &Panel, timeline: &Timeline, input: Option<usize>) ->
     }
 }
 
-/// A share as a length of CSS.
+/// A share as a CSS length.
 pub(super) fn percent(share: f64) -> String {
     number(share * 100.0, 2) + "%"
 }
@@ -68,13 +68,13 @@ fn phases(timeline: &Timeline) -> Markup {
     }
 }
 
-/// The scale of time.
+/// The time scale.
 fn times(stretch: Stretch) -> Markup {
     html! {
         .times {
             @for (t_s, label) in stretch.ticks() {
                 @let share = stretch.share(t_s);
-                // Near the right edge, the label ends at its tick: a phone has no room beyond the edge.
+                // Near the right edge, the label ends at its tick, because a phone has no room beyond the edge.
                 span.end[share > 0.94] style={ "left:" (percent(share)) } { (label) }
             }
         }

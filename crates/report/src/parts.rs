@@ -1,4 +1,4 @@
-//! The parts of the report of one flight: each is drawn alone, and for any stretch of time.
+//! The parts of the report of one flight; each can be rendered alone, and for any stretch of time.
 
 use std::sync::Arc;
 
@@ -25,13 +25,13 @@ use crate::{
     words,
 };
 
-/// One flight that was assessed.
+/// An assessed flight.
 pub struct Subject {
     /// The name of its file.
     pub name: String,
     /// The flight.
     pub flight: Arc<Flight>,
-    /// What is said of it.
+    /// The assessment of the flight.
     pub assessed: Assessment,
 }
 
@@ -42,7 +42,7 @@ impl Subject {
         file.and_then(|file| file.to_str()).unwrap_or(&self.name)
     }
 
-    /// The time that a report shows where none is chosen: from the first take-off to the last landing, or the whole log.
+    /// The time that a report shows by default: from the first take-off to the last landing, or the whole log.
     pub fn stretch(&self) -> Stretch {
         charts::stretch(&self.flight)
     }
@@ -71,7 +71,7 @@ pub enum Part {
     Attitude,
     /// Flight modes and messages.
     Events,
-    /// What was read from the log.
+    /// The data that was read from the log.
     Sources,
     /// Profile and rule set.
     Texts,
@@ -92,7 +92,7 @@ impl Part {
         Part::Texts,
     ];
 
-    /// What it is called in programs.
+    /// The name of the part in programs.
     pub fn name(self) -> &'static str {
         match self {
             Part::Head => "head",
@@ -109,7 +109,7 @@ impl Part {
     }
 }
 
-/// The report of one flight, part by part.
+/// The report of one flight, rendered part by part.
 pub struct Report<'a> {
     subject: &'a Subject,
     loaded: &'a Loaded,
@@ -117,7 +117,7 @@ pub struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// The report with curves of a stretch of time, or of all of the flight.
+    /// Creates a report with curves of a stretch of time, or of the whole flight.
     pub fn new(subject: &'a Subject, loaded: &'a Loaded, stretch: Option<Stretch>) -> Report<'a> {
         let whole = subject.stretch();
         let stretch = stretch.map_or(whole, |part| charts::within(part, whole));
@@ -128,7 +128,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// A part as HTML; empty where there is nothing to show.
+    /// Renders a part as HTML; empty if there is nothing to show.
     pub fn part(&self, part: Part) -> String {
         shown(self.markup(part))
     }
@@ -185,12 +185,13 @@ impl<'a> Report<'a> {
     }
 }
 
-/// Markup as text: HTML has no control characters, and a log must not turn the direction of writing.
+/// Converts markup to text. HTML allows no control characters, and text from a log must not change the direction of
+/// writing.
 pub(crate) fn shown(markup: Markup) -> String {
     visible_lines(&markup.into_string()).into_owned()
 }
 
-/// Verdict, vehicle, what the verdict does not rest on, findings and figures.
+/// Verdict, vehicle, limitations of the verdict, findings and figures.
 fn head(subject: &Subject, loaded: &Loaded) -> Markup {
     let Subject {
         flight, assessed, ..
@@ -236,7 +237,7 @@ pub(crate) fn badge(verdict: &Verdict) -> Markup {
     html! { span.badge.(verdict_class(verdict)) { (verdict) } }
 }
 
-/// The heading of the time in which vehicles are assessed.
+/// The heading for the time in which vehicles are assessed.
 pub(crate) fn in_the_air(has_motors: bool) -> &'static str {
     match has_motors {
         true => "In the air",
@@ -252,7 +253,7 @@ pub(crate) fn share(value: Option<f64>) -> String {
     percent(value.map(|share| 100.0 * share))
 }
 
-/// One line a cause, with the details of its worst finding.
+/// One line for each cause, with the details of its worst finding.
 pub(crate) fn findings(subject: &Subject, estimator: &Estimator) -> Markup {
     let assessed = &subject.assessed;
     let teller = Teller {
@@ -320,7 +321,7 @@ fn figures(subject: &Subject) -> Markup {
     }
 }
 
-/// How often errors followed a risk, where it was measured.
+/// How often large attitude errors followed a risk, if it was measured.
 fn reliability(rows: &[Reliability]) -> Markup {
     let of = |counts: Option<Followed>| counts.and_then(words::share).unwrap_or("unknown".into());
     html! {
@@ -348,7 +349,7 @@ fn reliability(rows: &[Reliability]) -> Markup {
     }
 }
 
-/// The rules that were dominant at some point, and how much of the time; all rules are in the rule set below.
+/// The rules that were dominant at some time, and for which share of the time; all rules are in the rule set below.
 fn rules(model: &Model, assessed: &Assessment) -> Markup {
     let known = assessed.steps.iter().filter_map(|step| step.estimate);
     let total = known.clone().count();
@@ -402,7 +403,7 @@ fn events(timeline: &Timeline) -> Markup {
     }
 }
 
-/// What was read from the log, and from which message or parameter.
+/// The data that was read from the log, with the message or parameter that contained it.
 fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
     let flight = &subject.flight;
     let report = &flight.report;
@@ -476,7 +477,7 @@ fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
     }
 }
 
-/// The profile and the rule set as they are written.
+/// The source of the profile and of the rule set.
 pub(crate) fn texts(loaded: &Loaded) -> Markup {
     html! {
         h2 { "Profile" } pre { (loaded.profile.text()) }

@@ -9,10 +9,11 @@ use flagred::{
 
 use crate::table::cell;
 
-/// How far the steps that are shown are apart where nothing else is asked for, in seconds.
+/// The default distance between the steps that are shown, in seconds.
 pub const STEP_S: f64 = 0.1;
 
-/// A step as columns and fields, named as in JSON; the inputs of the profile are `input_NAME`. An unknown value is an empty field.
+/// A step as columns and fields, named as in JSON; the inputs of the profile are `input_NAME`. An unknown value is an
+/// empty field.
 fn row(estimator: &Estimator, step: &Step) -> Vec<(String, String)> {
     let number = |value: Option<f64>| {
         let known = value.filter(|value| value.is_finite());
@@ -40,11 +41,11 @@ fn row(estimator: &Estimator, step: &Step) -> Vec<(String, String)> {
     row
 }
 
-/// Writes the steps of one flight as CSV, with a line of names on top where `head` asks for it; `log` becomes the first
-/// column where there are several flights.
+/// Writes the steps of one flight as CSV, with a header line if `head` is set; for several flights `log` is the first
+/// column.
 ///
 /// # Errors
-/// When `out` cannot be written.
+/// If writing to `out` fails.
 pub fn write_csv(
     out: &mut impl Write,
     log: Option<&str>,

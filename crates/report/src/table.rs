@@ -1,4 +1,4 @@
-//! What is written into tables, which spreadsheets and terminals read, too.
+//! Cells of tables that spreadsheets and terminals read.
 
 use std::{
     borrow::Cow,
@@ -8,10 +8,10 @@ use std::{
 use flagred_flightlog::Flight;
 use fuzzy::drawing::{visible, visible_lines};
 
-/// What makes a spreadsheet read a cell as a formula.
+/// The first characters that make a spreadsheet interpret a cell as a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
-/// A text as a cell: visible, and with an apostrophe in front where a spreadsheet would compute it.
+/// A text as a cell: hidden characters are made visible, and an apostrophe is added if a spreadsheet would compute it.
 pub fn cell(text: &str) -> Cow<'_, str> {
     if text.starts_with(FORMULA) {
         Cow::Owned(format!("'{}", visible(text)))
@@ -20,7 +20,7 @@ pub fn cell(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// A cell that is copied from a table: a number stays as it is.
+/// A cell copied from another table: a number is not changed.
 pub fn number_or_cell(text: &str) -> Cow<'_, str> {
     match text.trim().parse::<f64>() {
         Ok(_) => Cow::Borrowed(text),
@@ -28,15 +28,15 @@ pub fn number_or_cell(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Writes a flight as flight CSV, with the hidden characters of its texts visible.
+/// Writes a flight as flight CSV, with hidden characters in its texts made visible.
 ///
 /// # Errors
-/// When `out` cannot be written.
+/// If writing to `out` fails.
 pub fn write_flight(out: impl Write, flight: &Flight) -> io::Result<()> {
     flight.write_csv(Visible(out))
 }
 
-/// Makes the hidden characters of all that goes through visible; ends of lines stay.
+/// Makes hidden characters in written text visible, except line ends.
 struct Visible<W>(W);
 
 impl<W: Write> Write for Visible<W> {
@@ -45,7 +45,7 @@ impl<W: Write> Write for Visible<W> {
         if bytes.iter().all(is_plain) {
             return self.0.write(bytes);
         }
-        // Formatted text comes in pieces of whole characters, where no buffer stands before this.
+        // Formatted text arrives in pieces of whole characters as long as no buffer is in between.
         let text = String::from_utf8_lossy(bytes);
         self.0.write_all(visible_lines(&text).as_bytes())?;
         Ok(bytes.len())

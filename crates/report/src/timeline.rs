@@ -1,4 +1,4 @@
-//! Curves over time on one scale, with what goes on behind and over them.
+//! Curves over time on one scale, with phases behind and events over them.
 
 use std::fmt::Write as _;
 
@@ -6,17 +6,18 @@ use fuzzy::drawing::{Escaped, Frame, Scale, number};
 
 use crate::curve::Stretch;
 
-/// The styles of curves over time. The colours of lines, marks and alerts are yours: `--c` of their classes.
+/// The styles of curves over time. The including page sets the colours of lines, marks and alerts: `--c` of their
+/// classes.
 pub(crate) const CSS: &str = include_str!("timeline.css");
 
-/// What all panels of one course of events have in common.
+/// The data that all panels of one course of events share.
 #[derive(Debug, Clone)]
 pub(crate) struct Timeline {
     /// The time that is shown.
     pub(crate) stretch: Stretch,
-    /// What goes on behind the curves.
+    /// The phases behind the curves.
     pub(crate) phases: Vec<Phase>,
-    /// Stretches marked along the upper edge, each with a class of the style sheet; the last is on top.
+    /// Stretches that are marked along the upper edge, each with a class of the style sheet; the last is on top.
     pub(crate) alerts: Vec<(Stretch, &'static str)>,
     /// Single events, in order of time.
     pub(crate) events: Vec<(f64, String)>,
@@ -25,68 +26,68 @@ pub(crate) struct Timeline {
 /// A phase of a course of events, shaded behind the curves.
 #[derive(Debug, Clone)]
 pub(crate) struct Phase {
-    /// When it is.
+    /// The time of the phase.
     pub(crate) stretch: Stretch,
     /// What it is called.
     pub(crate) name: String,
-    /// Which of the different kinds of phases it is: phases of one kind have one shade.
+    /// The kind of the phase: phases of one kind have the same shade.
     pub(crate) kind: usize,
 }
 
 /// One curve.
 #[derive(Debug, Clone)]
 pub(crate) struct Line {
-    /// Its class in the style sheet, which gives it its colour.
+    /// The class in the style sheet, which sets its colour.
     pub(crate) class: &'static str,
-    /// What it is called.
+    /// The name of the curve.
     pub(crate) name: String,
-    /// The data of its path, from [`path`](crate::curve::path).
+    /// The data of the path, from [`path`](crate::curve::path).
     pub(crate) data: String,
 }
 
-/// A value that is marked over all of the time.
+/// A value that is marked over the whole time.
 #[derive(Debug, Clone)]
 pub(crate) struct Mark {
     /// The value.
     pub(crate) value: f64,
-    /// Its class in the style sheet.
+    /// The class in the style sheet.
     pub(crate) class: &'static str,
-    /// What it is; empty where the panel need not name it.
+    /// The name; empty if the panel does not need to show it.
     pub(crate) name: String,
 }
 
 /// Curves over time on one scale.
 #[derive(Debug, Clone)]
 pub(crate) struct Panel {
-    /// What it shows.
+    /// The title.
     pub(crate) title: String,
     /// The unit of the values.
     pub(crate) unit: &'static str,
     /// The range of values that is shown.
     pub(crate) scale: Scale,
-    /// How high it is.
+    /// The height.
     pub(crate) size: Size,
     /// The curves.
     pub(crate) lines: Vec<Line>,
-    /// Values marked over all of the time.
+    /// Values that are marked over the whole time.
     pub(crate) marks: Vec<Mark>,
     /// Shaded ranges of values.
     pub(crate) zones: Vec<Scale>,
 }
 
-/// How high a panel is.
+/// The height of a panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Size {
-    /// The main one.
+    /// A main panel.
     Large,
-    /// With a scale of its own.
+    /// A panel with its own scale.
     Medium,
-    /// One of many below each other: only the ends of its scale are named.
+    /// One of many panels below each other: only the ends of its scale are labelled.
     Small,
 }
 
 impl Line {
-    /// A curve of a class, from the data of its path.
+    /// A curve with a class, from the data of its path.
     pub(crate) fn new(class: &'static str, name: impl Into<String>, data: String) -> Line {
         let name = name.into();
         Line { class, name, data }
@@ -94,7 +95,7 @@ impl Line {
 }
 
 impl Panel {
-    /// Curves on a scale of a unit, without marks and zones.
+    /// A panel of curves with a scale and a unit, without marks and zones.
     pub(crate) fn new(
         title: impl Into<String>,
         (scale, unit): (Scale, &'static str),
@@ -117,7 +118,7 @@ impl Panel {
         self.lines.iter().any(|line| !line.data.is_empty())
     }
 
-    /// The values to mark: round numbers, or the ends of a small panel's scale.
+    /// The values with ticks: round numbers, or the ends of a small panel's scale.
     fn ticks(&self) -> Vec<f64> {
         match self.size {
             Size::Small => vec![self.scale.low, self.scale.high],
@@ -125,7 +126,7 @@ impl Panel {
         }
     }
 
-    /// The values to mark with their labels, the highest with the unit.
+    /// The values with ticks and their labels; the highest label includes the unit.
     pub(crate) fn labels(&self) -> Vec<(f64, String)> {
         let labels = self.ticks().into_iter();
         let mut labels: Vec<(f64, String)> =
@@ -139,7 +140,7 @@ impl Panel {
 
     /// The curves as an SVG element without labels: x is seconds since the start, y the value, upwards.
     ///
-    /// `attributes` are those of the element: its position and size within another SVG document, or none.
+    /// `attributes` are the attributes of the element: its position and size within another SVG document, or none.
     pub(crate) fn plot(&self, timeline: &Timeline, attributes: &str) -> String {
         let Scale { low, high } = self.scale;
         let (length, height) = (timeline.stretch.length_s(), high - low);
@@ -189,7 +190,7 @@ impl Panel {
                 number(value, 4)
             );
         }
-        // Browsers read single precision: damaged logs hold larger values.
+        // Browsers use single precision, and damaged logs contain larger values.
         let drawn = |value: f64| number(value.clamp(-1e30, 1e30), 4);
         let (bottom, top) = (drawn(low), drawn(high));
         for (t_s, text) in &timeline.events {
@@ -214,9 +215,9 @@ impl Panel {
         svg
     }
 
-    /// The panel with its labels as a part of an SVG document, the curves within `frame`.
+    /// The panel with its labels as part of an SVG document, with the curves inside `frame`.
     ///
-    /// It needs 48 pixels on the left of the frame, and 24 above and below.
+    /// It needs 48 pixels to the left of the frame, and 24 above and below.
     pub(crate) fn svg(&self, timeline: &Timeline, frame: Frame) -> String {
         let Frame {
             left,
@@ -243,12 +244,12 @@ impl Panel {
             let (x, y) = frame.at(timeline.stretch.share(t_s), 0.0);
             text("x", x, y + 16.0, &label);
         }
-        // About 7 pixels a character.
+        // About 7 pixels per character.
         let length = |words: &str| words.chars().count() as f64 * 7.0;
         for Phase { stretch, name, .. } in &timeline.phases {
             let from = timeline.stretch.share(stretch.start_s);
             let room = (timeline.stretch.share(stretch.end_s) - from) * width;
-            // A name that does not fit would lie over the next one.
+            // A name that does not fit would overlap the next one.
             if length(name) < room {
                 text("phase", left + width * from + 4.0, top + 24.0, name);
             }

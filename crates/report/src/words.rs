@@ -1,4 +1,4 @@
-//! A flight's assessment in words, for the terminal.
+//! The assessment of a flight in words, for the terminal.
 
 use std::io::{self, Write};
 
@@ -17,10 +17,10 @@ use crate::{
     finding::{self, Teller},
 };
 
-/// Columns of the picture of risk over time.
+/// The number of columns of the picture of risk over time.
 const PICTURE_COLUMNS: usize = 64;
 
-/// Writes the assessment of one flight: one line a cause, or every finding with its details.
+/// Writes the assessment of one flight: one line for each cause, or every finding with its details.
 pub fn write(
     out: &mut impl Write,
     name: &str,
@@ -107,8 +107,8 @@ pub fn write(
     Ok(())
 }
 
-/// Writes the assessment of one of several flights in a line: the verdict, the log, and its gravest finding or the reason why there
-/// is no verdict.
+/// Writes the assessment of one of several flights on one line: the verdict, the log, and its gravest finding or the
+/// reason why there is no verdict.
 pub fn write_line(
     out: &mut impl Write,
     name: &str,
@@ -164,7 +164,7 @@ fn indented(out: &mut impl Write, text: &str) -> io::Result<()> {
     writeln!(out, "     {}", visible(text))
 }
 
-/// Where a vehicle is when it is assessed. One without motors need not fly.
+/// The state in which a vehicle is assessed. A vehicle without motors need not fly.
 pub(crate) fn in_the_air(flight: &Flight) -> &'static str {
     match flight.motors.is_empty() {
         true => "in use",
@@ -172,7 +172,7 @@ pub(crate) fn in_the_air(flight: &Flight) -> &'static str {
     }
 }
 
-/// The vehicle in a line: firmware, frame, motors and ranges.
+/// The vehicle on one line: firmware, frame, motors and ranges.
 pub fn vehicle(flight: &Flight) -> String {
     let mut parts = vec![flight.format.to_string()];
     parts.extend(flight.vehicle.firmware.clone());
@@ -203,10 +203,10 @@ pub fn effective_range(effective: &flagred_flightlog::Range) -> String {
     )
 }
 
-/// Spans of time that are listed in a line.
+/// The maximum number of spans of time that are listed on a line.
 const MOST_SPANS: usize = 12;
 
-/// The first of many spans, the others counted.
+/// The first of many spans, with the number of the rest.
 pub fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
     let first: Vec<String> = spans.by_ref().take(MOST_SPANS).collect();
     match spans.len() {
@@ -215,7 +215,7 @@ pub fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
     }
 }
 
-/// What the verdict does not rest on: limits that are none, and what is left out of a log that is too large.
+/// The limitations of the verdict: ignored limits, and data omitted from a log that is too large.
 pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(doubt) = &flight.effective_range_doubt {
@@ -258,7 +258,7 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     notes
 }
 
-/// The first of the signals that a log lacks.
+/// The first of the signals that are missing from the log.
 fn missing<'a>(flight: &Flight, signals: &'a [String]) -> &'a str {
     let mut signals = signals.iter();
     signals
@@ -266,10 +266,11 @@ fn missing<'a>(flight: &Flight, signals: &'a [String]) -> &'a str {
         .map_or("", String::as_str)
 }
 
-/// Most logs that are cut off inside a message, when the power goes, lose less than this.
+/// The size of damage at the end, in bytes, that most logs have less of if they are cut off inside a message when the
+/// power is lost.
 const ONE_MESSAGE_BYTES: u64 = 256;
 
-/// What is wrong with a log that could be read in part.
+/// Describes the damage of a log that could be read in part.
 pub fn damage(report: &flagred_flightlog::Report) -> String {
     if report.truncated && report.bad_messages == 0 && report.skipped_bytes <= ONE_MESSAGE_BYTES {
         let (last, are) = match report.skipped_bytes {
@@ -300,7 +301,7 @@ pub fn damage(report: &flagred_flightlog::Report) -> String {
     format!("damaged log, read in part: {}{reason}", parts.join(", "))
 }
 
-/// What is lost where a log is written as flight CSV.
+/// Describes what is lost when a log is written as flight CSV.
 pub fn conversion(name: &str, flight: &Flight) -> Vec<String> {
     let report = &flight.report;
     let damage = report.reason.as_ref();
@@ -344,13 +345,14 @@ fn summary(summary: &Summary, verbose: bool) -> String {
     text
 }
 
-/// `54 % of 1280`; `None` without a moment.
+/// `54 % of 1280`; `None` without any moment.
 pub(crate) fn share(counts: Followed) -> Option<String> {
     let share_pct = counts.share_pct()?;
     Some(format!("{share_pct:.0} % of {}", counts.moments))
 }
 
-/// What followed moments with a risk as high as the highest one of a flight; `None` where it was not measured.
+/// How often errors followed moments with a risk as high as the highest risk of the flight; `None` if it was not
+/// measured.
 fn reliability(summary: &Summary, profile: &Profile) -> Option<String> {
     let highest_pct = summary.risk_max?.value_pct;
     let mut rows = profile.reliability.iter().rev();

@@ -1,4 +1,4 @@
-//! Tunes 81 rules over 4 inputs on 100,000 rows, and prints the time and the highest memory of the process.
+//! Tunes 81 rules over 4 inputs on 100,000 rows, and prints the time and the peak memory of the process.
 //!
 //! `cargo run --release -p flagred-tuning --example speed`
 #![allow(clippy::print_stdout, reason = "it is a program")]
@@ -17,7 +17,7 @@ const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 const TERMS: [&str; 3] = ["low", "middle", "high"];
 const OUTPUTS: [&str; 5] = ["very_low", "low", "middle", "high", "very_high"];
 
-/// A rule for every combination of terms: the output is as high as the inputs are together.
+/// A rule for every combination of terms: the output term depends on the sum of the input terms.
 fn model(middle: f64, outputs: [f64; 5]) -> Model {
     let mut model = Model::builder("speed");
     for name in INPUTS {

@@ -1,5 +1,6 @@
-//! The consequents of a Takagi-Sugeno output as a linear problem: its value is a sum of their numbers, each times what the
-//! firing strengths and the inputs make of it. Least squares has a closed form (Jang's hybrid learning, ANFIS, 1993).
+//! Fits the consequents of a Takagi-Sugeno output by least squares. The output is linear in the numbers of its
+//! consequents, with factors that depend on the firing strengths and the inputs, so there is a closed form (Jang's
+//! hybrid learning, ANFIS, 1993).
 
 use fuzzy::{
     Engine, Model,
@@ -13,17 +14,18 @@ use crate::{
     parameters::{UNBOUNDED, bounds},
 };
 
-/// Pulls numbers that the rows say nothing about to what they are; relative to the largest curvature.
+/// The ridge, relative to the largest curvature. It keeps numbers that the rows do not determine at their current
+/// values.
 const RIDGE: f64 = 1e-8;
 
-/// The largest such share. Numbers that the rows determine move by about this share of their steps less.
+/// The largest ridge. It reduces the steps of numbers that the rows determine by about this share.
 const LARGEST_RIDGE: f64 = 1e-4;
 
-/// The rows whose firing strengths are held at a time.
+/// The number of rows whose firing strengths are in memory at a time.
 const ROWS: usize = 4096;
 
-/// Moves the numbers of the terms `fitted` of the only output to where the sum of squared errors is smallest, constants within
-/// their [`bounds`].
+/// Sets the numbers of the terms `fitted` of the only output to the minimum of the sum of squared errors, with
+/// constants within their [`bounds`].
 pub(crate) fn fit(
     model: &mut Model,
     fitted: &[usize],
@@ -95,9 +97,9 @@ pub(crate) fn fit(
     };
     let (near, limits) = (limits(true), limits(beyond_range));
     let is_near = |(step, (low, high)): (&f64, &(f64, f64))| (*low..=*high).contains(step);
-    // Rules that always fire together could have constants of any size whose errors cancel, on these rows and no others. A
-    // larger ridge holds them at less than the width of the range from it. Where that does not help, the rows ask for more than
-    // the range, and the limits alone hold.
+    // Rules that always fire together could have constants of any size whose errors cancel on these rows only. A larger
+    // ridge keeps them within the width of the range. If that does not help, the rows require values outside the range,
+    // and only the limits apply.
     let mut ridge = RIDGE;
     let mut steps = solve(squares.clone(), &products, ridge);
     while ridge < LARGEST_RIDGE
@@ -120,7 +122,7 @@ pub(crate) fn fit(
         if let Some(term) = terms.get_mut(consequent.term) {
             let (low, high) = bounds(variable, term, beyond_range);
             consequent.move_by(&mut term.membership_function, &mut rest);
-            // Sums round.
+            // Sums have rounding errors.
             if let MembershipFunction::Constant { value } = &mut term.membership_function {
                 *value = value.clamp(low, high);
             }
@@ -132,8 +134,8 @@ pub(crate) fn fit(
     Ok(())
 }
 
-/// The best steps within limits, from the best steps without: each in turn goes where the error is smallest while the others
-/// stay, until none moves any more. The error is convex, so that this is its minimum.
+/// The best steps within limits, starting from the best steps without: each in turn is set to the minimum of the error
+/// while the others are fixed, until none changes. The error is convex, so this is its minimum.
 fn within(
     limits: &[(f64, f64)],
     mut steps: DVector<f64>,
@@ -168,7 +170,8 @@ fn within(
     steps
 }
 
-/// Solves `(squares + ridge) x = products`. The ridge is a share of each diagonal, and grows until the matrix is positive.
+/// Solves `(squares + ridge) x = products`. The ridge is a share of each diagonal element, and grows until the matrix
+/// is positive definite.
 pub(crate) fn solve(
     squares: DMatrix<f64>,
     products: &DVector<f64>,
@@ -188,7 +191,7 @@ pub(crate) fn solve(
     None
 }
 
-/// A matrix whose diagonal is larger by a share of it.
+/// A matrix whose diagonal elements are increased by a share.
 fn ridged(mut squares: DMatrix<f64>, ridge: f64) -> DMatrix<f64> {
     let largest = squares.diagonal().max();
     for i in 0..squares.nrows() {
@@ -197,8 +200,8 @@ fn ridged(mut squares: DMatrix<f64>, ridge: f64) -> DMatrix<f64> {
     squares
 }
 
-/// A model whose outputs are the firing strengths of the consequents, and the terms that they are of: the same rules, each
-/// with the constant 1 of an output of its own.
+/// A model whose outputs are the firing strengths of the consequents, and the indices of their terms: the same rules,
+/// each with the constant 1 of a separate output.
 fn probe(model: &Model) -> Option<(Model, Vec<usize>)> {
     let output = model.outputs.first()?;
     let mut probe = model.clone();
@@ -229,7 +232,7 @@ fn probe(model: &Model) -> Option<(Model, Vec<usize>)> {
 
 const ONE: &str = "one";
 
-/// No input has such a name: rule sets that are read have no spaces at the end of names.
+/// A name that no input has: names in parsed rule sets have no trailing spaces.
 fn strength_of(term: usize) -> String {
     format!("strength of {term} ")
 }
@@ -238,9 +241,9 @@ fn strength_of(term: usize) -> String {
 struct Consequent {
     term: usize,
     constant: f64,
-    /// Inputs by their index, and their coefficients.
+    /// The coefficients of inputs, by the index of the input.
     coefficients: Vec<(usize, f64)>,
-    /// Whether its numbers move.
+    /// Whether its numbers may change.
     moves: bool,
 }
 
@@ -273,7 +276,7 @@ impl Consequent {
         }
     }
 
-    /// The number of numbers that move.
+    /// The number of free numbers.
     fn free(&self) -> usize {
         if self.moves {
             self.coefficients.len() + 1
@@ -287,7 +290,7 @@ impl Consequent {
         self.constant + terms.sum::<f64>()
     }
 
-    /// What each number that moves is multiplied with.
+    /// The factor of each free number.
     fn factors(&self, x: &dyn Fn(usize) -> f64) -> impl Iterator<Item = f64> {
         let inputs = self.coefficients.iter().map(|(input, _)| x(*input));
         inputs.chain([1.0]).take(self.free())

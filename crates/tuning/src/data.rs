@@ -1,4 +1,4 @@
-//! The rows that a model is tuned on.
+//! The rows for tuning a model.
 
 use std::borrow::Cow;
 
@@ -9,28 +9,28 @@ use fuzzy::{
 
 use crate::{Loss, TuneError};
 
-/// Rows as columns.
+/// Rows, stored as columns.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Data {
-    /// A column for each input of the model, in its order.
+    /// One column for each input of the model, in its order.
     pub inputs: Vec<Vec<f64>>,
-    /// The truth of each row: a value of the output; for [`Loss::Log`] and [`Loss::Ranking`] 0 or 1.
+    /// The true output of each row: a value of the output; for [`Loss::Log`] and [`Loss::Ranking`] 0 or 1.
     pub truths: Vec<f64>,
-    /// How much each row counts; empty: all the same.
+    /// The weight of each row; if empty, all rows count the same.
     pub weights: Vec<f64>,
-    /// The group of each row, such as its vehicle; empty: none.
+    /// The group of each row, such as its vehicle; empty without groups.
     pub groups: Vec<u32>,
 }
 
 impl Data {
-    /// The largest value and weight of a row. Squares of larger numbers, and their products, would overflow.
+    /// The largest absolute value and weight of a row. Squares of larger numbers, and their products, would overflow.
     pub const LARGEST: f64 = *WEIGHTS.end();
 
-    /// How many widths of the output's range a target of [`Loss::Squared`] may lie away from the range. Beyond that, the loss
-    /// changes by less than its rounding errors.
+    /// The largest distance of a target of [`Loss::Squared`] from the output's range, in widths of the range. Beyond
+    /// that, the loss changes by less than its rounding errors.
     pub const FARTHEST: f64 = 1e6;
 
-    /// Why a row cannot be used: its values, the output's last, and its weight.
+    /// Returns the reason why a row cannot be used, if there is one. `values` are its inputs followed by its output.
     pub fn problem(values: &[f64], weight: f64, loss: Loss) -> Option<String> {
         let largest = Data::LARGEST;
         if values.iter().any(|x| !x.is_finite()) {
@@ -65,7 +65,7 @@ impl Data {
         self.weights.get(row).copied().unwrap_or(1.0)
     }
 
-    /// The rows with a weight above 0: the others must not fill a part of cross-validation.
+    /// The rows with a weight above 0. Others must not take up folds of cross-validation.
     pub(crate) fn weighted(&self) -> Cow<'_, Data> {
         match self.weights.contains(&0.0) {
             true => Cow::Owned(self.filtered(|row| self.weight(row) > 0.0)),
@@ -73,12 +73,12 @@ impl Data {
         }
     }
 
-    /// The inputs of all rows, as the engine takes them.
+    /// The inputs of all rows, in the form for the engine.
     pub(crate) fn columns(&self) -> Vec<&[f64]> {
         self.inputs.iter().map(Vec::as_slice).collect()
     }
 
-    /// The rows for which `keep` holds.
+    /// The rows for which `keep` returns true.
     pub(crate) fn filtered(&self, keep: impl Fn(usize) -> bool) -> Data {
         let rows: Vec<usize> = (0..self.len()).filter(|row| keep(*row)).collect();
         let of = |column: &Vec<f64>| {
@@ -97,7 +97,7 @@ impl Data {
         }
     }
 
-    /// Whether a model can be tuned on the rows.
+    /// Checks that a model can be tuned on the rows.
     pub(crate) fn check(&self, model: &Model, loss: Loss) -> Result<(), TuneError> {
         let output = &model.outputs[target(model)?];
         self.check_columns(model.inputs.len(), loss)?;
@@ -118,7 +118,7 @@ impl Data {
         }
     }
 
-    /// Whether the rows have so many inputs, and numbers that can be used.
+    /// Checks that the rows have this number of inputs, and that all numbers can be used.
     pub(crate) fn check_columns(&self, inputs: usize, loss: Loss) -> Result<(), TuneError> {
         if self.is_empty() {
             return Err(TuneError::NoRows);
@@ -166,7 +166,7 @@ pub(crate) fn target(model: &Model) -> Result<usize, TuneError> {
     }
 }
 
-/// The least and the largest value.
+/// The minimum and maximum.
 pub(crate) fn range(column: &[f64]) -> (f64, f64) {
     let of = |(low, high): (f64, f64), x: &f64| (low.min(*x), high.max(*x));
     column.iter().fold((f64::INFINITY, f64::NEG_INFINITY), of)

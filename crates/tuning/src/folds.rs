@@ -1,4 +1,4 @@
-//! Parts of rows for cross-validation, and intervals of resampled groups.
+//! Folds for cross-validation, and intervals from resampled groups.
 
 use std::collections::BTreeSet;
 
@@ -6,10 +6,10 @@ use fastrand::Rng;
 
 use crate::Data;
 
-/// A figure, and the interval that holds 95 % of the figures of resampled groups (of rows where there are no groups).
+/// A figure with a 95 % interval from resampled groups (or rows, without groups).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// The figure of all rows.
+    /// The figure for all rows.
     pub value: f64,
     /// 2.5 % of the resampled figures are below.
     pub low: f64,
@@ -17,16 +17,16 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// How often the groups are resampled.
+/// The number of resamples.
 const RESAMPLES: usize = 400;
 
-/// Rows divided into parts. Rows of a group are in one part.
+/// Rows divided into folds. All rows of a group are in the same fold.
 pub(crate) struct Folds {
-    /// The number of parts.
+    /// The number of folds.
     pub(crate) count: usize,
-    /// The groups, shuffled; without groups each row is one.
+    /// The groups, shuffled; without groups each row is a group.
     groups: Vec<usize>,
-    /// The part of each group.
+    /// The fold of each group.
     fold_of: Vec<usize>,
     random: Rng,
 }
@@ -50,12 +50,12 @@ impl Folds {
         }
     }
 
-    /// The part of a row.
+    /// The fold of a row.
     pub(crate) fn of(&self, data: &Data, row: usize) -> usize {
         self.fold_of[group(data, row)]
     }
 
-    /// The rows of all other parts, and those of a part.
+    /// The rows of all other folds, and the rows of this fold.
     pub(crate) fn split(&self, data: &Data, fold: usize) -> [Data; 2] {
         let is_left_out = |row: usize| self.of(data, row) == fold;
         [
@@ -64,7 +64,7 @@ impl Folds {
         ]
     }
 
-    /// The figures of all rows, with their intervals. `figures` is given the truths and the weights that rows have.
+    /// The figures for all rows, with their intervals. `figures` receives the truths and the weights of the rows.
     pub(crate) fn intervals<const N: usize>(
         mut self,
         data: &Data,

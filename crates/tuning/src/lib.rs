@@ -1,16 +1,16 @@
 //! Tunes fuzzy rule sets on data: peaks of partitions, parameters of membership functions, consequents and weights.
 //!
-//! The rules stay as they are, and so does what keeps them readable: the order of the terms of a variable, a least distance
-//! between their peaks, partitions whose degrees sum to 1, vertical edges, what touches the end of a range; no width, slope or
-//! flank grows or shrinks by more than five times. These hold by construction: the search moves free numbers, each value of
-//! which makes such a model.
+//! Tuning does not change the rules, and keeps the properties that make them readable: the order of the terms of a
+//! variable, a minimum distance between their peaks, partitions whose degrees sum to 1, vertical edges, and terms that
+//! touch the end of a range. No width, slope or flank grows or shrinks by more than a factor of five. These properties
+//! are guaranteed by construction: the search changes free numbers, and any values of these result in such a model.
 //!
-//! [`tune`] makes a [`Loss`] small by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). With squared errors the
-//! consequents of a Takagi-Sugeno output are solved for at every step, as ANFIS does (Jang 1993). [`cross_validate`] tells
-//! what tuning is worth on rows that were left out.
+//! [`tune`] minimises a [`Loss`] by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). With squared errors the
+//! consequents of a Takagi-Sugeno output are computed by least squares at every step, as in ANFIS (Jang 1993).
+//! [`cross_validate`] estimates the loss of a tuned model on unseen rows.
 //!
-//! [`identify`] finds inputs, partitions and rules where none are known; [`c_means`] finds groups of rows, which can be the terms
-//! of an input; [`simplify()`] says the same with fewer rules.
+//! [`identify`] finds inputs, partitions and rules from data alone; [`c_means`] finds clusters of rows, which can be the
+//! terms of an input; [`simplify()`] reduces the number of rules with the same outputs.
 
 pub mod c_means;
 mod confusion;
@@ -52,22 +52,22 @@ use parameters::Parameters;
 pub struct Tuned {
     /// The model.
     pub model: Model,
-    /// The loss of the model as it was; see [`Loss`].
+    /// The loss of the original model; see [`Loss`].
     pub before: f64,
     /// The loss of the tuned model.
     pub after: f64,
-    /// The rows without a value of the tuned model, which count as the middle of the range.
+    /// The number of rows for which the tuned model has no value; they count as the middle of the range.
     pub without_value: usize,
-    /// The numbers that moved.
+    /// The numbers that changed.
     pub moved: Vec<Moved>,
-    /// The constants, as `variable.term`, that are at the end of the range (see [`Settings::beyond_range`]) and whose loss would be
-    /// smaller beyond it.
+    /// The constants, as `variable.term`, that are at the end of the range (see [`Settings::beyond_range`]) and would
+    /// have a smaller loss beyond it.
     pub at_bounds: Vec<String>,
-    /// Whether the watcher ended the search.
+    /// Whether `watch` ended the search.
     pub is_stopped: bool,
 }
 
-/// How far a search is.
+/// The progress of a search.
 #[derive(Debug)]
 pub struct Progress<'a> {
     /// The start, counted from 1.
@@ -76,17 +76,19 @@ pub struct Progress<'a> {
     pub iteration: u32,
     /// The loss of the best model so far, over all starts.
     pub loss: f64,
-    /// That model.
+    /// The best model so far.
     pub model: &'a Model,
 }
 
-/// Moves what may move of a model so that the loss on the rows becomes small. Only steps that help are taken; rounding, where
-/// [`Settings::digits`] asks for it, may cost some of the gain. The same arguments give the same result.
+/// Minimises the loss on the rows by changing the numbers of a model that [`Settings`] allow to change. Only steps that
+/// reduce the loss are taken; rounding to [`Settings::digits`] may undo some of the gain. The same arguments give the
+/// same result.
 ///
-/// `watch` is called before every step; with `Break` the search ends with the best model so far.
+/// `watch` is called before every step; on `Break` the search ends with the best model so far.
 ///
 /// # Errors
-/// The rows do not fit the model or the loss, a name is unknown, nothing may move, or the model cannot be used.
+/// If the rows do not fit the model or the loss, if a name is unknown, if no number may change, or if the model cannot
+/// be used.
 ///
 /// # Example: where warm begins
 /// ```
@@ -148,7 +150,7 @@ pub fn tune(
     let mut is_stopped = false;
     let mut random = fastrand::Rng::with_seed(settings.seed);
     for start in 1..=settings.starts.max(1) {
-        // A free number of 1 is a factor of e.
+        // A change of 1 in a free number is a factor of e.
         let mut jitter = || {
             if start == 1 {
                 0.0
@@ -193,8 +195,8 @@ pub fn tune(
     })
 }
 
-/// Rounds what moved, a number at a time, to the neighbour with the smaller loss. A number whose neighbours both break a
-/// constraint stays.
+/// Rounds the changed numbers, one at a time, to the neighbour with the smaller loss. A number whose neighbours both
+/// break a constraint is not rounded.
 fn rounded(
     objective: &Objective<'_>,
     parameters: &Parameters,
@@ -212,7 +214,7 @@ fn rounded(
         else {
             continue;
         };
-        // What touches stays together: the sides of a vertical edge, two terms that begin at one place.
+        // Equal numbers stay equal: the sides of a vertical edge, or two terms that begin at the same point.
         let variable = |number: &Number| number.of.split('.').next().map(str::to_owned);
         let is_equal = |(_, other): &(usize, &Number)| {
             other.value == number.value && variable(other) == variable(number)
@@ -238,7 +240,7 @@ fn rounded(
     Ok(at)
 }
 
-/// The constants at a bound whose loss is smaller a little beyond it.
+/// The constants at a bound whose loss is smaller slightly beyond it.
 fn at_bounds(objective: &Objective<'_>, parameters: &Parameters, at: &Point) -> Vec<String> {
     const BEYOND: f64 = 1e-3;
     let mut names = Vec::new();

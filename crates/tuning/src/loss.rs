@@ -1,19 +1,19 @@
-//! Losses of predictions, and how they change with each prediction.
+//! Losses of predictions, and their derivatives with respect to each prediction.
 //!
-//! Predictions and truths are places in the range of the output here, from 0 to 1.
+//! Predictions and truths are positions in the range of the output here, from 0 to 1.
 
 use crate::{Loss, data::Data};
 
-/// The loss of all rows, with the first derivative and a curvature for the prediction of each row.
+/// The loss of all rows, with the first derivative and a curvature for each row's prediction.
 #[derive(Debug, Clone)]
 pub(crate) struct Slopes {
     pub(crate) loss: f64,
     pub(crate) first: Vec<f64>,
-    /// Never below 0: the expected second derivative.
+    /// The expected second derivative, which is never below 0.
     pub(crate) second: Vec<f64>,
 }
 
-/// Adds up the loss of predictions; NaN counts as the middle of the range.
+/// Sums the loss of predictions; NaN counts as the middle of the range.
 pub(crate) fn slopes(loss: Loss, predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
     if loss == Loss::Ranking {
         return ranking(predictions, truths, data);
@@ -41,7 +41,7 @@ pub(crate) fn slopes(loss: Loss, predictions: &[f64], truths: &[f64], data: &Dat
             }
         };
         slopes.loss += weight * value;
-        // An unknown prediction stays the middle whatever moves a little.
+        // An unknown prediction stays in the middle for small changes.
         slopes
             .first
             .push(if is_known { weight * first } else { 0.0 });
@@ -55,10 +55,10 @@ pub(crate) fn slopes(loss: Loss, predictions: &[f64], truths: &[f64], data: &Dat
 /// The scale of [`Loss::Ranking`], as a share of the range.
 const SCALE: f64 = 0.02;
 
-/// The places at which the pairs are summed up; between them it is straight.
+/// The number of positions for which pairs are summed; the sums are interpolated linearly between them.
 const PLACES: usize = 512;
 
-/// The mean over pairs of a row of truth 1 and one of truth 0.
+/// The mean over pairs of a row with truth 1 and a row with truth 0.
 fn ranking(predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
     let between = |prediction: f64| {
         let known = if prediction.is_finite() {
@@ -70,7 +70,7 @@ fn ranking(predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
         let left = (at.floor() as usize).min(PLACES - 2);
         (left, at - left as f64)
     };
-    // How much weight of each truth lies at each place.
+    // The weight of each truth at each position.
     let mut masses = [vec![0.0; PLACES], vec![0.0; PLACES]];
     for (row, (prediction, truth)) in predictions.iter().zip(truths).enumerate() {
         let (left, part) = between(*prediction);
@@ -80,7 +80,7 @@ fn ranking(predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
     }
     let pairs: f64 = masses.iter().map(|mass| mass.iter().sum::<f64>()).product();
     let pairs = pairs.max(f64::MIN_POSITIVE);
-    // By the distance of two places: loss, slope and curvature of a pair.
+    // Loss, slope and curvature of a pair, by the distance of two positions.
     let by_distance: Vec<[f64; 3]> = (0..2 * PLACES - 1)
         .map(|i| {
             let distance = (i as f64 - (PLACES - 1) as f64) / (PLACES - 1) as f64 / SCALE;
@@ -93,7 +93,8 @@ fn ranking(predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
             ]
         })
         .collect();
-    // The sums over all partners of a row at a place: of truth 0 (partners of truth 1) and of truth 1.
+    // The sums over all partners of a row at a position: those with truth 0 (partners of truth 1) and those with truth
+    // 1.
     let sums = [true, false].map(|is_zero| {
         let partners = &masses[usize::from(is_zero)];
         let sum_at = |place: usize| {
@@ -130,7 +131,8 @@ fn ranking(predictions: &[f64], truths: &[f64], data: &Data) -> Slopes {
     slopes
 }
 
-/// The loss that is reported: see [`Loss`]. Of [`Loss::Ranking`] the exact share, not what is made small.
+/// The loss that is reported: see [`Loss`]. For [`Loss::Ranking`] it is the exact share, not the smooth function that
+/// is minimised.
 pub(crate) fn measure(
     loss: Loss,
     predictions: &[f64],
@@ -145,7 +147,8 @@ pub(crate) fn measure(
     }
 }
 
-/// The area under the ROC curve: the share of pairs in the right order, equal predictions half. NaN without both truths.
+/// The area under the ROC curve: the share of pairs in the right order; equal predictions count half. NaN unless both
+/// truths occur.
 fn area(predictions: &[f64], truths: &[f64], data: &Data) -> f64 {
     let rows = predictions.iter().zip(truths).enumerate();
     let mut rows: Vec<(f64, bool, f64)> = rows
@@ -223,7 +226,7 @@ mod tests {
             ..Data::default()
         };
         let wrong = measure(Loss::Ranking, &[0.9, 0.2, 0.2, 0.3], &truths, &data, 1.0);
-        // Of four pairs one is wrong and one is equal.
+        // Of four pairs one is in the wrong order and one is equal.
         assert_eq!(wrong, 1.5 / 4.0);
     }
 

@@ -1,4 +1,4 @@
-//! The numbers of a model that tuning can move, each with its name.
+//! The numbers of a model that tuning can change, with their names.
 
 use std::collections::BTreeSet;
 
@@ -12,25 +12,25 @@ use crate::{parameters::is_width, settings::Settings};
 /// A number of a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Number {
-    /// What it belongs to: `variable.term`, or `rule 3` counted from 1.
+    /// The element that contains it: `variable.term`, or `rule 3` counted from 1.
     pub of: String,
-    /// Which one it is: `peak` of a partition, the name of a shape's parameter, `constant` or the name of an input of a
-    /// linear consequent, `weight`.
+    /// The name of the number: `peak` of a partition, the name of a shape's parameter, `constant` or the name of an
+    /// input in a linear consequent, `weight`.
     pub name: String,
-    /// Its value.
+    /// The current value.
     pub value: f64,
 }
 
-/// A number that tuning moved.
+/// A number that tuning changed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moved {
-    /// What it belongs to: `variable.term`, or `rule 3` counted from 1.
+    /// The element that contains it: `variable.term`, or `rule 3` counted from 1.
     pub of: String,
-    /// Which one it is, as in [`Number::name`].
+    /// The name of the number, as in [`Number::name`].
     pub name: String,
-    /// Its value before.
+    /// The value before tuning.
     pub before: f64,
-    /// Its value after.
+    /// The value after tuning.
     pub after: f64,
 }
 
@@ -47,7 +47,7 @@ pub(crate) fn moved(before: &Model, after: &Model) -> Vec<Moved> {
     moved.collect()
 }
 
-/// The first number that differs although `settings` do not let it move.
+/// The first number that differs although `settings` do not allow it to change.
 pub fn moved_although_fixed(before: &Model, after: &Model, settings: &Settings) -> Option<Moved> {
     let outputs = before.outputs.iter().map(|output| &output.variable);
     let (mut movable, mut fixed) = (BTreeSet::new(), BTreeSet::new());
@@ -60,14 +60,14 @@ pub fn moved_although_fixed(before: &Model, after: &Model, settings: &Settings) 
             names.insert(format!("{}.{}", variable.name, term.name));
         }
     }
-    // What belongs to no term is the weight of a rule.
+    // An element that is not a term is a rule, whose number is its weight.
     let is_fixed = |of: &String| fixed.contains(of) || !(settings.weights || movable.contains(of));
     moved(before, after)
         .into_iter()
         .find(|moved| is_fixed(&moved.of))
 }
 
-/// The numbers of a model, in the order in which it has them. The limits of `steps` are not among them.
+/// The numbers of a model, in the order of the model. The limits of `steps` are excluded.
 pub fn numbers(model: &Model) -> Vec<Number> {
     let mut numbers = Vec::new();
     change(&mut model.clone(), &mut |number, _| {
@@ -78,7 +78,7 @@ pub fn numbers(model: &Model) -> Vec<Number> {
     numbers
 }
 
-/// The width of the range that each of the [`numbers`] is a position in; infinite for other numbers.
+/// For each of the [`numbers`], the width of the range in which it is a position; infinite for other numbers.
 pub(crate) fn widths(model: &Model) -> Vec<f64> {
     let mut widths = Vec::new();
     change(&mut model.clone(), &mut |number, width| {
@@ -88,7 +88,8 @@ pub(crate) fn widths(model: &Model) -> Vec<f64> {
     widths
 }
 
-/// The model with the numbers of another one. `None` where that one has other numbers: of other terms, shapes or rules.
+/// The model with the numbers of another one. `None` if the other model has other numbers, because its terms, shapes or
+/// rules differ.
 pub fn with_numbers_of(model: &Model, other: &Model) -> Option<Model> {
     let (own, others) = (numbers(model), numbers(other));
     let name = |number: &Number| (number.of.clone(), number.name.clone());
@@ -103,8 +104,8 @@ pub fn with_numbers_of(model: &Model, other: &Model) -> Option<Model> {
     Some(model)
 }
 
-/// The model with another value of the numbers of these indices in [`numbers`]. Values that a shape cannot have change
-/// nothing.
+/// The model with another value for the numbers at these indices in [`numbers`]. Values that are invalid for a shape
+/// are ignored.
 pub(crate) fn with(model: &Model, indices: &[usize], value: f64) -> Model {
     let mut model = model.clone();
     let mut index = 0..;
@@ -115,16 +116,17 @@ pub(crate) fn with(model: &Model, indices: &[usize], value: f64) -> Model {
     model
 }
 
-/// Returns the new value of a number, which is a position in a range of this width; infinite for other numbers.
+/// Returns the new value of a number. The second argument is the width of the range in which the number is a position,
+/// infinite for other numbers.
 type Change<'a> = dyn FnMut(Number, f64) -> f64 + 'a;
 
-/// Gives each number of a model the value that `value` returns for it.
+/// Sets each number of a model to the value that `value` returns for it.
 fn change(model: &mut Model, value: &mut Change<'_>) {
     let outputs = model.outputs.iter_mut().map(|output| &mut output.variable);
     for variable in model.inputs.iter_mut().chain(outputs) {
         match variable.partition_peaks() {
             Some(peaks) => partition(variable, &peaks, value),
-            // Limits are given from outside.
+            // Limits are not tuned, because they are requirements of the author.
             None if variable.step_limits().is_some() => {}
             None => {
                 let width = variable.high - variable.low;
@@ -195,14 +197,14 @@ fn shape(variable: &str, width: f64, term: &mut Term, value: &mut Change<'_>) {
     }
 }
 
-/// The two numbers with so many significant digits on either side of a number; one where it has no more itself. A position in a
-/// range of a smaller width is rounded to so many digits of the width. A position near 0 is not rounded more finely than its
-/// range needs: with three digits, to 0.05 % of the width at most.
+/// The two nearest numbers with `digits` significant digits on either side of `value`, or one if it has no more digits
+/// itself. A position in a range of a smaller width is rounded to the digits of the width. A position near 0 is not
+/// rounded more finely than its range requires: three digits are at most 0.05 % of the width.
 pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {
     if value == 0.0 || !value.is_finite() {
         return vec![value];
     }
-    // The remainder of a difference of equal numbers.
+    // The rounding error of a difference of equal numbers.
     if width.is_finite() && value.abs() < 1e-9 * width {
         return vec![0.0];
     }
@@ -222,7 +224,7 @@ pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {
     rounded
 }
 
-/// So many steps of a power of ten. Through text, so that 0.3 is 0.3 and not 3 times a tenth.
+/// A multiple of a power of ten. It is parsed from text, so that 0.3 is exactly 0.3 and not 3 times a tenth.
 pub(crate) fn decimal(steps: f64, exponent: i32) -> Option<f64> {
     let parsed: f64 = format!("{steps:.0}e{exponent}").parse().ok()?;
     // 0 has no sign.

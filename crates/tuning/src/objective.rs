@@ -1,4 +1,4 @@
-//! What free numbers are worth.
+//! The objective: the loss of a model as a function of its free numbers.
 
 use fuzzy::{Engine, Model, check, engine::Outcome};
 
@@ -14,21 +14,21 @@ use crate::{
 pub(crate) struct Objective<'a> {
     data: &'a Data,
     settings: &'a Settings,
-    /// The terms of a Takagi-Sugeno output that are solved for.
+    /// The terms of a Takagi-Sugeno output that are fitted by least squares.
     fitted: Vec<usize>,
     target: usize,
-    /// Claims of [`Settings::monotone`] that name no output, of the one that is tuned.
+    /// The claims of [`Settings::monotone`]; those that name no output apply to the tuned output.
     claims: Vec<check::Monotone>,
     low: f64,
     width: f64,
     truths: Vec<f64>,
 }
 
-/// A model, and what it is worth.
+/// A model with its predictions and loss.
 #[derive(Debug, Clone)]
 pub(crate) struct Point {
     pub(crate) model: Model,
-    /// Places in the range of the output; NaN where there is no value.
+    /// The predictions as positions in the range of the output; NaN without a value.
     pub(crate) predictions: Vec<f64>,
     pub(crate) slopes: Slopes,
 }
@@ -71,7 +71,7 @@ impl<'a> Objective<'a> {
         }
     }
 
-    /// What a model is worth, its consequents fitted first.
+    /// Evaluates a model after fitting its consequents.
     pub(crate) fn fitted(&self, mut model: Model) -> Result<Point, TuneError> {
         if !self.fitted.is_empty() {
             let beyond_range = self.settings.beyond_range;
@@ -80,7 +80,7 @@ impl<'a> Objective<'a> {
         self.point(model)
     }
 
-    /// What a model is worth as it is.
+    /// Evaluates a model without changes.
     pub(crate) fn point(&self, model: Model) -> Result<Point, TuneError> {
         let predictions = self.predictions(&Engine::new(&model)?)?;
         let slopes = loss::slopes(self.settings.loss, &predictions, &self.truths, self.data);
@@ -119,7 +119,7 @@ impl<'a> Objective<'a> {
         loss::measure(loss, predictions, &self.truths, data, self.width)
     }
 
-    /// The first claim of [`Settings::monotone`] that a model does not hold.
+    /// The first claim of [`Settings::monotone`] that a model violates.
     pub(crate) fn broken_claim(&self, model: &Model) -> Result<Option<check::Monotone>, TuneError> {
         if self.claims.is_empty() {
             return Ok(None);

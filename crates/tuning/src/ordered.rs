@@ -1,38 +1,40 @@
-//! Positions in ascending order, as free numbers.
+//! Ascending positions as functions of free numbers.
 
-/// Positions that keep their order and a least distance, whatever the free numbers are.
+/// Positions that keep their order and minimum distances for any values of the free numbers.
 ///
-/// Fixed positions, and the two ends, divide the line into segments. The length of a segment, less the least distances in it,
-/// is shared out among its distances in the proportions `exp(z)`; the first `z` of each segment is 0. A distance that is 0
-/// stays 0.
+/// Fixed positions, and the two ends, divide the line into segments. The length of a segment, minus its minimum
+/// distances, is divided among its distances in the proportions `exp(z)`; the first `z` of each segment is 0. A
+/// distance that is 0 stays 0.
 #[derive(Debug, Clone)]
 pub(crate) struct Ordered {
     segments: Vec<Segment>,
     count: usize,
 }
 
-/// What lies between two fixed positions.
+/// The part between two fixed positions.
 #[derive(Debug, Clone)]
 struct Segment {
     from: f64,
     to: f64,
-    /// Whether `from` and `to` are the ends of the range, which a position may reach, and not fixed positions.
+    /// Whether `from` and `to` are the ends of the range, which a position may reach, rather than fixed positions.
     is_end: [bool; 2],
-    /// From one position to the next, the ends included: none where it stays 0, else the least distance and the first share.
+    /// The distances between successive positions, including the ends: `None` if it stays 0, otherwise the minimum
+    /// distance and the initial share.
     distances: Vec<Option<(f64, f64)>>,
 }
 
-/// The least share of a segment that a distance begins with, so that it can grow.
+/// The minimum initial share of a distance in a segment, so that it can grow.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// A position closer to the end of the range than this share of its segment is at that end.
+/// A position closer to the end of the range than this share of its segment is set to the end.
 const AT_END: f64 = 1e-9;
 
 impl Ordered {
-    /// `positions` rise from `low` to `high`. Where one is closer to the next than `apart`, that distance is the least one.
+    /// `positions` ascend from `low` to `high`. If one is closer to the next than `apart`, that distance is the
+    /// minimum.
     pub(crate) fn new(positions: &[(f64, bool)], low: f64, high: f64, apart: f64) -> Ordered {
         let mut segments = Vec::new();
-        // Beside an end of the range there is no neighbour to keep away from.
+        // At an end of the range there is no neighbour, so no minimum distance.
         let mut inner = vec![(low, 0.0)];
         let fixed_end = [(high, true)];
         for (i, (position, is_fixed)) in positions.iter().chain(&fixed_end).enumerate() {
@@ -55,7 +57,7 @@ impl Ordered {
         self.segments.iter().map(Segment::free).sum()
     }
 
-    /// The positions for free numbers; all 0 are those it was made of.
+    /// The positions for given free numbers; for zeros they are the original ones.
     pub(crate) fn positions(&self, free: &[f64]) -> Vec<f64> {
         let mut rest = free;
         let mut positions = Vec::with_capacity(self.count + 1);
@@ -64,20 +66,20 @@ impl Ordered {
             rest = behind;
             segment.place(own, &mut positions);
         }
-        // The upper end.
+        // The upper end is removed.
         positions.truncate(self.count);
         positions
     }
 }
 
 impl Ordered {
-    /// Whether positions could be those of some free numbers.
+    /// Whether these positions can result from some free numbers.
     pub(crate) fn holds(&self, positions: &[f64]) -> bool {
         let mut rest = positions;
         self.segments.iter().all(|segment| {
             let inner = segment.distances.len().saturating_sub(1).min(rest.len());
             let (own, behind) = rest.split_at(inner);
-            // Behind the own ones stands the fixed one that ends the segment.
+            // The positions of the segment are followed by the fixed one that ends it.
             rest = behind.get(1..).unwrap_or_default();
             segment.holds(own) && behind.first().is_none_or(|fixed| *fixed == segment.to)
         })
@@ -104,7 +106,7 @@ impl Segment {
         })
     }
 
-    /// Positions, each with the least distance from the one before; the first and the last are fixed.
+    /// A segment of positions, each with the minimum distance from the previous one; the first and the last are fixed.
     fn new(positions: &[(f64, f64)], is_end: [bool; 2]) -> Segment {
         let least = |pair: &[(f64, f64)]| {
             let [(before, _), (position, apart)] = *pair else {
@@ -136,7 +138,7 @@ impl Segment {
         self.distances.iter().flatten().count().saturating_sub(1)
     }
 
-    /// Adds the positions behind `from`, with `to`.
+    /// Appends the positions after `from`, including `to`.
     fn place(&self, free: &[f64], positions: &mut Vec<f64>) {
         let moved = || std::iter::once(0.0).chain(free.iter().copied());
         let known = || self.distances.iter().flatten().zip(moved());
@@ -152,7 +154,7 @@ impl Segment {
             }
             positions.push(at.min(self.to));
         }
-        // What touches the upper end is there exactly, whatever the sums round to.
+        // Positions that touch the upper end are set to it exactly, whatever the rounding errors.
         let touching = self
             .distances
             .iter()
@@ -163,7 +165,8 @@ impl Segment {
         for position in positions.iter_mut().skip(last) {
             *position = self.to;
         }
-        // What is pulled beyond the range comes as close to its end as the free numbers allow: then it is at that end.
+        // A position that is pulled beyond the range comes as close to its end as the free numbers allow; it is then
+        // set to that end.
         let near = AT_END * (self.to - self.from);
         let [first_end, last_end] = self.is_end;
         if let Some(position) = positions.get_mut(first).filter(|_| first_end)

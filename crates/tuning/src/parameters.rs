@@ -1,4 +1,5 @@
-//! What of a model may move, as free numbers. Whatever they are, the model keeps its constraints; all 0 is the model itself.
+//! The parameters of a model that may change, as free numbers. For any values the model satisfies its constraints; all
+//! zeros are the original model.
 
 use fuzzy::{
     Model,
@@ -7,15 +8,16 @@ use fuzzy::{
 
 use crate::{TuneError, data::target, ordered::Ordered, settings::Settings};
 
-/// The parameters of a model that may move.
+/// The parameters of a model that may change.
 #[derive(Debug, Clone)]
 pub(crate) struct Parameters {
     model: Model,
     beyond_range: bool,
     variables: Vec<(Place, Movable)>,
-    /// The rules whose weights may move, by their index.
+    /// The indices of the rules whose weights may change.
     weights: Vec<usize>,
-    /// The terms that are fitted in closed form: of the only output. Through a chain the problem is not linear.
+    /// The terms that are fitted in closed form, all of the only output. With a chain of outputs the problem is not
+    /// linear.
     pub(crate) fitted: Vec<usize>,
     /// The index of the output whose values the rows have.
     pub(crate) target: usize,
@@ -27,18 +29,18 @@ enum Place {
     Output(usize),
 }
 
-/// What of a variable may move.
+/// The parameters of a variable that may change.
 #[derive(Debug, Clone)]
 enum Movable {
     /// The peaks of a partition.
     Partition(Ordered),
-    /// Terms with shapes of their own: their anchors from left to right, and what hangs on each.
+    /// Terms with separate shapes: their anchors in ascending order, and the parameters attached to each.
     Terms { anchors: Ordered, hung: Vec<Hung> },
-    /// The consequents of a Takagi-Sugeno output: for each number of each term its scale.
+    /// The consequents of a Takagi-Sugeno output: the scale of each number of each term.
     Consequents(Vec<(usize, Vec<Scale>)>),
 }
 
-/// A number of a consequent that moves by `step` times its free number, within bounds.
+/// A number of a consequent, which changes by `step` times its free number, within bounds.
 #[derive(Debug, Clone, Copy)]
 struct Scale {
     step: f64,
@@ -46,12 +48,12 @@ struct Scale {
     bounds: (f64, f64),
 }
 
-/// A term whose parameters hang on its anchor: the place where it is highest.
+/// A term whose parameters are attached to its anchor, the point where it is highest.
 #[derive(Debug, Clone)]
 struct Hung {
     term: usize,
     parameters: Vec<Link>,
-    /// The order in which the parameters are known: the anchor first.
+    /// The order in which the parameters are computed: the anchor first.
     outward: Vec<usize>,
 }
 
@@ -60,15 +62,17 @@ struct Hung {
 enum Link {
     /// The anchor itself.
     Anchor,
-    /// A position: the parameter of this index and [`factor`] times a distance. A distance of 0, a vertical edge, stays 0.
+    /// A position: the parameter with this index plus [`factor`] times a distance. A distance of 0 (a vertical edge)
+    /// stays 0.
     Beyond(usize, f64),
-    /// A width or a slope: the number times [`factor`]. A slope of 0 stays 0.
+    /// A width or a slope: this number times [`factor`]. A slope of 0 stays 0.
     Scale(f64),
-    /// It does not move.
+    /// A constant.
     Fixed(f64),
 }
 
-/// The most that a width, a slope or a distance from an anchor grows or shrinks by: one that vanishes is not readable.
+/// The largest factor by which a width, a slope or a distance from an anchor grows or shrinks: a vanishing one would
+/// not be readable.
 pub(crate) const MOST_FACTOR: f64 = 5.0;
 
 /// The factor of a free number: about `exp(z)`, between 1 / [`MOST_FACTOR`] and [`MOST_FACTOR`].
@@ -77,11 +81,11 @@ fn factor(z: f64) -> f64 {
     (most * (z / most).tanh()).exp()
 }
 
-/// The bounds of a number that has none.
+/// The bounds of an unbounded number.
 pub(crate) const UNBOUNDED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
-/// Between what the constant of a term stays: in the range of its output, or outside on the side where it is already. With
-/// `beyond_range` it may leave the range by its width. Other terms have no bounds.
+/// The bounds of the constant of a term: the range of its output or, if it is outside, the part of the axis up to its
+/// current value. With `beyond_range` it may leave the range by the width of the range. Other terms have no bounds.
 pub(crate) fn bounds(variable: &Variable, term: &Term, beyond_range: bool) -> (f64, f64) {
     let MembershipFunction::Constant { value } = term.membership_function else {
         return UNBOUNDED;
@@ -96,11 +100,11 @@ pub(crate) fn bounds(variable: &Variable, term: &Term, beyond_range: bool) -> (f
     )
 }
 
-/// A weight of 1 begins here: at 1 itself it could not move.
+/// A weight of 1 starts at this value, because it could not change at 1 itself.
 const LARGEST_WEIGHT: f64 = 0.98;
 
 impl Parameters {
-    /// What of `model` may move as `settings` say.
+    /// Determines the parameters of `model` that may change according to `settings`.
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Parameters, TuneError> {
         let names = || settings.only.iter().chain(&settings.fix);
         if let Some(name) = names().find(|name| !is_known(model, name)) {
@@ -158,7 +162,7 @@ impl Parameters {
         variables.sum::<usize>() + self.weights.len()
     }
 
-    /// The least and the greatest value of each free number.
+    /// The minimum and maximum of each free number.
     pub(crate) fn limits(&self) -> Vec<(f64, f64)> {
         let mut limits = Vec::with_capacity(self.free());
         for (_, movable) in &self.variables {
@@ -178,7 +182,7 @@ impl Parameters {
         limits
     }
 
-    /// The constants that may move, by the indices of their output and their term, and their bounds.
+    /// The constants that may change, by the indices of their output and their term, with their bounds.
     pub(crate) fn bounded(&self) -> Vec<((usize, usize), (f64, f64))> {
         let searched = self.variables.iter().flat_map(|of| match of {
             (Place::Output(output), Movable::Consequents(terms)) => {
@@ -197,7 +201,7 @@ impl Parameters {
         bounded
     }
 
-    /// Whether a model keeps order and least distances, constants their bounds, and what is fixed stays.
+    /// Whether a model keeps the order and minimum distances, the bounds of constants, and all fixed numbers.
     pub(crate) fn keeps(&self, model: &Model) -> bool {
         let outputs = self.model.outputs.iter().zip(&model.outputs);
         let keeps_constants = |(before, after): (&Output, &Output)| {
@@ -222,7 +226,7 @@ impl Parameters {
             })
     }
 
-    /// The model for free numbers.
+    /// The model for given free numbers.
     pub(crate) fn model(&self, free: &[f64]) -> Model {
         let mut model = self.model.clone();
         let mut rest = free;
@@ -250,7 +254,7 @@ impl Parameters {
     }
 }
 
-/// Whether a name of `--only` or `--fix` is a variable or a term.
+/// Whether a name in [`Settings::only`] or [`Settings::fix`] is a variable or a term.
 fn is_known(model: &Model, name: &str) -> bool {
     let outputs = model.outputs.iter().map(|output| &output.variable);
     model.inputs.iter().chain(outputs).any(|variable| {
@@ -266,13 +270,13 @@ fn is_takagi_sugeno(output: &Output) -> bool {
     )
 }
 
-/// Whether the value of the output is linear in the numbers of all its consequents.
+/// Whether the output is linear in the numbers of all its consequents.
 fn is_linear_problem(output: &Output) -> bool {
     let mut terms = output.variable.terms.iter();
     !output.clamp && terms.all(|term| is_linear(term) && term.height == 1.0)
 }
 
-/// Whether the value of a consequent is linear in its numbers.
+/// Whether a consequent is linear in its numbers.
 fn is_linear(term: &Term) -> bool {
     matches!(
         term.membership_function,
@@ -280,7 +284,7 @@ fn is_linear(term: &Term) -> bool {
     )
 }
 
-/// What of the membership functions of a variable may move.
+/// The parameters of the membership functions of a variable that may change.
 fn terms(variable: &Variable, settings: &Settings, moves: &dyn Fn(&Term) -> bool) -> Movable {
     let apart = settings.min_distance * (variable.high - variable.low);
     if let Some(peaks) = variable.partition_peaks() {
@@ -290,7 +294,7 @@ fn terms(variable: &Variable, settings: &Settings, moves: &dyn Fn(&Term) -> bool
         return Movable::Partition(ordered);
     }
     let mut anchored: Vec<(f64, bool, Hung)> = Vec::new();
-    // Limits are given from outside.
+    // Limits are not tuned, because they are requirements of the author.
     let free_terms = match variable.step_limits() {
         Some(_) => &[],
         None => variable.terms.as_slice(),
@@ -325,7 +329,7 @@ fn terms(variable: &Variable, settings: &Settings, moves: &dyn Fn(&Term) -> bool
     }
 }
 
-/// The index of the parameter that the others hang on.
+/// The index of the parameter to which the others are attached.
 fn anchor(parameters: &[(&str, Role, f64)]) -> Option<usize> {
     const TOPS: [&str; 6] = ["peak", "left_top", "top", "mean", "center", "at"];
     let place = |name: &str| parameters.iter().position(|(known, ..)| *known == name);
@@ -337,7 +341,7 @@ pub(crate) fn is_width(name: &str, role: Role) -> bool {
     role == Role::Positive || name.ends_with("slope")
 }
 
-/// The numbers of the consequents that may move, each with what one step of its free number is.
+/// The numbers of the consequents that may change, with the change per unit of its free number.
 fn consequents(
     model: &Model,
     output: &Output,
@@ -417,7 +421,7 @@ impl Movable {
         }
     }
 
-    /// Moves the terms of a variable.
+    /// Changes the terms of a variable.
     fn apply(&self, free: &[f64], variable: &mut Variable) {
         match self {
             Movable::Partition(peaks) => {
@@ -512,7 +516,7 @@ impl Hung {
         self.parameters.iter().filter(|link| link.is_free()).count()
     }
 
-    /// The parameters for a place of the anchor and free numbers.
+    /// The parameters for a position of the anchor and free numbers.
     fn moved(&self, anchor: f64, free: &[f64]) -> Vec<f64> {
         let mut z = free.iter();
         let of_link = |link: &Link| match link.is_free() {

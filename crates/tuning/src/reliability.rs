@@ -1,23 +1,23 @@
-//! Whether predictions are probabilities.
+//! Reliability of predictions as probabilities.
 
 use crate::Data;
 
-/// Rows that are predicted alike.
+/// Rows with similar predictions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bin {
     /// The number of rows.
     pub rows: usize,
-    /// The mean of their predictions, as places in the range of the output from 0 to 1.
+    /// The mean of their predictions, as positions in the range of the output from 0 to 1.
     pub predicted: f64,
-    /// The share of them with the truth 1.
+    /// The share of them with truth 1.
     pub observed: f64,
 }
 
-/// How many bins there are, of equal width.
+/// The number of bins, which have equal width.
 const BINS: usize = 10;
 
-/// The rows by their predictions, in tenths of the range, from below. Tenths without rows are left out, and so are rows without a
-/// prediction. Of calibrated predictions, `predicted` and `observed` are the same but for chance.
+/// Groups the rows by their predictions, in tenths of the range, ascending. Empty tenths and rows without a prediction
+/// are omitted. If predictions are calibrated, `predicted` and `observed` differ only by chance.
 pub(crate) fn reliability(predictions: &[f64], data: &Data) -> Vec<Bin> {
     let mut sums = [(0_usize, 0.0, 0.0, 0.0); BINS];
     for (row, (prediction, truth)) in predictions.iter().zip(&data.truths).enumerate() {

@@ -1,4 +1,4 @@
-//! The search: Levenberg and Marquardt's damped Gauss-Newton steps, with derivatives by differences.
+//! The search: damped Gauss-Newton steps (Levenberg, Marquardt), with derivatives by finite differences.
 
 use std::ops::ControlFlow;
 
@@ -11,23 +11,24 @@ use crate::{
     parameters::Parameters,
 };
 
-/// The step of a difference. All free numbers are of the order of 1.
+/// The step of a finite difference. All free numbers are of the order of 1.
 const DIFFERENCE: f64 = 1e-4;
 
 /// The longest step of a free number. All are of the order of 1.
 const LONGEST: f64 = 2.0;
 
-/// A step that gains a smaller share of the loss is as good as none.
+/// A step with a smaller relative gain counts as poor.
 const LEAST_GAIN: f64 = 1e-7;
 
-/// So many poor steps end a search.
+/// The number of poor steps that end a search.
 const PATIENCE: u32 = 3;
 
-/// Is told the step and a point that breaks no claim, if there is one yet, and says whether to go on.
+/// Receives the step and the best point that satisfies all claims, if there is one yet, and returns whether to
+/// continue.
 pub(crate) type Watch<'a> = dyn FnMut(u32, Option<&Point>) -> ControlFlow<()> + 'a;
 
-/// Searches from free numbers, for at most so many steps. `watch` is told each point and can end the search. A start at a random
-/// place may break a claim: then there is no point until a step holds it.
+/// Searches from given free numbers, for at most `iterations` steps. `watch` is called with each point and can end the
+/// search. A random start may violate a claim: then there is no point until a step satisfies it.
 pub(crate) fn search(
     objective: &Objective<'_>,
     parameters: &Parameters,
@@ -73,13 +74,13 @@ pub(crate) fn search(
     Ok((holds.then_some(at), ControlFlow::Continue(())))
 }
 
-/// Free numbers within their limits.
+/// Clamps free numbers to their limits.
 fn within(limits: &[(f64, f64)], free: impl Iterator<Item = f64>) -> Vec<f64> {
     let pairs = free.zip(limits);
     pairs.map(|(z, (low, high))| z.clamp(*low, *high)).collect()
 }
 
-/// The curvature of the loss in the free numbers, and minus its gradient.
+/// The curvature of the loss with respect to the free numbers, and the negative gradient.
 fn normal_equations(
     objective: &Objective<'_>,
     parameters: &Parameters,
@@ -89,7 +90,7 @@ fn normal_equations(
 ) -> Result<(DMatrix<f64>, DVector<f64>), TuneError> {
     let mut columns: Vec<Vec<f64>> = Vec::with_capacity(z.len());
     for (i, (_, high)) in limits.iter().enumerate() {
-        // At the upper limit, and only there, the number can only fall.
+        // At the upper limit, and only there, the difference is taken downwards.
         let difference = match z[i] + DIFFERENCE > *high {
             true => -DIFFERENCE,
             false => DIFFERENCE,
@@ -123,7 +124,8 @@ fn normal_equations(
     Ok((squares, products))
 }
 
-/// Takes the numbers out of the equations that are at a limit and would leave it: the others must not count on them.
+/// Removes numbers from the equations that are at a limit and would exceed it, so that the steps of the others do not
+/// depend on them.
 fn hold(limits: &[(f64, f64)], z: &[f64], squares: &mut DMatrix<f64>, products: &mut DVector<f64>) {
     let largest = squares.diagonal().max();
     for (i, ((low, high), z)) in limits.iter().zip(z).enumerate() {
@@ -136,7 +138,8 @@ fn hold(limits: &[(f64, f64)], z: &[f64], squares: &mut DMatrix<f64>, products: 
     }
 }
 
-/// The next point: more and more damped until the loss falls and no constraint breaks. `None` where no step helps.
+/// The next point: the damping increases until the loss decreases and no constraint is violated. `None` if no step
+/// succeeds.
 fn step(
     objective: &Objective<'_>,
     (parameters, limits): (&Parameters, &[(f64, f64)]),

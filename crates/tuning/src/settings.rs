@@ -1,62 +1,65 @@
-//! What may move, towards what, and for how long.
+//! Settings of tuning: loss, parameters that may change, constraints, and effort.
 
 use crate::Data;
 use fuzzy::{check::Monotone, diagnostic::Findings, engine::EvaluateError};
 
-/// What is made small. Each row counts by its weight.
+/// The loss to minimise. Rows are weighted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Loss {
-    /// The mean square of prediction less truth. Its measure is the root of that, in the unit of the output.
+    /// The mean square of prediction minus truth. The reported measure is its root, in the unit of the output.
     #[default]
     Squared,
-    /// The mean of `-ln p` where the truth is 1, `-ln(1 - p)` where it is 0: `p` is the place of the prediction in the range
-    /// of the output, from 0 to 1 and kept off the ends by [`Loss::LEAST_PROBABILITY`]. Truths are 0 and 1.
+    /// The mean of `-ln p` for truth 1 and `-ln(1 - p)` for truth 0, where `p` is the position of the prediction in the
+    /// range of the output, from 0 to 1 and at least [`Loss::LEAST_PROBABILITY`] away from both ends. Truths are 0 and
+    /// 1.
     Log,
-    /// The share of pairs of a row of truth 1 and one of truth 0 whose order the predictions have wrong, equal ones half:
-    /// 1 less the area under the ROC curve. Truths are 0 and 1. It is a step function; what is made small is the mean of
-    /// `ln(1 + exp(-d / s))` over the pairs, for a distance `d` of the predictions and 2 % of the range as `s`.
+    /// The share of pairs of a row with truth 1 and a row with truth 0 whose predictions are in the wrong order; equal
+    /// ones count half. It is 1 minus the area under the ROC curve. Truths are 0 and 1. Because it is a step function,
+    /// the search minimises the mean of `ln(1 + exp(-d / s))` over the pairs instead, with the distance `d` of the
+    /// predictions and 2 % of the range as `s`.
     Ranking,
 }
 
 impl Loss {
-    /// See [`Loss::Log`].
+    /// The minimum distance of a probability from 0 and 1; see [`Loss::Log`].
     pub const LEAST_PROBABILITY: f64 = 1e-3;
 }
 
-/// What may move and how far.
+/// Settings of [`tune`](crate::tune).
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// What is made small.
+    /// The loss to minimise.
     pub loss: Loss,
-    /// The variables, or terms as `variable.term`, that may move; empty: all.
+    /// The variables, or terms as `variable.term`, that may change; if empty, all may.
     pub only: Vec<String>,
-    /// The variables, or terms as `variable.term`, that stay.
+    /// The variables, or terms as `variable.term`, that must not change.
     pub fix: Vec<String>,
-    /// Whether the weights of rules may move.
+    /// Whether the weights of rules may change.
     pub weights: bool,
-    /// The least distance between the peaks of neighbouring terms, as a share of the range. Peaks that are closer stay as
-    /// close as they are.
+    /// The minimum distance between the peaks of neighbouring terms, as a share of the range. For peaks that are
+    /// closer, their current distance is the minimum.
     pub min_distance: f64,
-    /// What the output must do when an input rises. A step after which [`fuzzy::check::counterexamples`] finds that it does
-    /// not is not taken.
+    /// The directions in which the output must change when an input rises. A step is rejected if
+    /// [`fuzzy::check::counterexamples`] finds a violation after it.
     pub monotone: Vec<Monotone>,
-    /// Whether constants of an output may leave its range, by the width of the range at most.
+    /// Whether constants of an output may be outside its range, by at most the width of the range.
     pub beyond_range: bool,
-    /// The significant digits of numbers that moved; `None`: all. A position has as many as the width of its range needs:
-    /// three digits of a pressure from 950 to 1050 are 1013. Near 0, three digits are at most 0.05 % of the width.
+    /// The significant digits of changed numbers; `None` keeps all. A position has the digits that the width of its
+    /// range requires: with three digits, a pressure from 950 to 1050 is rounded to 1013. Near 0, three digits are at
+    /// most 0.05 % of the width.
     pub digits: Option<u32>,
-    /// How often the search starts: first at the model, then at random places around it.
+    /// The number of starts of the search: the first from the model, the others from random points around it.
     pub starts: u32,
-    /// For the random places.
+    /// The random seed for the starting points.
     pub seed: u64,
-    /// The most steps of a start.
+    /// The maximum number of steps per start.
     pub iterations: u32,
 }
 
 impl Default for Settings {
-    /// Squared error; all terms may move, at least 1 % of the range apart and within it; weights stay; three digits; one start
-    /// of 100 steps.
+    /// Squared error; all terms may change, at least 1 % of the range apart and within it; weights are fixed; three
+    /// digits; one start of 100 steps.
     fn default() -> Self {
         Settings {
             loss: Loss::Squared,
@@ -75,7 +78,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Whether the numbers of a term may move.
+    /// Whether the numbers of a term may change.
     pub(crate) fn may_move(&self, variable: &str, term: &str) -> bool {
         let named = |names: &[String]| {
             let is_it =
@@ -85,23 +88,23 @@ impl Settings {
         (self.only.is_empty() || named(&self.only)) && !named(&self.fix)
     }
 
-    /// Whether the consequents of a Takagi-Sugeno output are solved for, rather than searched: for squared errors they are a
-    /// linear problem, as long as no constraint binds them.
+    /// Whether the consequents of a Takagi-Sugeno output are fitted by least squares rather than searched. This is
+    /// possible for squared errors without monotonicity constraints, where they are a linear problem.
     pub(crate) fn fits_consequents(&self) -> bool {
         self.loss == Loss::Squared && self.monotone.is_empty()
     }
 }
 
-/// Why a model cannot be tuned.
+/// The reason why a model cannot be tuned.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TuneError {
-    /// Tuning needs one output that no other output reads.
+    /// Tuning needs exactly one output that no other output reads.
     #[error(
         "the rule set has {outputs} outputs that no other output reads; tuning needs exactly one"
     )]
     Outputs {
-        /// How many of them there are.
+        /// The number of such outputs.
         outputs: usize,
     },
     /// A name that the model does not have.
@@ -113,35 +116,35 @@ pub enum TuneError {
     /// All parameters are fixed, or there are none.
     #[error("nothing may move")]
     NothingMoves,
-    /// No input makes the error on rows left out smaller.
+    /// No input reduces the cross-validation error.
     #[error("no input tells more about the output than its mean")]
     NoInputHelps,
-    /// There is nothing to learn from.
+    /// There are no rows.
     #[error("there are no rows")]
     NoRows,
-    /// Columns are missing or too many, or not of one length.
+    /// Columns are missing, too many, or of different lengths.
     #[error("{what}")]
     Columns {
-        /// What is wrong.
+        /// The problem.
         what: &'static str,
     },
-    /// More columns may be inputs than a search looks at.
+    /// There are more candidate columns than a search accepts.
     #[error("{columns} columns are more than {most}")]
     TooManyColumns {
-        /// How many there are.
+        /// The number of columns.
         columns: usize,
-        /// How many there may be.
+        /// The maximum.
         most: usize,
     },
     /// A value or a weight that cannot be used.
     #[error("row {row}: {what}")]
     Row {
-        /// The row, counted from 0.
+        /// The index of the row, from 0.
         row: usize,
-        /// What is wrong.
+        /// The problem.
         what: String,
     },
-    /// No row counts.
+    /// All weights are 0.
     #[error("the weights of all rows are 0")]
     NoWeight,
     /// The error of the model on the rows overflows.
@@ -149,34 +152,34 @@ pub enum TuneError {
         "the error on these rows is not a finite number: they are too far outside the range of the output"
     )]
     NotFinite,
-    /// Targets are so far from the range of the output that moving numbers changes no digit of the loss.
+    /// Targets are so far from the range of the output that changes of the numbers do not affect any digit of the loss.
     #[error(
         "the target {target:e} is farther from the output's range [{low}, {high}] than {} times its width",
         Data::FARTHEST
     )]
     TooFar {
-        /// The target that is farthest away.
+        /// The target that is farthest from the range.
         target: f64,
         /// The lower end of the range.
         low: f64,
         /// The upper end of the range.
         high: f64,
     },
-    /// Truths of 0 and of 1 are both needed.
+    /// Not both truths, 0 and 1, occur in the rows.
     #[error("all rows have the same truth")]
     OneClass,
-    /// The model does not hold what [`Settings::monotone`] asks for before it is tuned.
+    /// The model violates [`Settings::monotone`] before tuning.
     #[error("the output is not {direction} in `{input}` to begin with")]
     NotMonotone {
         /// The input.
         input: String,
-        /// What was asked for.
+        /// The required direction.
         direction: &'static str,
     },
-    /// [`Settings::monotone`] names what the model does not have.
+    /// [`Settings::monotone`] names something that the model does not have.
     #[error("{message}")]
     Claim {
-        /// What is wrong.
+        /// The problem.
         message: String,
     },
     /// The model cannot be used.

@@ -11,7 +11,7 @@ fn parse(text: &str) -> Model {
     fuzzy::yaml::parse(text).unwrap().model
 }
 
-/// Rows of a model: what it says of points at random.
+/// Rows from a model: its outputs at random points.
 fn rows_of(model: &Model, rows: usize, seed: u64) -> Data {
     let mut random = fastrand::Rng::with_seed(seed);
     let column = |input: &fuzzy::model::Variable| -> Vec<f64> {
@@ -191,7 +191,7 @@ rules:
     }
 }
 
-/// What is rare is above the line.
+/// The rare class is above the line.
 fn classes(rows: usize) -> Data {
     let mut random = fastrand::Rng::with_seed(5);
     let mut column = || (0..rows).map(|_| 10.0 * random.f64()).collect::<Vec<f64>>();
@@ -237,7 +237,7 @@ fn classes_are_told_apart_better_by_both_losses() {
     }
 }
 
-/// The last point of a curve is what cross-validation says, and noisy rows are told apart better the more there are.
+/// The last point of a curve equals the cross-validation, and the loss on noisy rows decreases with their number.
 #[test]
 fn a_learning_curve_ends_with_the_validation_and_falls() {
     let truth = tipper([2.0, 6.0, 8.0], [5.0, 12.0, 28.0]);
@@ -266,7 +266,7 @@ fn a_learning_curve_ends_with_the_validation_and_falls() {
     );
 }
 
-/// Consequents moved by log loss make probabilities of predictions that were far too high.
+/// Consequents tuned with log loss turn predictions that were far too high into probabilities.
 #[test]
 fn consequents_moved_by_log_loss_are_calibrated_on_rows_left_out() {
     let data = classes(800);
@@ -344,7 +344,7 @@ fn wrong_rows_are_errors() {
     );
 }
 
-/// A part of the rows may have no weight: it is no part of cross-validation.
+/// A part of the rows may have no weight: it is not used in cross-validation.
 #[test]
 fn rows_without_weight_change_no_figure() {
     let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
@@ -383,7 +383,8 @@ rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
     ))
 }
 
-/// Solved for or searched, constants end at the best place within the range: the error is that of the best of all places.
+/// Whether fitted or searched, constants end at the best value within the range: the error is the minimum over all
+/// values.
 #[test]
 fn constants_end_at_the_best_place_within_the_range() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
@@ -415,7 +416,7 @@ fn constants_end_at_the_best_place_within_the_range() {
         output: None,
     };
     for monotone in [Vec::new(), vec![rising]] {
-        // From inside, and from the upper end, where it can only fall.
+        // From inside, and from the upper end, where a constant can only decrease.
         for begun in [[3.0, 4.0], [10.0, 10.0]] {
             let settings = Settings {
                 only: only.clone(),
@@ -434,7 +435,7 @@ fn constants_end_at_the_best_place_within_the_range() {
             );
         }
     }
-    // What is outside already may stay, but goes no farther.
+    // A constant that is already outside may stay there, but does not move further out.
     let outside = tune(
         &constants([3.0, 12.0]),
         &data,
@@ -447,7 +448,8 @@ fn constants_end_at_the_best_place_within_the_range() {
     assert_eq!(numbers(&outside.unwrap().model)[3].value, 12.0);
 }
 
-/// The rows say nothing about one of two constants alone, and ask for values far above the range: both end at its upper end.
+/// The rows do not determine one of two constants alone, and require values far above the range: both end at its upper
+/// end.
 #[test]
 fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
@@ -472,7 +474,7 @@ fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
     }
 }
 
-/// One constant is far beyond the range and the other one inside: that one is at its best place, not held back.
+/// One constant is far beyond the range and the other inside: the latter has its best value and is not affected.
 #[test]
 fn a_constant_inside_is_at_its_best_place_beside_one_at_the_end() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
@@ -496,7 +498,7 @@ fn a_constant_inside_is_at_its_best_place_beside_one_at_the_end() {
     assert_eq!(tuned.at_bounds, ["speed.fast"]);
 }
 
-/// A peak that the rows pull out of the range ends at its end, not a rounding error away from it.
+/// A peak that the rows pull out of the range ends exactly at its end, without a rounding error.
 #[test]
 fn a_peak_ends_at_the_end_of_the_range_exactly() {
     let heat: Vec<f64> = (0..=40).map(|i| f64::from(i) / 4.0).collect();
@@ -525,7 +527,7 @@ fn numbers_of_another_model_are_taken_where_it_has_the_same_terms() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Noise pulls the peaks and consequents anywhere; order and monotone inputs hold all the same.
+    /// Noise moves the peaks and consequents; order and monotone inputs are still kept.
     #[test]
     fn constraints_hold_on_random_rows(seed in any::<u64>()) {
         let mut random = fastrand::Rng::with_seed(seed);
@@ -556,7 +558,7 @@ proptest! {
     }
 }
 
-/// A comfort in between, which no row has.
+/// An intermediate output `comfort`, which is not a column of the rows.
 fn chain(comfort: [f64; 2], fast: f64) -> Model {
     let [poor, good] = comfort;
     parse(&format!(

@@ -1,4 +1,4 @@
-//! What tuning is worth on rows that were left out.
+//! Cross-validation of tuning.
 
 use std::ops::ControlFlow;
 
@@ -14,26 +14,26 @@ use crate::{
     tune,
 };
 
-/// What tuning is worth on rows that the tuned model does not know.
+/// The cross-validation of tuning: losses on rows that the tuned model has not seen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Validation {
-    /// Into how many parts the rows were divided.
+    /// The number of folds.
     pub folds: usize,
-    /// The loss of the model as it is; see [`crate::Loss`].
+    /// The loss of the original model; see [`crate::Loss`].
     pub before: Interval,
-    /// The loss where each part is predicted by the model tuned on the others.
+    /// The loss when each fold is predicted by a model tuned on the others.
     pub after: Interval,
-    /// How much lower the second is than the first.
+    /// The reduction of the loss.
     pub gain: Interval,
-    /// With truths of 0 and 1: what was predicted of rows left out, beside what came, by tenths of the range.
+    /// For truths of 0 and 1: predictions on unseen rows compared with the observed share, by tenths of the range.
     pub reliability: Vec<Bin>,
     /// What was predicted for rows left out of each class, if the truths are classes and not a ranking.
     pub confusion: Option<Confusion>,
 }
 
-/// Tunes without a part of the rows and predicts that part, for each part in turn. Rows of a group stay together.
+/// For each fold in turn, tunes on the other rows and predicts the fold. Rows of a group stay together.
 ///
-/// `watch` is called as by [`tune`], with the part, counted from 0; with `Break` there is no result.
+/// `watch` is called as by [`tune`], with the index of the fold; on `Break` there is no result.
 ///
 /// # Errors
 /// As [`tune`].
@@ -77,20 +77,20 @@ pub fn cross_validate(
     }))
 }
 
-/// The loss on rows left out of models that are tuned on few and on many of the others.
+/// A point of a learning curve: the loss on unseen rows of models tuned on a share of the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
-    /// The share of the other rows, or of their groups, that a model is tuned on.
+    /// The share of the other rows, or of their groups, for tuning.
     pub share: f64,
-    /// The loss on rows left out; see [`crate::Loss`].
+    /// The loss on unseen rows; see [`crate::Loss`].
     pub left_out: f64,
 }
 
-/// Into how many parts the known rows are divided for a learning curve.
+/// The number of parts of the known rows for a learning curve.
 const EIGHTHS: usize = 8;
 
-/// [`cross_validate`] with an eighth, a quarter and half of the known rows; the point of all of them is what `worth`, the
-/// cross-validation with the same arguments, says. Where the curve still falls, more rows would help.
+/// Computes [`cross_validate`] with an eighth, a quarter and half of the known rows. The last point, for all of them,
+/// is `worth`, the cross-validation with the same arguments. If the curve still falls at its end, more rows would help.
 ///
 /// # Errors
 /// As [`tune`].
@@ -124,8 +124,7 @@ pub fn learning_curve(
     Ok(Some(curve))
 }
 
-/// Predictions of the rows of each part by a model that is tuned on so many eighths of the others; `None` where the watcher ended
-/// it.
+/// Predicts the rows of each fold by a model tuned on `eighths` eighths of the others; `None` if `watch` ended it.
 fn left_out(
     model: &Model,
     data: &Data,
@@ -148,7 +147,7 @@ fn left_out(
         }
         let mut told = |progress: &Progress<'_>| watch(fold as u32, progress);
         let tuned = match tune(model, &known, settings, &mut told) {
-            // A few rows may all have one truth: nothing is learned from them.
+            // A few rows may all have the same truth; the model is then not tuned.
             Err(TuneError::OneClass) if eighths < EIGHTHS => model.clone(),
             tuned => {
                 let tuned = tuned?;

@@ -1,4 +1,4 @@
-//! The example of ANFIS (Jang 1993): a chaotic series, predicted six steps ahead from four of its past values.
+//! The example of ANFIS (Jang 1993): predicts a chaotic series six steps ahead from four past values.
 #![allow(clippy::unwrap_used)]
 
 use std::ops::ControlFlow;
@@ -10,7 +10,7 @@ use fuzzy::{
     rule::{Condition, Rule},
 };
 
-/// `x'(t) = 0.2 x(t - 17) / (1 + x(t - 17)^10) - 0.1 x(t)` from 1.2, nothing before; by Runge and Kutta in steps of 0.1.
+/// `x'(t) = 0.2 x(t - 17) / (1 + x(t - 17)^10) - 0.1 x(t)` starting at 1.2, 0 before; Runge-Kutta with steps of 0.1.
 fn series(count: usize) -> Vec<f64> {
     const STEP: f64 = 0.1;
     const DELAY: usize = 170;
@@ -39,7 +39,7 @@ fn rows(series: &[f64], from: usize, count: usize) -> Data {
     }
 }
 
-/// Two bells an input, a rule for each of the 16 combinations, each with a linear consequent of its own.
+/// Two bells for each input, and a rule with a linear consequent for each of the 16 combinations.
 fn grid(low: f64, high: f64) -> Model {
     let names = ["x18", "x12", "x6", "x0"];
     let mut model = Model::builder("mackey-glass");

@@ -1,4 +1,5 @@
-//! A monitor on board, in memory that the caller lends. It needs neither an allocator nor a standard library.
+//! A monitor for flight controllers, in memory that the caller provides. It needs neither an allocator nor a standard
+//! library.
 //!
 //! `flagred export --rust` writes a profile and its rule set as a [`Plan`] of plain data, and the type of the [`Storage`] that
 //! its [`Monitor`] needs. On a computer, [`Estimator::plan`](crate::estimator::Estimator::plan) makes the plan and
@@ -63,34 +64,34 @@ pub struct Plan<'a> {
     pub rules: Rules<'a>,
     /// The index of the output that is the risk.
     pub output: u32,
-    /// The index among the profile's inputs of each input of the rule set; `u32::MAX` of those that the risk does not depend
-    /// on.
+    /// For each input of the rule set its index among the inputs of the profile; `u32::MAX` for an input that the risk
+    /// does not depend on.
     pub order: &'a [u32],
-    /// The observed channels.
+    /// The channels that are observed.
     pub channels: &'a [Channel],
     /// The inputs of the profile.
     pub inputs: &'a [Input],
-    /// The number of signals that samples carry.
+    /// The number of signals in a sample.
     pub signals: u32,
     /// The time constants and thresholds of the profile.
     pub settings: Settings,
-    /// The coverage below which the rules do not apply.
+    /// The coverage below which the rules do not apply and the risk is interpolated.
     pub coverage_below: f64,
-    /// The values that fill gaps of the rules; `None` where the rules cover nothing.
+    /// The values that fill gaps of the rules; `None` if the rules cover nothing.
     pub filled: Option<FilledKnots<'a>>,
-    /// The propositions of the rules, those of each rule together, the most telling first.
+    /// The propositions of all rules, grouped by rule, the most specific of each rule first.
     pub propositions: &'a [Proposition],
 }
 
-/// What a pilot reads of a finding, as exported profiles have it: `CAUSES` by [`Cause::proposition`], `NOTICES` by
-/// [`Finding::measure`](crate::verdict::Finding::measure) where there is no cause. What stands in braces is to be filled in:
-/// `{value}` is [`Cause::value`] and `{percent}` 100 times that; `{peak}` and `{threshold}` are of the finding, `{motor}` is its
-/// motor, and `{side}` is `above` or `below`.
+/// The words of a finding for the pilot, as in exported profiles: `CAUSES` is indexed by [`Cause::proposition`],
+/// `NOTICES` by [`Finding::measure`](crate::verdict::Finding::measure) for findings without a cause. Placeholders in
+/// braces are to be replaced: `{value}` by [`Cause::value`], `{percent}` by 100 times that, `{peak}` and `{threshold}`
+/// by the values of the finding, `{motor}` by its motor, and `{side}` by `above` or `below`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Words<'a> {
-    /// A word for programs: small letters, digits and `_`.
+    /// A stable word for programs: small letters, digits and `_`.
     pub code: &'a str,
-    /// A few words for texts of 50 characters.
+    /// A few words, for messages limited to 50 characters.
     pub brief: &'a str,
     /// What happened, and what it means.
     pub text: &'a str,
@@ -98,17 +99,17 @@ pub struct Words<'a> {
     pub advice: &'a str,
 }
 
-/// Why a monitor cannot be made.
+/// The reason why a monitor cannot be created.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Refused {
-    /// The memory does not have the sizes of the plan.
+    /// The memory does not have the sizes that the plan requires.
     Memory,
     /// The profile reads a motor that the vehicle does not have.
     NoMotors,
     /// The plan is damaged.
     Plan(Damaged),
-    /// The geometry does not have the factors of every motor, or they do not tell roll, pitch, yaw and thrust apart.
+    /// The geometry does not have factors for every motor, or its factors do not separate roll, pitch, yaw and thrust.
     Geometry,
 }
 
@@ -133,7 +134,7 @@ impl Plan<'_> {
     /// Verifies every index and window of the plan, so that no sample can make a monitor panic. Exported plans pass.
     ///
     /// # Errors
-    /// The first array with an index out of bounds, or with a window that has no length.
+    /// Returns the first array that has an index out of bounds or a window of zero length.
     pub fn check(&self) -> Result<(), Damaged> {
         self.rules.check()?;
         let require = |holds: bool, array| holds.then_some(()).ok_or(Damaged(array));
@@ -229,7 +230,7 @@ impl Plan<'_> {
         })
     }
 
-    /// What raises the risk, after the outcomes at the same inputs.
+    /// The cause of the risk; requires the outcomes at the same inputs.
     fn cause(
         &self,
         inputs: &[f64],
@@ -284,7 +285,7 @@ impl Plan<'_> {
     }
 }
 
-/// Assesses one flight, sample by sample, in lent memory.
+/// Assesses one flight, sample by sample, in memory that the caller provides.
 ///
 /// It does not allocate, and the cost of a sample does not depend on the lengths of the windows. The monitor itself is about
 /// 1600 bytes and can be a local variable.
@@ -303,10 +304,11 @@ pub struct Monitor<'a> {
 }
 
 impl<'a> Monitor<'a> {
-    /// A monitor of a new flight, with as many motors as the memory holds: none are enough for a profile that reads none.
+    /// Creates a monitor of a new flight, with as many motors as the memory has room for. A profile that reads no
+    /// motors needs none.
     ///
     /// # Errors
-    /// The memory does not have the sizes of the plan, motors are missing, or the plan is damaged.
+    /// If the memory does not have the sizes that the plan requires, if motors are missing, or if the plan is damaged.
     #[doc(hidden)] // For the C interface. Rust uses `Storage::monitor` or `OwnedMemory::monitor`.
     pub fn new(plan: &'a Plan<'a>, memory: Memory<'a>) -> Result<Monitor<'a>, Refused> {
         plan.check().map_err(Refused::Plan)?;
@@ -325,7 +327,7 @@ impl<'a> Monitor<'a> {
         Ok(monitor)
     }
 
-    /// `None` where the memory does not have the sizes of the plan.
+    /// Divides the memory into its parts; `None` if it does not have the sizes that the plan requires.
     fn divide(plan: &'a Plan<'a>, memory: Memory<'a>) -> Option<Monitor<'a>> {
         let Memory {
             mut numbers,
@@ -358,11 +360,11 @@ impl<'a> Monitor<'a> {
         (fits && numbers.is_empty()).then_some(monitor)
     }
 
-    /// Gives each motor its factors, in the order of the samples, so that turning the nose is told from what pushes the
-    /// vehicle around. Call it before the first sample.
+    /// Sets the factors of each motor, in the order of the samples, so that yaw commands are separated from the rest.
+    /// Call it before the first sample.
     ///
     /// # Errors
-    /// There are not factors for every motor, or they do not tell roll, pitch, yaw and thrust apart. Then nothing changes.
+    /// If a motor has no factors, or if the factors do not separate roll, pitch, yaw and thrust. Nothing changes then.
     ///
     /// # Example: a quadrotor with motors in an X
     /// ```
@@ -401,14 +403,14 @@ impl<'a> Monitor<'a> {
         update
     }
 
-    /// The risk at values of the inputs, in the order of the profile, independent of the flight. `None` where no rule fires
-    /// and nothing fills the gap, or where a value is not finite.
+    /// The risk at values of the inputs, in the order of the profile, independent of the flight. `None` if no rule
+    /// fires and the gap is not filled, or if a value is not finite.
     pub fn at(&mut self, inputs: &[f64]) -> Option<Estimate> {
         self.plan.estimate(inputs, self.point, &mut self.rules)
     }
 
-    /// What raises the risk at values of the inputs, in the order of the profile, independent of the flight. `None` where no
-    /// rule does.
+    /// The cause of the risk at values of the inputs, in the order of the profile, independent of the flight. `None` if
+    /// no rule raises the risk.
     pub fn cause_at(&mut self, inputs: &[f64]) -> Option<Cause> {
         let said = self.at(inputs).filter(|said| said.filled_from.is_none())?;
         self.plan
@@ -425,7 +427,7 @@ impl<'a> Monitor<'a> {
         self.follower.open_finding()
     }
 
-    /// Ends the flight, and returns the findings that were still open.
+    /// Ends the flight and returns the findings that were still open.
     pub fn finish(&mut self) -> Ended {
         self.follower.finish(&mut Room {
             risks: self.risks,
@@ -436,7 +438,7 @@ impl<'a> Monitor<'a> {
     }
 }
 
-/// Whether a window can have this length, and a ratio this least divisor.
+/// Whether a number is valid as the length of a window or the minimum of a divisor: finite and above 0.
 fn is_above_0(number: f64) -> bool {
     number.is_finite() && number > 0.0
 }

@@ -1,20 +1,20 @@
-//! A compiled rule set as plain data, and its evaluation in lent memory.
+//! A compiled rule set as plain data, and its evaluation in memory that the caller provides.
 
 use fuzzy::table::{Chain, Damaged, Outcome, Partial, Scratch, Stage, Strongest, Table, Values};
 
 /// A compiled rule set, as plain data.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules<'a> {
-    /// The rule set; where outputs read others, the arrays of all stages.
+    /// The rule set; if outputs read other outputs, the arrays of all stages.
     pub table: Table<'a>,
-    /// The stages of a rule set in which outputs read others; else empty. See [`Chain`].
+    /// The stages of a rule set whose outputs read other outputs; otherwise empty. See [`Chain`].
     pub stages: &'a [Stage],
     /// See [`Chain::places`].
     pub places: &'a [u32],
 }
 
 impl<'a> Rules<'a> {
-    /// The rule set, where outputs read others.
+    /// The rule set as a chain, if outputs read other outputs.
     pub(super) const fn chain(&self) -> Option<Chain<'a>> {
         match self.stages {
             [] => None,
@@ -38,7 +38,7 @@ impl<'a> Rules<'a> {
     /// Verifies every index and size. Exported rule sets pass.
     ///
     /// # Errors
-    /// The first array with an index out of bounds.
+    /// Returns the first array that has an index out of bounds.
     pub fn check(&self) -> Result<(), Damaged> {
         match self.chain() {
             None => self.table.check(),
@@ -46,7 +46,7 @@ impl<'a> Rules<'a> {
         }
     }
 
-    /// The most inputs of a stage: those of the rule set, and the outputs that it reads.
+    /// The largest number of inputs of a stage: the inputs of the rule set and the outputs that the stage reads.
     pub const fn most_inputs(&self) -> usize {
         let reads = match self.chain() {
             None => 0,
@@ -55,7 +55,7 @@ impl<'a> Rules<'a> {
         self.inputs().saturating_add(reads)
     }
 
-    /// The numbers that are handed over between stages.
+    /// The number of values that are passed between stages.
     const fn stage_inputs(&self) -> usize {
         match self.stages {
             [] => 0,
@@ -63,9 +63,9 @@ impl<'a> Rules<'a> {
         }
     }
 
-    // Saturating: a damaged table asks for more memory than there is, and never for less than it uses.
+    // Saturating: a damaged table then requires more memory than exists, and never less than it uses.
 
-    /// The number of numbers that an [`Evaluator`] works with.
+    /// The number of floating-point numbers that an [`Evaluator`] needs.
     pub const fn numbers(&self) -> usize {
         let sizes = self.table.sizes;
         (sizes.degrees as usize)
@@ -75,7 +75,7 @@ impl<'a> Rules<'a> {
             .saturating_add(self.stage_inputs())
     }
 
-    /// The number of partial conjunctions that an [`Evaluator`] works with.
+    /// The number of partial conjunctions that an [`Evaluator`] needs.
     pub const fn partials(&self) -> usize {
         let sizes = self.table.sizes;
         (sizes.partial as usize)
@@ -83,7 +83,7 @@ impl<'a> Rules<'a> {
             .saturating_add(sizes.alive as usize)
     }
 
-    /// An upper bound, in bytes, for an evaluator, its memory and the rules, where pieces are aligned to at most 16 bytes.
+    /// An upper bound, in bytes, for an evaluator, its memory and the rules, if pieces are aligned to at most 16 bytes.
     pub const fn bytes(&self) -> usize {
         const ALIGNED: usize = 15;
         let output = size_of::<Strongest>() + 2 * size_of::<Outcome>();
@@ -94,7 +94,7 @@ impl<'a> Rules<'a> {
     }
 }
 
-/// The memory of an [`Evaluator`], in pieces.
+/// The memory of an [`Evaluator`], in parts.
 #[derive(Debug)]
 #[doc(hidden)] // For the C interface.
 pub struct RuleMemory<'m> {
@@ -110,19 +110,19 @@ pub struct RuleMemory<'m> {
     pub own: &'m mut [Outcome],
 }
 
-/// Evaluates a rule set in lent memory.
+/// Evaluates a rule set in memory that the caller provides.
 #[derive(Debug)]
 #[doc(hidden)] // For the C interface. `flagred export --rust` writes a function.
 pub struct Evaluator<'a> {
     pub(super) rules: &'a Rules<'a>,
     pub(super) scratch: Scratch<'a>,
-    /// Of the stages.
+    /// The values passed between stages.
     pub(super) values: Values<'a>,
     pub(super) outcomes: &'a mut [Outcome],
 }
 
 impl<'a> Evaluator<'a> {
-    /// `None` where the memory does not have the sizes of the rules.
+    /// Creates an evaluator; `None` if the memory does not have the sizes that the rules require.
     pub fn new(rules: &'a Rules<'a>, memory: RuleMemory<'a>) -> Option<Evaluator<'a>> {
         let RuleMemory {
             mut numbers,
@@ -155,7 +155,7 @@ impl<'a> Evaluator<'a> {
         (fits && numbers.is_empty() && partials.is_empty()).then_some(evaluator)
     }
 
-    /// One outcome for each output; `None` where there is not one value for each input.
+    /// Evaluates the rules and returns one outcome for each output; `None` unless there is one value for each input.
     pub fn evaluate(&mut self, inputs: &[f64]) -> Option<&[Outcome]> {
         if inputs.len() != self.rules.inputs() {
             return None;
@@ -174,7 +174,7 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// Takes the first items off a slice.
+/// Takes the first `count` items off a slice.
 pub(super) fn take<'m, T>(rest: &mut &'m mut [T], count: usize) -> Option<&'m mut [T]> {
     let (taken, left) = core::mem::take(rest).split_at_mut_checked(count)?;
     *rest = left;

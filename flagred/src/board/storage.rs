@@ -1,4 +1,4 @@
-//! The memory of a monitor: lent in pieces, as one value that can be static, or allocated.
+//! The memory of a monitor: provided in parts, as one value that can be static, or allocated.
 
 use fuzzy::table::{Outcome, Partial, Strongest};
 
@@ -10,42 +10,42 @@ use crate::{
     window::Window,
 };
 
-/// The size of a plan's memory, without its motors.
+/// The sizes of a plan's memory, without its motors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sizes {
-    /// Numbers of all kinds.
+    /// The number of floating-point numbers.
     pub numbers: usize,
-    /// Partial conjunctions.
+    /// The number of partial conjunctions.
     pub partials: usize,
-    /// Outputs.
+    /// The number of outputs.
     pub outputs: usize,
-    /// Channels.
+    /// The number of channels.
     pub channels: usize,
 }
 
-/// The memory of a monitor, of the [`Sizes`] of its plan.
+/// The memory of a monitor, with the [`Sizes`] of its plan.
 #[derive(Debug)]
 #[doc(hidden)] // For the C interface. Rust uses `Storage` or `OwnedMemory`.
 pub struct Memory<'m> {
-    /// [`Sizes::numbers`].
+    /// As many as [`Sizes::numbers`].
     pub numbers: &'m mut [f64],
-    /// [`Sizes::partials`].
+    /// As many as [`Sizes::partials`].
     pub partials: &'m mut [Partial],
-    /// [`Sizes::outputs`].
+    /// As many as [`Sizes::outputs`].
     pub strongest: &'m mut [Strongest],
-    /// [`Sizes::outputs`].
+    /// As many as [`Sizes::outputs`].
     pub outcomes: &'m mut [Outcome],
-    /// [`Sizes::outputs`].
+    /// As many as [`Sizes::outputs`].
     pub own: &'m mut [Outcome],
-    /// [`Sizes::channels`].
+    /// As many as [`Sizes::channels`].
     pub seen: &'m mut [Seen],
-    /// The risks of the last seconds.
+    /// The window of the last risks.
     pub risks: &'m mut Window,
     /// One for each motor.
     pub motors: &'m mut [Motor],
 }
 
-/// The pieces of a memory that holds arrays or vectors under the names of [`Memory`].
+/// Borrows the parts of a memory that has arrays or vectors with the names of the fields of [`Memory`].
 macro_rules! lent {
     ($held:expr) => {
         Memory {
@@ -62,7 +62,7 @@ macro_rules! lent {
 }
 
 impl Plan<'_> {
-    /// The size of its memory.
+    /// The sizes of the memory that it requires.
     pub const fn sizes(&self) -> Sizes {
         let numbers = self
             .rules
@@ -77,8 +77,8 @@ impl Plan<'_> {
         }
     }
 
-    /// An upper bound, in bytes, for the plan, the monitor, its memory, and the limits and command of each motor, where pieces
-    /// are aligned to at most 16 bytes.
+    /// An upper bound, in bytes, for the plan, the monitor, its memory, and the limits and command of each motor, if
+    /// pieces are aligned to at most 16 bytes.
     pub const fn bytes(&self, motors: usize) -> usize {
         const ALIGNED: usize = 15;
         let sizes = self.sizes();
@@ -96,9 +96,9 @@ impl Plan<'_> {
     }
 }
 
-/// The memory of a monitor as one value. An exported profile names its sizes.
+/// The memory of a monitor as one value. An exported profile defines the type with its sizes.
 ///
-/// A static one is all zeros: it takes memory, but no space in the firmware image.
+/// A static one is all zeros, so it takes no space in the firmware image.
 ///
 /// # Example: `Storage<4>` of the exported profile `flagred-paper`
 /// ```
@@ -138,7 +138,7 @@ impl<
     const MOTORS: usize,
 > Storage<NUMBERS, PARTIALS, OUTPUTS, CHANNELS, MOTORS>
 {
-    /// Memory for one monitor.
+    /// Creates memory for one monitor.
     #[expect(
         clippy::new_without_default,
         reason = "made in a `static`, where `default` cannot be called"
@@ -156,7 +156,7 @@ impl<
         }
     }
 
-    /// A monitor of a new flight in this memory.
+    /// Creates a monitor of a new flight in this memory.
     ///
     /// # Errors
     /// As [`Monitor::new`].
@@ -165,7 +165,7 @@ impl<
     }
 }
 
-/// The memory of a monitor, allocated for a plan.
+/// The allocated memory of a monitor.
 #[cfg(feature = "std")]
 #[derive(Debug)]
 pub struct OwnedMemory {
@@ -181,7 +181,7 @@ pub struct OwnedMemory {
 
 #[cfg(feature = "std")]
 impl OwnedMemory {
-    /// Memory for one monitor of the plan.
+    /// Allocates memory for one monitor of the plan.
     pub fn new(plan: &Plan<'_>, motors: usize) -> Self {
         let sizes = plan.sizes();
         OwnedMemory {
@@ -196,7 +196,7 @@ impl OwnedMemory {
         }
     }
 
-    /// A monitor of a new flight in this memory.
+    /// Creates a monitor of a new flight in this memory.
     ///
     /// # Errors
     /// As [`Monitor::new`].

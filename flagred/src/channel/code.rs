@@ -1,9 +1,9 @@
-//! The codes of what a channel observes and of statistics, in which plans are exported to C.
+//! The numeric codes of observed quantities and statistics in plans that are exported to C.
 
 use super::{Motors, Observed, Statistic, Threshold};
 
 impl Statistic {
-    /// Its code, and the number that belongs to it: a limit or percents, 0 where there is none.
+    /// The code, and the limit or percentage that belongs to it; 0 if there is none.
     pub const fn code(self) -> (u32, f64) {
         match self {
             Statistic::Mean => (0, 0.0),
@@ -42,7 +42,7 @@ impl Statistic {
 }
 
 impl Motors {
-    /// Its code.
+    /// The code.
     pub const fn code(self) -> u32 {
         match self {
             Motors::Pooled => 0,
@@ -54,7 +54,7 @@ impl Motors {
         }
     }
 
-    /// How motors become one value, from its code.
+    /// The way of combining motors that has this code.
     pub const fn from_code(code: u32) -> Motors {
         match code {
             0 => Motors::Pooled,
@@ -68,8 +68,8 @@ impl Motors {
 }
 
 impl Observed {
-    /// Its code, the indices that belong to it, of signals or of an effort, and its number: what a divisor may not be nearer to 0
-    /// than. 0 where there is none.
+    /// The code, the indices of its signals or its effort, and the magnitude below which its divisor is unknown. Unused
+    /// ones are 0.
     pub const fn code(self) -> (u32, [u32; 2], f64) {
         let (code, indices) = match self {
             Observed::Command => (0, [0; 2]),
@@ -92,7 +92,7 @@ impl Observed {
         (code, indices, 0.0)
     }
 
-    /// What is observed, from its code.
+    /// The observed quantity that has this code.
     pub const fn from_code(code: u32, indices: [u32; 2], number: f64) -> Option<Observed> {
         let [first, second] = indices;
         Some(match code {
@@ -124,7 +124,7 @@ impl Observed {
 }
 
 impl Threshold {
-    /// The code of a threshold, and its limit; 0 and 0 of none.
+    /// The code of a threshold, and its limit; both 0 without a threshold.
     pub const fn code(threshold: Option<Threshold>) -> (u32, f64) {
         match threshold {
             None => (0, 0.0),
@@ -133,7 +133,7 @@ impl Threshold {
         }
     }
 
-    /// The threshold of a code, where there is one; the outer `None` is no code.
+    /// The threshold that has this code, if it has one; the outer `None` means that the code is unknown.
     pub const fn from_code(code: u32, limit: f64) -> Option<Option<Threshold>> {
         Some(match code {
             0 => None,
@@ -148,7 +148,7 @@ impl Threshold {
 mod tests {
     use super::*;
 
-    /// Of every code there is one thing, and of every thing one code.
+    /// Every code has one meaning, and every meaning one code.
     #[test]
     fn codes_are_read_back() {
         let all = 0..1000;

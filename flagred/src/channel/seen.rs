@@ -1,4 +1,4 @@
-//! What channels see of a flight, in memory that is lent.
+//! The observations of channels during a flight, in memory that the caller provides.
 
 use super::{Channel, Input, Motors, Observed, Statistic, Threshold, short_way_deg};
 use crate::{
@@ -9,16 +9,17 @@ use crate::{
     window::Window,
 };
 
-/// What a channel has seen.
+/// The observations of one channel.
 #[derive(Debug, Clone)]
 pub struct Seen {
     window: Window,
-    /// In place of the window.
+    /// Used instead of the window if the channel is exponential.
     exponential: Exponential,
     /// The latest value; over motors, their mean.
     last: Option<f64>,
     bin: Bin,
-    /// Whether all signals were known at one time, on the ground or in the air, in this flight or before.
+    /// Whether all signals were known at the same time at least once, on the ground or in the air, in this flight or
+    /// before.
     has_come: bool,
 }
 
@@ -30,7 +31,7 @@ struct Bin {
     sum: f64,
     held_s: f64,
     end_s: f64,
-    /// The mean of the bin before; NaN is unknown.
+    /// The mean of the previous bin; NaN is unknown.
     before: f64,
 }
 
@@ -66,7 +67,7 @@ impl Bin {
 }
 
 impl Seen {
-    /// Memory for what a channel sees, all zeros; see [`Window::IDLE`].
+    /// Memory for the observations of a channel, all zeros; see [`Window::IDLE`].
     pub const IDLE: Seen = Seen {
         window: Window::IDLE,
         exponential: Exponential::IDLE,
@@ -75,7 +76,7 @@ impl Seen {
         has_come: false,
     };
 
-    /// Nothing yet, over a window of so many seconds, where it is.
+    /// Resets to no observations, over a window of `window_s` seconds, in place.
     fn restart(&mut self, window_s: f64) {
         self.window.restart(window_s);
         self.exponential = Exponential::new(window_s);
@@ -83,7 +84,7 @@ impl Seen {
         self.clear_latest();
     }
 
-    /// Forgets everything.
+    /// Discards all observations.
     pub(crate) fn clear(&mut self) {
         self.window.clear();
         self.exponential.clear();
@@ -95,7 +96,7 @@ impl Seen {
         self.bin = Bin::EMPTY;
     }
 
-    /// Drops what was before a time from a window that is longer than `short_s`.
+    /// Discards observations before `t_s` if the window is longer than `short_s`.
     pub(crate) fn forget_before(&mut self, t_s: f64, short_s: f64) {
         if self.window.length_s() > short_s {
             self.window.forget_before(t_s);
@@ -123,30 +124,30 @@ impl Seen {
     }
 }
 
-/// Nothing seen yet by any channel, whatever the memory held.
+/// Resets all channels, whatever the memory contained.
 pub(crate) fn restart(channels: &[Channel], seen: &mut [Seen]) {
     for (channel, seen) in channels.iter().zip(seen) {
         seen.restart(channel.window_s);
     }
 }
 
-/// What is observed at one time.
+/// The values of one sample that channels observe.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Now<'a> {
     pub(crate) motors: &'a [Motor],
     pub(crate) together: Together,
-    /// The signals that samples carry; NaN is unknown.
+    /// The signals of the sample; NaN is unknown.
     pub(crate) named: &'a [f64],
 }
 
 impl Now<'_> {
-    /// A signal that samples carry; NaN is unknown.
+    /// The value of a signal of the sample; NaN is unknown.
     fn signal(&self, index: usize) -> f64 {
         self.named.get(index).copied().unwrap_or(f64::NAN)
     }
 }
 
-/// Notes the signals of inputs that a vehicle may lack, in the air and on the ground.
+/// Records which signals of inputs with a value for missing signals are known, in the air and on the ground.
 pub(crate) fn note((channels, inputs): (&[Channel], &[Input]), seen: &mut [Seen], named: &[f64]) {
     for input in inputs.iter().filter(|input| input.if_missing.is_some()) {
         let place = input.channel;
@@ -157,7 +158,7 @@ pub(crate) fn note((channels, inputs): (&[Channel], &[Input]), seen: &mut [Seen]
     }
 }
 
-/// The value of an input whose signals have not come, where it has one.
+/// The value to assume for an input, if it has one and its signals have not been known yet.
 pub(crate) fn assumed(inputs: &[Input], seen: &[Seen], input: usize) -> Option<f64> {
     let Input {
         channel,
@@ -167,7 +168,7 @@ pub(crate) fn assumed(inputs: &[Input], seen: &[Seen], input: usize) -> Option<f
     if_missing.filter(|_| seen.get(channel).is_some_and(|seen| !seen.has_come))
 }
 
-/// Adds a sample, of a time and the seconds before it that it stands for, to all channels.
+/// Adds a sample at `t_s`, which applies to the `held_s` seconds before, to all channels.
 pub(crate) fn push(
     channels: &[Channel],
     seen: &mut [Seen],
@@ -177,14 +178,14 @@ pub(crate) fn push(
     let bin = observed.together.bin;
     let mut before: Option<(&Channel, Moments)> = None;
     for (channel, seen) in channels.iter().zip(seen) {
-        // Neighbours often differ in their windows alone.
+        // Successive channels often differ only in their windows.
         let now = match before {
             Some((same, now)) if same.sees_as(channel) => now,
             _ => channel.reduce(observed),
         };
         before = Some((channel, now));
         seen.last = now.mean();
-        // A noise is known once in a bin, and stands for all of it.
+        // The noise is known once per bin and applies to the whole bin.
         let held_s = match channel.observed {
             Observed::CommandNoise => held_s.max(BIN_S),
             _ => held_s,
@@ -194,7 +195,7 @@ pub(crate) fn push(
         } else if channel.in_bins {
             seen.push_into_bin(bin, (t_s, held_s), now.mean());
         } else if now.weight() > 0.0 {
-            // A sample weighs its time, however many motors it knows.
+            // A sample has the weight of its time, whatever the number of known motors.
             let moments = now.scaled(held_s / now.weight());
             seen.window.push(t_s, held_s, &moments);
         } else {
@@ -203,7 +204,7 @@ pub(crate) fn push(
     }
 }
 
-/// The statistic of an input, and how much of its window is behind it; `None` where nothing is known.
+/// The statistic of an input, and how much of its window is covered; `None` if nothing is known.
 pub(crate) fn value(
     (channels, inputs): (&[Channel], &[Input]),
     seen: &[Seen],
@@ -255,7 +256,7 @@ pub(crate) fn value(
     })
 }
 
-/// The value of an input, and what is behind it.
+/// The value of an input, and the number and duration of the samples that it was computed from.
 ///
 /// # Example: a second of a window of five
 /// ```
@@ -274,22 +275,22 @@ pub(crate) fn value(
 pub struct Observation {
     /// The value.
     pub value: f64,
-    /// The samples in the window; `None` for a statistic that needs but one.
+    /// The number of samples in the window; `None` for a statistic that needs only one.
     pub samples: Option<u32>,
-    /// How much time of the window they cover, in seconds.
+    /// The time of the window that the samples cover, in seconds.
     pub covered_s: f64,
     /// The length of the window in seconds.
     pub window_s: f64,
 }
 
 impl Channel {
-    /// Whether another channel makes the same of a sample, over whatever window.
+    /// Whether another channel computes the same value from a sample; the windows may differ.
     fn sees_as(&self, other: &Channel) -> bool {
         let window_s = self.window_s;
         *self == Channel { window_s, ..*other }
     }
 
-    /// The values of one sample, each motor known with weight 1.
+    /// The values of one sample, where each known motor has weight 1.
     fn reduce(&self, now: &Now<'_>) -> Moments {
         let commands = now.motors.iter().map(|motor| motor.command);
         match self.observed {
@@ -307,7 +308,7 @@ impl Channel {
                 unknown_below,
             } => {
                 let (of, by) = (now.signal(a), now.signal(b));
-                // What is divided by 0 is not finite, which is unknown.
+                // A division by 0 is not finite, which is unknown.
                 self.threshold(match by.abs() < unknown_below {
                     true => f64::NAN,
                     false => of / by,
@@ -346,7 +347,7 @@ impl Channel {
         self.threshold(one.unwrap_or(f64::NAN))
     }
 
-    /// One value, NaN where it is unknown.
+    /// One value; NaN if it is unknown.
     fn threshold(&self, value: f64) -> Moments {
         if value.is_finite() {
             Moments::of(self.counted(value), 1.0)
@@ -355,7 +356,7 @@ impl Channel {
         }
     }
 
-    /// The value itself, or for a share whether it is beyond the threshold.
+    /// The value itself; for a share of time, 1 if it is beyond the threshold and 0 otherwise.
     fn counted(&self, value: f64) -> f64 {
         match self.threshold {
             None => value,

@@ -1,4 +1,4 @@
-//! What each input of a profile reaches alone: the highest risk at its worst value, while all other inputs are calm.
+//! The highest risk that each input of a profile can reach alone, at its worst value while all other inputs are calm.
 
 use alloc::{
     format,
@@ -18,9 +18,9 @@ use crate::{
     verdict::{Level, Threshold},
 };
 
-/// The work of a search, in rules and terms evaluated: some tens of milliseconds.
+/// The budget of a search, in evaluated rules and terms: some tens of milliseconds.
 const MOST_STEPS: usize = 3_000_000;
-/// Even steps of an input's range, beside the places of its terms.
+/// The number of even steps across an input's range that are tried, in addition to the points of its terms.
 const STEPS: u32 = 32;
 
 /// The highest risk that an input reaches alone.
@@ -33,9 +33,9 @@ pub struct Alone {
     pub input: String,
     /// The value at which the risk is highest.
     pub value: f64,
-    /// The term that this value belongs to most; `None` where it belongs to none.
+    /// The term to which this value belongs most; `None` if it belongs to none.
     pub term: Option<String>,
-    /// The output that is the risk: of several, the one that raises the highest level.
+    /// The output that is the risk; of several, the one that raises the highest level.
     pub risk_output: String,
     /// That risk in %.
     pub risk_pct: f64,
@@ -45,8 +45,9 @@ pub struct Alone {
 
 /// The highest risk that each input reaches alone, in the order of the profile.
 ///
-/// All inputs are calm where the risk is lowest. From there one input after the other takes the value with the highest risk, and
-/// the others those that lower this risk most. Inputs of which no value gives a risk are left out.
+/// The search starts where the risk is lowest, with all inputs calm. From there each input in turn takes the value with
+/// the highest risk, while the others take the values that lower this risk most. Inputs without any value that gives a
+/// risk are left out.
 ///
 /// # Example
 /// ```
@@ -75,10 +76,10 @@ pub fn alone(estimator: &Estimator) -> Vec<Alone> {
     worst.into_iter().flatten().collect()
 }
 
-/// A warning for each input of a signal beside the motors that raises no level alone.
+/// Warns about each input that does not come from the motors and cannot raise a level alone.
 ///
-/// The inputs from motor commands are symptoms of one cause and rise together, so that each of them may be one vote of many.
-/// Of what another signal measures, the motors need not show anything.
+/// The inputs from motor commands are symptoms of one cause and rise together, so each of them may be one vote among
+/// many. A problem that another signal measures may not show in the motors at all.
 pub(super) fn outvoted(estimator: &Estimator, at: &Places) -> Vec<Diagnostic> {
     let profile = estimator.profile();
     let alone = alone(estimator);
@@ -134,7 +135,7 @@ fn shown_value(x: f64) -> String {
     format!("{digits}")
 }
 
-/// Of one risk: for each input of the profile the highest.
+/// The highest risk of each input of the profile, for one risk output.
 fn of_risk(estimator: &Estimator) -> Vec<Option<Alone>> {
     let profile = estimator.profile();
     let model = estimator.model();
@@ -196,7 +197,7 @@ fn of_risk(estimator: &Estimator) -> Vec<Option<Alone>> {
 struct Search<'e> {
     estimator: &'e Estimator,
     memory: Memory,
-    /// How many evaluations are left.
+    /// The number of evaluations that are left.
     left: usize,
 }
 
@@ -217,7 +218,8 @@ impl<'e> Search<'e> {
         Some(estimate.risk_pct)
     }
 
-    /// The lowest risk that is found by improving one input at a time, but for a fixed one, and where.
+    /// The lowest risk that is found by improving one input at a time while `fixed` does not change, and the values of
+    /// the inputs there.
     fn lowest(
         &mut self,
         start: Vec<f64>,
@@ -252,9 +254,9 @@ impl<'e> Search<'e> {
     }
 }
 
-/// The values of an input that are tried: even steps of its range, and the places of its terms in it.
+/// The values of an input to try: even steps of its range, and the points of its terms within it.
 fn values(variable: &Variable) -> Vec<f64> {
-    /// More places are thinned.
+    /// More points than this are thinned.
     const MOST: usize = 200;
     let (low, high) = (variable.low, variable.high);
     let even = (0..=STEPS).map(|i| {
@@ -291,7 +293,7 @@ fn term(variable: &Variable, value: f64) -> Option<String> {
     highest.map(|(_, name)| name.clone())
 }
 
-/// The level that a constant risk reaches: by itself, or because the elevated risk rises.
+/// The level that a constant risk reaches, directly or through the elevated risk.
 fn level(profile: &Profile, risk_pct: f64) -> Level {
     let elevated = &profile.elevated_risk;
     let rises = elevated.rise_pct_per_s > 0.0 && risk_pct >= elevated.high_pct;

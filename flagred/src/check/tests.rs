@@ -41,7 +41,8 @@ fn fit(text: &str, rules: &str) -> (Findings, Option<Estimator>) {
     )
 }
 
-/// What is found after a part of the profile, or of the rule set, is replaced: the text it is about, and the finding.
+/// What is found after a part of the profile or of the rule set is replaced: the text that each finding is about, and
+/// the finding.
 fn found(replaced: &str, by: &str) -> Vec<String> {
     let (text, model) = (PROFILE.replace(replaced, by), RULES.replace(replaced, by));
     assert_ne!((PROFILE, RULES), (text.as_str(), model.as_str()));
@@ -163,7 +164,7 @@ fn the_levels_of_another_risk_are_checked_at_their_place() {
     assert_eq!(estimator.unwrap().others().len(), 1);
 }
 
-/// The battery is one more vote of the default rules, or a risk of its own.
+/// The battery is one more vote in the default rules, or a risk of its own.
 #[test]
 fn an_input_beside_the_motors_that_raises_no_level_alone_is_outvoted() {
     let rules = crate::shipped::RULE_SETS[0].text;
@@ -201,7 +202,7 @@ fn an_input_beside_the_motors_that_raises_no_level_alone_is_outvoted() {
         (reached.level, told),
         (Level::Good, Vec::from(["battery".to_string()]))
     );
-    // An input from the motors may be one vote of many.
+    // An input from the motors may be one vote among many.
     assert_eq!(found(vote, "{mean: motor_command}").1, [] as [&str; 0]);
 
     let shipped = crate::shipped::flagred_battery();

@@ -1,21 +1,21 @@
-//! What is said of a flight, as data.
+//! The assessment of a flight, as data.
 
 use alloc::{string::String, vec::Vec};
 
 use super::{Finding, Reason, Verdict};
 use crate::{monitor::Estimate, profile::Profile};
 
-/// What is said about a flight.
+/// The assessment of a flight.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Assessment {
     /// How risky the flight was.
     pub verdict: Verdict,
-    /// The gravest first, those of equal level in order of time; of many the gravest 1,000.
+    /// The findings, the gravest first, those of equal level in order of time; at most 1,000.
     pub findings: Vec<Finding>,
-    /// How many findings were left out.
+    /// The number of findings that were left out.
     pub findings_left_out: u64,
-    /// The flight in a few numbers.
+    /// Summary figures of the flight.
     pub summary: Summary,
     /// The names of the inputs of the rule set, in the order of [`Step::inputs`].
     pub inputs: Vec<String>,
@@ -23,21 +23,22 @@ pub struct Assessment {
     pub assumed_inputs: Vec<AssumedInput>,
     /// The risk over time.
     pub steps: Vec<Step>,
-    /// Seconds between the steps, where they are further apart than was asked for: 250,000 are kept at most.
+    /// The distance between the steps in seconds, if it is larger than requested because at most 250,000 steps are
+    /// kept.
     pub widened_step_s: Option<f64>,
 }
 
-/// An input with a value that nobody measured: [`ProfileInput::if_missing`](crate::profile::ProfileInput::if_missing).
+/// An input with an assumed value: [`ProfileInput::if_missing`](crate::profile::ProfileInput::if_missing).
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct AssumedInput {
-    /// Its name.
+    /// The name of the input.
     pub input: String,
-    /// Its value.
+    /// The assumed value.
     pub value: f64,
-    /// The signals that it is made of; at least one was missing.
+    /// The signals that the input is computed from; at least one was missing.
     pub signals: Vec<String>,
 }
 
@@ -57,15 +58,16 @@ impl AssumedInput {
     }
 }
 
-/// A flight in a few numbers. The risks are those of judged time ([`Update::judged`](crate::monitor::Update::judged)).
+/// Summary figures of a flight. The risks are those of judged time
+/// ([`Update::judged`](crate::monitor::Update::judged)).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Summary {
-    /// The time in the air: the sum of all flights of a log, in seconds.
+    /// The time in the air, summed over all flights of a log, in seconds.
     pub in_air_s: f64,
-    /// The time in the air with a known risk, of several with all of them known, in seconds.
+    /// The time in the air with a known risk (with several risks, with all of them known), in seconds.
     pub assessed_s: f64,
     /// The time in the air with a risk interpolated where no rule applies, in seconds.
     pub filled_s: f64,
@@ -84,7 +86,7 @@ pub struct Summary {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Peak {
-    /// When it was first reached, in seconds.
+    /// The time at which it was first reached, in seconds.
     pub t_s: f64,
     /// The value in %.
     pub value_pct: f64,
@@ -98,12 +100,12 @@ impl Peak {
     }
 }
 
-/// What was known at one time of a flight.
+/// The state at one time of a flight.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Step {
     /// The time in seconds.
     pub t_s: f64,
-    /// The risk and what it rests on; `None` where it is unknown.
+    /// The risk and how it was estimated; `None` if it is unknown.
     pub estimate: Option<Estimate>,
     /// The elevated risk in %.
     pub elevated_risk_pct: Option<f64>,
@@ -111,14 +113,14 @@ pub struct Step {
     pub margin: Option<f64>,
     /// The standard deviation of the commands over all motors and the profile's window.
     pub spread: Option<f64>,
-    /// Whether it counts for findings and summary.
+    /// Whether the step counts for findings and summary.
     pub judged: bool,
     /// The inputs of the rule set, in the order of the profile; NaN is unknown.
     pub inputs: Vec<f64>,
 }
 
 impl Assessment {
-    /// The assessment of a flight that cannot be assessed.
+    /// The assessment of a flight that cannot be assessed, with the reason.
     pub fn not_available(reason: impl Into<Reason>) -> Assessment {
         Assessment {
             verdict: Verdict::NotAvailable(reason.into()),

@@ -11,12 +11,12 @@ use crate::{estimator::Estimator, monitor::OfRisk, verdict};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Finding {
-    /// When, what and how grave. Its motor is known only where a motor is the cause.
+    /// The time, measure and level of the finding. Its motor is known only if a motor is the cause.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub found: verdict::Finding,
-    /// What raised the risk; `None` where no rule did, as for a notice or an interpolated risk.
+    /// The cause of the risk; `None` if no rule raised it, as for a notice or an interpolated risk.
     pub cause: Option<Cause>,
-    /// The output that is the risk, where it is one of [`Profile::other_risks`](crate::profile::Profile::other_risks).
+    /// The output that is the risk, if it is one of [`Profile::other_risks`](crate::profile::Profile::other_risks).
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub risk_output: Option<String>,
@@ -31,7 +31,7 @@ impl Deref for Finding {
 }
 
 impl Finding {
-    /// A finding with the names of its cause.
+    /// Adds the names of the cause to a finding.
     pub(super) fn new(found: verdict::Finding, estimator: &Estimator) -> Finding {
         let cause = found.cause.and_then(|cause| {
             let (input, term) = estimator.propositions().nth(cause.proposition)?;
@@ -59,19 +59,20 @@ impl Finding {
     }
 }
 
-/// What raised the risk when a level was reached: [`verdict::Cause`] by name.
+/// The cause of the risk when a level was reached: [`verdict::Cause`] by name.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Cause {
-    /// The input of the rule that distinguishes it: of the propositions of its antecedent, that of the fewest rules.
+    /// The input that distinguishes the rule: the input of the proposition in its antecedent that the fewest rules
+    /// share.
     pub input: String,
     /// The value of that input.
     pub value: f64,
     /// The term, with its hedges.
     pub term: String,
-    /// The rule as its index in the model; serialised, as its number from 1.
+    /// The index of the rule in the model; serialised as its number, from 1.
     #[cfg_attr(feature = "serde", serde(serialize_with = "crate::verdict::from_one"))]
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub rule: usize,
@@ -150,7 +151,7 @@ inputs:
         }
     }
 
-    /// The risk is about a strain, and the strain about the inputs. What votes for little strain is stronger.
+    /// The risk depends on a strain, and the strain on the inputs. The votes for little strain are stronger.
     #[test]
     fn the_cause_is_found_through_a_chain() {
         let rules = "
@@ -191,7 +192,7 @@ rules:
         assert!(all.contains(&"strain somewhat high".into()), "{all:?}");
     }
 
-    /// A hedge, and an alternative that does not hold.
+    /// A hedge, and an alternative that is not true.
     #[test]
     fn a_term_is_told_with_its_hedges_and_only_where_it_holds() {
         let rules = RULES.replace(

@@ -1,39 +1,40 @@
-//! Losses of a flight in the air: motors without a command, and samples without a valid time.
+//! Losses of data in the air: motors without a command, and samples without a valid time.
 
 use super::Reason;
 use crate::monitor::Unknown;
 
-/// The largest share that may be lost for a verdict of GOOD: of the time in the air without the command of a motor, and of the samples
-/// that were ignored because of their times. A larger loss can hide a FAIL, however often the motor is known in between.
+/// The largest share that may be lost for a verdict of GOOD, both of the time in the air without the command of a motor
+/// and of the samples that were ignored because of their times. A larger loss can hide a FAIL, however often the motor
+/// is known in between.
 const LARGEST_SHARE: f64 = 1.0 / 16.0;
 
-/// What was lost of a flight in the air so far.
+/// The data that was lost in the air so far.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Losses {
-    /// The latest loss of motors, unless known time has made up for it.
+    /// The latest loss of motors, unless known time has compensated for it.
     latest: Option<MotorLoss>,
     longest: Option<MotorLoss>,
-    /// All losses of motors as one.
+    /// All losses of motors, merged into one.
     all: Option<MotorLoss>,
-    /// When the clock went back.
+    /// The time at which the clock went back, in seconds.
     set_back_s: Option<f64>,
     taken: u64,
     ignored: u64,
 }
 
-/// A time in which the command of a motor was unknown, once or several times.
+/// A time during which the command of a motor was unknown, once or several times.
 #[derive(Debug, Clone, Copy)]
 struct MotorLoss {
-    /// The first such motor, counted from 0.
+    /// The index of the first such motor.
     motor: usize,
-    /// Whether other motors were unknown, too.
+    /// Whether other motors were unknown too.
     others: bool,
-    /// Its command, if that is known and far outside [0, 1].
+    /// The command of that motor, if it is known and far outside [0, 1].
     command: Option<f64>,
     from_s: f64,
     to_s: f64,
     unknown_s: f64,
-    /// How much longer the command was unknown than known in between.
+    /// The time for which the command was unknown minus the time for which it was known in between, in seconds.
     lost_s: f64,
 }
 
@@ -43,14 +44,14 @@ impl Losses {
         self.ignored += 1;
     }
 
-    /// Notes that the clock goes back after a sample at this time.
+    /// Records that the clock goes back after a sample at `at_s`.
     pub(super) fn set_clock_back(&mut self, at_s: f64) {
         self.set_back_s.get_or_insert(at_s);
     }
 
-    /// Takes a sample that stands for `held_s` seconds up to `t_s`, with the reasons why risks are unknown there.
+    /// Adds a sample that applies to the `held_s` seconds before `t_s`, with the reasons why risks are unknown there.
     ///
-    /// Known time is taken off the latest loss, so that a few damaged samples never add up to a long one.
+    /// Known time is subtracted from the latest loss, so that a few damaged samples never add up to a long loss.
     pub(super) fn take_sample(
         &mut self,
         mut unknown: impl Iterator<Item = Unknown>,
@@ -80,7 +81,7 @@ impl Losses {
         }
     }
 
-    /// Why a flight of this length without findings is not GOOD.
+    /// The reason why a flight of this length without findings is not GOOD.
     pub(super) fn reason(&self, in_air_s: f64, longest_gap_s: f64) -> Option<Reason> {
         if let Some(at_s) = self.set_back_s {
             return Some(Reason::SetBackInAir { at_s });
@@ -99,7 +100,7 @@ impl Losses {
 }
 
 impl MotorLoss {
-    /// Adds `held_s` seconds without the command of a motor up to `t_s`, and returns the loss with it included.
+    /// Adds `held_s` seconds without the command of a motor before `t_s`, and returns the updated loss.
     fn add(
         loss: &mut Option<MotorLoss>,
         (motor, command): (usize, Option<f64>),

@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 use super::{Assessment, AssumedInput, Finding, Reason, Step, Summary, Verdict};
 use crate::{sample::RiskFields, verdict::Level};
 
-/// A verdict in one word.
+/// A verdict as one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "UPPERCASE")]
@@ -22,7 +22,7 @@ pub enum VerdictWord {
     Na,
 }
 
-/// A level; `None` where it is unknown.
+/// Converts a level; `None` is unknown.
 impl From<Option<Level>> for VerdictWord {
     fn from(level: Option<Level>) -> VerdictWord {
         match level {
@@ -53,7 +53,7 @@ pub(super) struct VerdictFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     reason: Option<String>,
-    /// Only with `NA`: what the pilot can do to get a verdict next time.
+    /// Only with `NA`: how the pilot can get a verdict next time.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     help: Option<Option<&'static str>>,
@@ -108,7 +108,7 @@ impl Assessment {
 }
 
 impl Step {
-    /// The step as serde data, with the inputs by their names: those of [`Assessment::inputs`].
+    /// The step as serde data, with the inputs by their names from [`Assessment::inputs`].
     pub fn by_name<'a>(&'a self, names: &'a [String]) -> NamedStep<'a> {
         NamedStep {
             t_s: self.t_s,
@@ -140,7 +140,7 @@ impl Serialize for Steps<'_> {
     }
 }
 
-/// What was known at one time of a flight, as serde data; from [`Step::by_name`].
+/// The state at one time of a flight as serde data; from [`Step::by_name`].
 #[derive(Debug, Clone, Copy, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "Step"))]

@@ -4,7 +4,7 @@ use crate::{shipped, verdict::Measure};
 mod loss;
 mod words;
 
-/// Flies at 50 Hz: for each phase its seconds, whether in the air, and the motors.
+/// Flies at 50 Hz. Each phase has its seconds, whether it is in the air, and the motors.
 fn fly(phases: &[(f64, bool, [f64; 4])]) -> Assessment {
     let estimator = shipped::flagred_paper();
     let mut assessor = Assessor::new(&estimator, Craft::new(4), Some(0.1)).unwrap();
@@ -116,7 +116,7 @@ fn a_second_flight_begins_anew() {
     assert_eq!(fly(30.0, HOVER).verdict, Verdict::Known(Level::Good));
 }
 
-/// The paper's inputs, with the rules' part about the spread fed by something that is no motor at its limit.
+/// The paper's inputs, with the rules about the spread fed by a signal that is not a motor at its limit.
 #[test]
 fn a_motor_is_named_only_where_motors_near_a_limit_are_the_cause() {
     let paper = shipped::flagred_paper();
@@ -162,8 +162,8 @@ const OCTAQUAD: [crate::monitor::Factors; 8] = [
     [1.0, -1.0, -1.0],
 ];
 
-/// Flies an octaquad for two minutes, one motor of which is dead from a time on: motor 2 stands at 0.86, the one opposite at
-/// 0.39. The same on board. Gives the assessment, and the levels at which it stood from 30 s after the fault on.
+/// Flies an octaquad for two minutes with one motor dead after `from_s`: motor 2 is at 0.86, the opposite one at 0.39.
+/// The same flight runs on board. Returns the assessment, and the levels from 30 s after the fault on.
 fn with_a_dead_motor(from_s: f64) -> (super::Assessment, Vec<Level>) {
     let estimator = shipped::flagred();
     let craft = Craft::new(8).with_geometry(&OCTAQUAD);
@@ -217,7 +217,7 @@ fn a_lasting_fault_stays_a_finding_until_landing() {
         assert!(found.to_s > 119.0, "{found:?}");
         assert_eq!(found.severity, Level::Warn);
     }
-    // As it was before: nothing is at odds.
+    // As before: nothing differs.
     let (flown, levels) = with_a_dead_motor(1e9);
     assert_eq!((flown.findings, levels), (vec![], vec![]));
 }
@@ -279,7 +279,7 @@ fn an_assessment_is_serde_data() {
     assert!(unknown["reason"].is_string() && unknown["help"].is_string());
 }
 
-/// The margin makes one risk, the spread another one.
+/// The margin makes one risk, the spread another.
 const TWO_RISKS: &str = "
 fuzzy: 1
 name: two
@@ -380,7 +380,7 @@ fn several_risks_have_the_findings_of_profiles_of_each() {
     );
 }
 
-/// Where a risk has no rule, a flight without findings is not GOOD for the other one.
+/// If a risk has no rule, a flight without findings is not GOOD because of the other risk.
 #[test]
 fn a_flight_is_good_where_every_risk_is_known() {
     let rules = TWO_RISKS.replace("  - IF spread IS low THEN torn IS no\n", "");

@@ -1,4 +1,4 @@
-//! The verdict of a flight, or why there is none.
+//! The verdict of a flight, or the reason why there is none.
 
 use alloc::{format, string::String};
 use core::fmt;
@@ -13,15 +13,15 @@ use crate::{
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(with = "super::serialize::VerdictFields"))]
 pub enum Verdict {
-    /// The level of its gravest finding; GOOD without any.
+    /// The level of the gravest finding; GOOD without findings.
     Known(Level),
-    /// There is no answer (NA), and why.
+    /// There is no answer (NA), for this reason.
     NotAvailable(Reason),
 }
 
 impl Verdict {
-    /// The verdict of two flights: the graver one. A flight that was lost in the air is graver than GOOD; one without
-    /// a verdict for another reason counts only where nothing else is known.
+    /// The graver of the verdicts of two flights. A flight that was lost in the air is graver than GOOD; a flight
+    /// without a verdict for another reason counts only if neither flight has a verdict.
     ///
     /// ```
     /// use flagred::{flight::{Reason, Verdict}, verdict::Level};
@@ -38,7 +38,7 @@ impl Verdict {
         }
     }
 
-    /// The same for a flight whose end nobody saw: what was seen of it is not GOOD for that.
+    /// The verdict of a flight whose end was not observed: a GOOD start does not make the whole flight GOOD.
     pub fn lost_in_air(self) -> Verdict {
         match self {
             Verdict::Known(level) if level > Level::Info => self,
@@ -68,7 +68,7 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Why a flight has no verdict.
+/// The reason why a flight has no verdict.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Reason {
@@ -82,11 +82,11 @@ pub enum Reason {
     /// The risk was unknown for most of the time in the air.
     #[error("{explanation}")]
     RiskUnknown {
-        /// What made it unknown for longest.
+        /// The reason that made it unknown for longest.
         unknown: Unknown,
-        /// The same in words.
+        /// The same reason in words.
         explanation: String,
-        /// What helps, where something does.
+        /// Advice, if there is any.
         help: Option<&'static str>,
     },
     /// The command of a motor was unknown in the air for longer than the profile's `longest_gap_s`, or for more than a sixteenth
@@ -95,59 +95,60 @@ pub enum Reason {
     MotorUnknown {
         /// The number of the motor, the first of several.
         motor: usize,
-        /// Whether others were unknown, too.
+        /// Whether other motors were unknown too.
         others: bool,
-        /// Its first such command, where it is known and far outside 0 to 1.
+        /// The first such command, if it is known and far outside 0 to 1.
         command: Option<f64>,
-        /// Since when, in seconds.
+        /// The start, in seconds.
         from_s: f64,
-        /// Until when, in seconds.
+        /// The end, in seconds.
         to_s: f64,
-        /// For how long in that time, in seconds.
+        /// For how long the command was unknown in that time, in seconds.
         unknown_s: f64,
     },
-    /// No moment of the flight is judged: it ended within the first seconds after take-off, which are not.
+    /// No moment of the flight is judged, because it ended within the first seconds after take-off.
     #[error(
         "{in_air_s:.1} s are too short: nothing is judged in the first {quiet_s} s and just before the end"
     )]
     TooShort {
         /// The time in the air, in seconds.
         in_air_s: f64,
-        /// For how long after take-off nothing is judged, in seconds.
+        /// The time after take-off in which nothing is judged, in seconds.
         quiet_s: f64,
     },
-    /// There was hardly a sample in the air.
+    /// There were too few samples in the air.
     #[error("there is hardly any sample of the flight")]
     NoSamples,
-    /// The samples of a flight without motors are farther apart than the profile's `longest_gap_s`, so that each is alone.
+    /// The samples of a flight without motors are further apart than the profile's `longest_gap_s`, so that each
+    /// follows a gap.
     #[error(
         "the samples are {step_s} s apart, and the profile takes more than {longest_gap_s} s for a gap"
     )]
     SamplesFarApart {
-        /// How far apart most of them are, in seconds.
+        /// The distance between most of them, in seconds.
         step_s: f64,
-        /// The longest time without a gap, in seconds.
+        /// The profile's `longest_gap_s`, in seconds.
         longest_gap_s: f64,
     },
-    /// The vehicle was in the air when it was last heard, or rebooted there.
+    /// The vehicle was in the air when its last message arrived, or it rebooted there.
     #[error("the vehicle was lost in the air")]
     LostInAir,
     /// The clock goes back in the air: the autopilot started again there, or its clock was set back.
     #[error("the clock goes back in the air at {at_s:.1} s")]
     SetBackInAir {
-        /// When, in seconds.
+        /// The time at which it went back, in seconds.
         at_s: f64,
     },
-    /// Samples in the air had times that are not after the ones before.
+    /// Samples in the air had times that are not after the time of the sample before.
     #[error("{ignored} samples in the air were ignored: their times are unknown or go back")]
     SamplesIgnored {
-        /// How many.
+        /// The number of ignored samples.
         ignored: u64,
     },
-    /// No flight was watched.
+    /// No flight was observed.
     #[error("no flight was seen")]
     NoFlight,
-    /// The vehicle was heard, and never sent commands of its motors.
+    /// The vehicle sent messages, but never the commands of its motors.
     #[error("the vehicle sent no motor outputs (SERVO_OUTPUT_RAW)")]
     NoMotorOutputs,
 }
@@ -174,7 +175,7 @@ fn motor_unknown(
 }
 
 impl Reason {
-    /// What the pilot can do to get a verdict of the next flight.
+    /// Advice for the pilot: how to get a verdict of the next flight.
     pub fn help(&self) -> Option<&'static str> {
         match self {
             #[cfg(feature = "flightlog")]

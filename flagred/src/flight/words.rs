@@ -1,8 +1,8 @@
-//! What a pilot reads of a finding: what happened, what it means and what to do.
+//! The words of a finding for the pilot: what happened, what it means and what to do.
 //!
-//! The words about a risk are those that the profile has for the input that raised it ([`Profile::findings`]); an input
-//! without an entry is described by its name, term and description. The words of all other findings are here. docs/findings.md
-//! lists them.
+//! A finding about a risk has the words of the profile for the input that raised it ([`Profile::findings`]); an input
+//! without an entry is described by its name, term and description. The words of all other findings are in this file.
+//! docs/findings.md lists them.
 //!
 //! [`Profile::findings`]: crate::profile::Profile::findings
 
@@ -21,12 +21,13 @@ use crate::{
     verdict::{Measure, MotorFinding},
 };
 
-/// What a pilot reads of a finding.
+/// The words of a finding for the pilot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Words {
-    /// A word for programs: small letters, digits and `_`.
+    /// A stable word for programs: small letters, digits and `_`.
     pub code: String,
-    /// A few words for texts of 50 characters. Where there is no room for the second part, the first one is true alone.
+    /// A few words, for messages limited to 50 characters. The first part is true without the second, which can be left
+    /// out.
     pub brief: [String; 2],
     /// What happened, and what it means.
     pub text: String,
@@ -35,7 +36,7 @@ pub struct Words {
 }
 
 impl Finding {
-    /// What a pilot reads of the finding, with its numbers. The motor is called by its index + 1.
+    /// The words of the finding for the pilot, with its numbers filled in. Motors are numbered by their index + 1.
     ///
     /// # Example
     /// ```
@@ -81,7 +82,7 @@ impl Finding {
         }
     }
 
-    /// Whether it is about the risk, and not a finding beside it.
+    /// Whether the finding is about the risk.
     pub fn is_of_risk(&self) -> bool {
         matches!(self.measure, Measure::Risk | Measure::ElevatedRisk)
     }
@@ -95,7 +96,7 @@ impl Finding {
         format!(" The {}{of} reached {:.0} %.", self.measure, self.value_pct)
     }
 
-    /// A text with the finding's numbers in place of what stands in braces.
+    /// A text with its placeholders in braces replaced by the numbers of the finding.
     fn filled(&self, text: &str) -> String {
         let mut text = text.to_string();
         let mut fill = |name: &str, value: &dyn Fn() -> String| {
@@ -122,7 +123,7 @@ impl Finding {
 }
 
 impl Words {
-    /// The words about an input in a term, before `{value}` and `{percent}` are filled in.
+    /// The words about an input in a term, with the placeholders `{value}` and `{percent}`.
     pub fn of_cause(estimator: &Estimator, input: &str, term: &str) -> Words {
         let mut known = estimator.profile().findings.iter();
         if let Some(words) = known.find(|words| words.input == input) {
@@ -147,8 +148,8 @@ impl Words {
         }
     }
 
-    /// The words of a finding beside the risk, and of a risk that no rule raised, before numbers are filled in: `{peak}`,
-    /// `{threshold}`, `{motor}` and `{side}`.
+    /// The words of a finding that is not about the risk, or of a risk that no rule raised, with the placeholders
+    /// `{peak}`, `{threshold}`, `{motor}` and `{side}`.
     pub fn of_measure(profile: &Profile, measure: Measure) -> Words {
         let (code, brief, text, advice) = match measure {
             Measure::Risk | Measure::ElevatedRisk => (
@@ -214,7 +215,7 @@ impl Words {
     }
 }
 
-/// What helps against a risk whose input has no words of its own.
+/// The advice for a risk whose input has no words of its own.
 fn advice(profile: &Profile) -> &'static str {
     match profile.reads_motors() {
         true => "Reduce speed or land until the risk falls.",
@@ -222,7 +223,7 @@ fn advice(profile: &Profile) -> &'static str {
     }
 }
 
-/// `motor 3`, or `motor 3 or 8` where the commands do not show which.
+/// `motor 3`, or `motor 3 or 8` if the commands do not show which one.
 fn name_of(motor: &MotorFinding) -> String {
     let or = motor.or_number.map(|number| format!(" or {number}"));
     format!("motor {}{}", motor.number, or.unwrap_or_default())
@@ -235,12 +236,12 @@ fn side(side: Side, low: &'static str, high: &'static str) -> &'static str {
     }
 }
 
-/// A number with at most 3 decimals.
+/// A number rounded to 3 decimals.
 fn number(value: f64) -> String {
     format!("{}", libm::round(value * 1e3) / 1e3 + 0.0)
 }
 
-/// A name as a code.
+/// Converts a name to a code of small letters, digits and `_`.
 fn code(name: &str) -> String {
     let letter = |c: char| match c.to_ascii_lowercase() {
         c if c.is_ascii_alphanumeric() => c,
@@ -249,7 +250,7 @@ fn code(name: &str) -> String {
     name.chars().map(letter).collect()
 }
 
-/// The description of an input up to its first comma, in small letters as inside a sentence.
+/// The description of an input up to its first comma, beginning with a small letter as inside a sentence.
 fn first_phrase(input: &Variable) -> Option<String> {
     let description = input.description.as_deref()?;
     let phrase = description.split([',', '.', ';']).next()?;

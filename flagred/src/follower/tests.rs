@@ -69,7 +69,7 @@ fn last(updates: &[Update]) -> Update {
     *updates.last().unwrap()
 }
 
-/// A flight that became FAIL.
+/// A flight that reached FAIL.
 fn failed() -> Flown {
     let mut flown = Flown::new(&shipped::flagred_paper());
     flown.fly(10.0, true, HOVER);
@@ -87,7 +87,7 @@ fn a_land_detector_that_flickers_for_less_than_a_second_ends_nothing() {
     assert_eq!(last(&flicker).level, Some(Level::Fail));
     let again = flown.fly(0.1, true, LIMIT);
     assert_eq!(ended(&again), []);
-    // No window begins anew.
+    // No window starts again.
     assert!(again[0].risk.is_ok());
     assert_eq!(last(&again).level, Some(Level::Fail));
 
@@ -105,7 +105,7 @@ fn idling_on_the_ground_raises_nothing() {
     let idle = flown.fly(30.0, true, IDLE);
     assert!(idle.iter().all(|u| u.risk == Err(Unknown::OnGround)));
     assert!(idle.iter().all(|u| u.level.is_none()));
-    // The first seconds in the air count from where the motors leave idle.
+    // The first seconds in the air count from the time at which the motors leave idle.
     let off = flown.fly(4.0, true, HOVER);
     assert!(off.iter().all(|update| !update.judged));
     assert_eq!(flown.monitor.finish(), [None; 4]);
@@ -130,7 +130,7 @@ fn motors_at_idle_after_a_high_risk_are_no_landing() {
     assert_eq!(last(&falling).level, Some(Level::Fail));
 }
 
-/// A fall at a command that no rule calls a limit.
+/// A fall at a command that no rule treats as a limit.
 #[test]
 fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
     for estimator in [shipped::flagred(), shipped::flagred_paper()] {
@@ -150,7 +150,7 @@ fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
             (Level::Fail, Measure::IdleInAir, 100.0)
         );
         assert_eq!((finding.cause, finding.motor), (None, None));
-        // On the ground, a fall is over.
+        // On the ground the fall has ended.
         let idle = flown.fly(10.0, true, IDLE);
         assert!(idle.iter().all(|update| update.level.is_none()));
     }
@@ -196,7 +196,7 @@ inputs:
         let mut flown = Flown::new(&Estimator::new(&profile, &rules).unwrap());
         flown.fly(5.0, false, IDLE);
         flown.fly(2.0, true, [0.9; 4]);
-        // Until the window covers `warm_up_s` of what follows, the take-off stays in it.
+        // Until the window covers `warm_up_s` of the time after take-off, it includes the take-off.
         flown.fly(1.9, true, HOVER);
         assert!(flown.monitor.inputs()[0] < 0.4);
         flown.fly(0.2, true, HOVER);
@@ -207,7 +207,7 @@ inputs:
     }
 }
 
-/// Only notices are told.
+/// A flight whose profile reports notices only.
 fn noticing(notices: NoticeSettings) -> Flown {
     let mut profile = shipped::flagred_paper().profile().clone();
     let never = LevelSettings {
@@ -252,12 +252,12 @@ fn little_reserve_is_told_while_it_lasts_and_ends_with_the_flight() {
     assert_eq!(last(&light).level, Some(Level::Warn));
     let landed = flown.fly(2.0, false, IDLE);
     assert_eq!(ended(&landed).len(), 1);
-    // On the ground there is no level, and none is GOOD because of that.
+    // On the ground there is no level; it does not change to GOOD.
     assert!(landed.iter().all(|update| update.change.is_none()));
     assert_eq!(last(&landed).level, None);
 }
 
-/// Few samples: the risk is unknown all the time.
+/// With few samples the risk is unknown all the time.
 #[test]
 fn little_reserve_is_told_where_the_risk_is_unknown() {
     let flown = noticing(NoticeSettings {

@@ -1,4 +1,4 @@
-//! Whether a rule set has no gap: rules that cover all values of the inputs need no filling.
+//! Determines whether a rule set has no gap: rules that cover all values of the inputs need no filling.
 
 use alloc::vec::Vec;
 
@@ -10,18 +10,18 @@ use fuzzy::{
 
 use super::is_gap;
 
-/// After looking at so many rules the proof is given up.
+/// The number of examined rules after which the proof is abandoned.
 const MOST_STEPS: usize = 5_000_000;
 
-/// The least degree of each term in each interval of an input.
+/// The minimum degree of each term in each interval of an input.
 type Least = Vec<Vec<f64>>;
 
-/// Whether it is certain that no values of the inputs have a coverage by the rules of an output that counts as a gap.
+/// Whether the rules of an output are proven to cover all values of the inputs, so that none counts as a gap.
 ///
-/// The range of each input is cut at the corners of its terms and half way between them. In between, degrees are linear, so
-/// the least is at an end. The least strength of a rule in a cell follows from the least degrees in the intervals. Rules with
-/// other words than AND and IS, and curved terms, count as 0. Nothing is certain of an output that reads other outputs, which
-/// may have no value, of rule blocks and of activation methods.
+/// The range of each input is divided at the corners of its terms and half way between them. Degrees are linear within
+/// an interval, so their minimum is at an end. The minimum strength of a rule in a cell follows from the minimum
+/// degrees in the intervals. Rules with operators other than AND and IS, and curved terms, count as 0. Nothing is
+/// proven for outputs that read other outputs (which may have no value), for rule blocks and for activation methods.
 pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) -> bool {
     if !model.reads(&output.variable.name).is_empty() || !is_plain(model) {
         return false;
@@ -42,7 +42,7 @@ pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) ->
             })
         })
         .collect();
-    // Inputs of many rules first: then few of the others matter.
+    // Inputs that many rules mention come first: then few of the others matter.
     let mentions = |input: usize| {
         let literals = rules.iter().flat_map(|rule| &rule.literals);
         literals.filter(|(i, _)| *i == input).count()
@@ -63,7 +63,7 @@ pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) ->
     search.is_covered()
 }
 
-/// Whether all rules share their operators and fire as they hold.
+/// Whether all rules share their operators and fire with the degree of their condition.
 pub(super) fn is_plain(model: &Model) -> bool {
     model.blocks.is_empty() && model.activation == Activation::General
 }
@@ -80,14 +80,14 @@ struct Search<'a> {
     rules: Vec<Antecedent>,
     and: Conjunction,
     coverage_below: f64,
-    /// The interval of each of the first inputs.
+    /// The index of the interval of each of the first inputs.
     cell: Vec<usize>,
     steps: usize,
 }
 
 impl Search<'_> {
-    /// Whether all cells with these intervals of the first inputs are covered. A rule that needs no further input covers them
-    /// all at once.
+    /// Whether all cells with these intervals of the first inputs are covered. A rule that reads no further input
+    /// covers all of them at once.
     fn is_covered(&mut self) -> bool {
         self.steps += self.rules.len();
         let known = self.cell.len();
@@ -163,7 +163,7 @@ fn least_degrees(input: &Variable) -> Least {
     cuts.windows(2).map(least).collect()
 }
 
-/// The input and term of each proposition, joined by AND; `None` where the condition is more than that.
+/// The input and term of each proposition, if the condition is propositions joined by AND; otherwise `None`.
 fn literals(model: &Model, condition: &Condition) -> Option<Vec<(usize, usize)>> {
     match condition {
         Condition::Is(Proposition {

@@ -1,14 +1,14 @@
-//! The knots of a rule set with their values, and which are neighbours.
+//! The knots of a rule set with their values and their neighbours.
 
 use alloc::vec::Vec;
 
 use super::knots::Knots;
 
-/// Knots with their values, as the methods see them.
+/// Knots with their values, in the form that the filling methods use.
 #[derive(Debug, Clone)]
 pub(super) struct Field<'a> {
     pub(super) knots: &'a Knots,
-    /// Of the places along each axis, in the methods' measure of distance.
+    /// The coordinates of the knots along each axis, scaled by the metric.
     pub(super) coordinates: Vec<Vec<f64>>,
     pub(super) covered: Vec<bool>,
     pub(super) values: Vec<f64>,
@@ -22,8 +22,8 @@ impl Field<'_> {
             .collect()
     }
 
-    /// The knots that are covered. Of equally near ones the first counts, so the highest come first: what is not known
-    /// is no reason for ease.
+    /// The covered knots, highest values first. Methods prefer the first of equally near knots, so in doubt they use
+    /// the higher risk.
     pub(super) fn known_highest_first(&self) -> Vec<usize> {
         let mut known: Vec<usize> = (0..self.covered.len())
             .filter(|k| self.covered[*k])
@@ -39,13 +39,13 @@ impl Field<'_> {
             .collect()
     }
 
-    /// The coordinates of knots, one after the other.
+    /// The coordinates of several knots, concatenated.
     pub(super) fn points(&self, knots: &[usize]) -> Vec<f64> {
         knots.iter().flat_map(|knot| self.point(*knot)).collect()
     }
 
-    /// The knots beside one, each with the area of the wall between the two over their distance. The cell around a knot
-    /// reaches half way to its neighbours.
+    /// The neighbours of a knot, each with the area of the wall between the two divided by their distance. The cell
+    /// around a knot reaches half way to its neighbours.
     pub(super) fn beside(&self, knot: usize) -> Vec<(usize, f64)> {
         let knots = self.knots;
         let width = |axis: usize| {
@@ -54,7 +54,7 @@ impl Field<'_> {
                 .checked_sub(1)
                 .map_or(0.0, |b| places[place] - places[b]);
             let behind = places.get(place + 1).map_or(0.0, |b| b - places[place]);
-            // An input with one place has no width to count.
+            // An input with only one knot has no width.
             if places.len() > 1 {
                 (before + behind) / 2.0
             } else {

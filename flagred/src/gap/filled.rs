@@ -1,30 +1,31 @@
 //! The grid of knots and values that fills gaps of the rules.
 
-/// Knots with their values. Between knots, values are interpolated linearly along each input.
+/// Knots with their values. Values between knots are interpolated linearly along each input.
 #[derive(Debug, Clone, Copy)]
 pub struct FilledKnots<'a> {
-    /// The coordinates of knots along each input, ascending: those of the first input, then of the second, and so on.
+    /// The coordinates of the knots along each input, ascending: all of the first input, then all of the second, and so
+    /// on.
     pub coordinates: &'a [f64],
-    /// The index in `coordinates` of each input's first, and the end of the last input's.
+    /// The index in `coordinates` of the first coordinate of each input, followed by the length of `coordinates`.
     pub starts: &'a [u32],
-    /// The value at each knot, the last input running fastest.
+    /// The value at each knot; the last input varies fastest.
     pub values: &'a [f64],
-    /// The distance of each knot from the nearest covered knot, in shares of the inputs' ranges.
+    /// The distance of each knot to the nearest covered knot, in shares of the inputs' ranges.
     pub distances: &'a [f64],
 }
 
-/// A value read where no rule applies.
+/// A value that is interpolated where no rule applies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
     /// The value.
     pub value: f64,
-    /// How far the nearest covered place is, in shares of the inputs' ranges, read between knots as the value is.
+    /// The distance to the nearest covered knot, in shares of the inputs' ranges, interpolated in the same way.
     pub distance: f64,
 }
 
 impl FilledKnots<'_> {
-    /// What is said at a place with a coordinate for each input; beyond the outermost knots, as there. `None` where the
-    /// point has another number of coordinates, or one is not a number.
+    /// Interpolates at a point with one coordinate for each input; beyond the outermost knots the value is constant.
+    /// `None` if the point has another number of coordinates, or if one is NaN.
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
         let axes = self.starts.len().checked_sub(1)?;
         let axis = |axis: usize| {
@@ -37,7 +38,7 @@ impl FilledKnots<'_> {
         })
     }
 
-    /// Whether there are places along each input, and a value and a distance for each knot.
+    /// Whether there are coordinates along each input, and a value and a distance for each knot.
     pub(crate) fn is_whole(&self, inputs: usize) -> bool {
         let lengths = self.starts.windows(2).map(|pair| match pair {
             [start, end] => end.saturating_sub(*start) as usize,
@@ -54,8 +55,8 @@ impl FilledKnots<'_> {
     }
 }
 
-/// Reads values at knots linearly along each axis between them; beyond the outermost, at these. `None` where the point has
-/// another number of coordinates, or one is not a number.
+/// Interpolates values at knots linearly along each axis; beyond the outermost knots the value is constant. `None` if
+/// the point has another number of coordinates, or if one is NaN.
 pub(super) fn read<'a>(
     axes: usize,
     axis: &impl Fn(usize) -> Option<&'a [f64]>,

@@ -1,4 +1,4 @@
-//! The filling of a rule set's gaps: what is said where no rule applies.
+//! The values that fill the gaps of a rule set, where no rule applies.
 
 use alloc::{vec, vec::Vec};
 
@@ -9,15 +9,16 @@ use super::{
     inverse_distance, is_gap, knots::Knots, metric, neighbours::Tree, thin_plate,
 };
 
-/// What is said where no rule applies.
+/// The values that fill the gaps of a rule set, where no rule applies.
 ///
-/// The rules are asked at the peaks of the terms and half way between them. Those of these knots that are a gap get their
-/// value from the covered ones by a [`GapMethod`], with distances counted in how much the output typically changes;
-/// between knots it is read linearly along each input, and beyond the outermost peaks, where no
-/// rule can tell one place from another, nothing changes.
+/// The rules are evaluated at knots: the peaks of the terms and the points half way between them. Knots that are a gap
+/// get their value from the covered knots by a [`GapMethod`]. Its distances are scaled by the typical change of the
+/// output. Between knots the value is interpolated linearly along each input. Beyond the outermost peaks, where the
+/// rules cannot distinguish points, it is constant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filling {
-    /// As [`FilledKnots`] has them; the values are empty where all is covered, nothing is, or there are too many inputs.
+    /// As in [`FilledKnots`]. The values are empty if everything is covered, if nothing is, or if there are too many
+    /// inputs.
     places: Vec<f64>,
     starts: Vec<u32>,
     values: Vec<f64>,
@@ -26,12 +27,12 @@ pub struct Filling {
 }
 
 impl Filling {
-    /// Asks the rules at the knots and fills those that are a gap. The engine is that of the model, and `output` one of
-    /// its outputs.
+    /// Evaluates the rules at the knots and fills the knots that are a gap. `engine` is the compiled `model`, and
+    /// `output` the index of an output.
     ///
     /// # Errors
     ///
-    /// There is no such output.
+    /// If there is no such output.
     pub fn new(
         engine: &Engine,
         model: &Model,
@@ -93,25 +94,24 @@ impl Filling {
         })
     }
 
-    /// Whether a place of this coverage is a gap.
+    /// Whether a point with this coverage is a gap.
     pub fn is_gap(&self, coverage: f64) -> bool {
         is_gap(coverage, self.coverage_below)
     }
 
-    /// What is said at a place in the gap, with a coordinate for each input; beyond the outermost peaks, as there.
-    /// `None` where the rules leave no gap or cover nothing to fill from, the output depends on more inputs than can be filled over (over
-    /// 15 of two terms each), the point has another number of coordinates, or one is not a
-    /// number.
+    /// The value at a point in a gap, with one coordinate for each input; beyond the outermost peaks it is constant.
+    /// `None` if the rules leave no gap or cover nothing, if the output depends on too many inputs (over 15 of two
+    /// terms each), if the point has another number of coordinates, or if one is NaN.
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
         self.lend()?.read(point)
     }
 
-    /// The coverage below which a place is a gap.
+    /// The coverage below which a point is a gap.
     pub(crate) fn coverage_below(&self) -> f64 {
         self.coverage_below
     }
 
-    /// What is read; `None` where there is nothing to fill from.
+    /// The filled knots; `None` if nothing is filled.
     pub(crate) fn lend(&self) -> Option<FilledKnots<'_>> {
         (!self.values.is_empty()).then_some(FilledKnots {
             coordinates: &self.places,
@@ -122,7 +122,7 @@ impl Filling {
     }
 }
 
-/// The values at all knots, those without one filled, within the `range` of the output; at least one is known.
+/// The values at all knots, with the unknown ones filled within the `range` of the output. At least one must be known.
 fn fill(knots: &Knots, known: &[Option<f64>], range: (f64, f64), method: GapMethod) -> Vec<f64> {
     let covered: Vec<bool> = known.iter().map(Option::is_some).collect();
     let values: Vec<f64> = known.iter().map(|value| value.unwrap_or(range.0)).collect();
@@ -135,7 +135,7 @@ fn fill(knots: &Knots, known: &[Option<f64>], range: (f64, f64), method: GapMeth
     for (knot, (_, from)) in field.gap().into_iter().zip(nearest(&field)) {
         field.values[knot] = field.values[from];
     }
-    // From here on the values in the gap are those of the nearest covered knots.
+    // The values in the gap are now those of the nearest covered knots.
     match method {
         GapMethod::Nearest => {}
         GapMethod::InverseDistance { power, neighbours } => {
@@ -147,7 +147,7 @@ fn fill(knots: &Knots, known: &[Option<f64>], range: (f64, f64), method: GapMeth
     field.values
 }
 
-/// For each knot of the gap the squared distance to the nearest covered one, and that one.
+/// The squared distance of each knot of the gap to the nearest covered knot, and the index of that knot.
 fn nearest(field: &Field) -> Vec<(f64, usize)> {
     let known = field.known_highest_first();
     let mut tree = Tree::new(field.coordinates.len(), field.points(&known));
@@ -158,7 +158,7 @@ fn nearest(field: &Field) -> Vec<(f64, usize)> {
     field.gap().into_iter().filter_map(&mut nearest).collect()
 }
 
-/// The distance of each knot to the nearest covered one, in shares of the inputs' ranges: 0 for a covered one.
+/// The distance of each knot to the nearest covered knot, in shares of the inputs' ranges; 0 for a covered knot.
 fn distances(knots: &Knots, known: &[Option<f64>]) -> Vec<f64> {
     let shares = knots.axes.iter().zip(&knots.ranges);
     let shares = shares.map(|(places, range)| places.iter().map(|x| x / range).collect());

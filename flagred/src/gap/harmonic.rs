@@ -1,21 +1,21 @@
-//! The harmonic filling: the solution of Laplace's equation in the gap, with the covered knots around it held.
+//! The harmonic filling: the solution of Laplace's equation in the gap, with the surrounding covered knots fixed.
 //!
-//! Every filled value is the mean of its neighbours, each weighted with the area of the wall between the two and divided
-//! by their distance (finite volumes), so there is no extreme inside the gap: it cannot overshoot. The outer ends of
-//! the grid are free: nothing flows across them.
+//! Every filled value is the mean of its neighbours, each weighted with the area of the wall between the two divided by
+//! their distance (finite volumes). So there is no extremum inside the gap, and the solution cannot overshoot. The
+//! outer ends of the grid have no flux across them.
 
 use super::field::Field;
 
-/// A sweep that changes no value by more than this share of the span of the known values ends the iteration.
+/// The iteration ends after a sweep that changes no value by more than this share of the span of the known values.
 const TOLERANCE: f64 = 1e-9;
 
-/// Gaps are a few terms wide, and settle long before.
+/// The maximum number of sweeps. Gaps are a few terms wide and converge long before.
 const MOST_SWEEPS: usize = 20_000;
 
-/// Over-relaxation: changes are taken by half as much again.
+/// The over-relaxation factor.
 const RELAXATION: f64 = 1.5;
 
-/// Fills the knots that are not covered, starting from the values they have.
+/// Fills the knots that are not covered, starting from their current values.
 pub(super) fn fill(field: &mut Field) {
     let known = || {
         field
@@ -46,7 +46,7 @@ pub(super) fn fill(field: &mut Field) {
             break;
         }
     }
-    // The iteration approaches its limit from both sides.
+    // The iteration can pass its limit by a rounding error on either side.
     for (knot, _) in gap {
         field.values[knot] = field.values[knot].clamp(low, high);
     }

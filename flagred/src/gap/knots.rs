@@ -1,4 +1,4 @@
-//! The places a rule set is asked at, to fill its gaps from what it says there.
+//! The knots at which a rule set is evaluated, to fill its gaps from there.
 
 use alloc::{vec, vec::Vec};
 
@@ -9,28 +9,29 @@ use fuzzy::{
 
 use super::filled::read;
 
-/// More knots than this are thinned: the cost of filling has a bound in any number of inputs.
+/// The maximum number of knots; more are thinned, which bounds the cost of filling for any number of inputs.
 const MOST_KNOTS: usize = 40_000;
 
-/// A grid over the inputs of a rule set, with a place at the peak of every term and one half way between each two.
+/// A grid over the inputs of a rule set, with a coordinate at the peak of every term and one half way between each two
+/// peaks.
 ///
-/// At a peak a rule says what it says, unmixed with its neighbours; half way between, two share evenly, which is where
-/// the gap of a missing rule ends.
+/// At a peak a single term applies. Half way between two peaks both terms apply equally, and there the gap of a missing
+/// rule ends.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Knots {
-    /// The places along each input, rising.
+    /// The coordinates along each input, ascending.
     pub(super) axes: Vec<Vec<f64>>,
     /// The width of each input's range.
     pub(super) ranges: Vec<f64>,
-    /// By how much the number of a knot grows per place along each input, the last input running fastest.
+    /// The difference of knot numbers between neighbours along each input; the last input varies fastest.
     strides: Vec<usize>,
 }
 
 impl Knots {
-    /// The grid over the part of each input in which terms change: beyond, rules cannot tell one place from another. An input
-    /// that is not one of `read`, by name, has one place.
+    /// The grid over the part of each input in which terms change; beyond it the rules cannot distinguish points. An
+    /// input that is not in `read`, by name, has one coordinate.
     ///
-    /// `None` where even the peaks are too many: so many inputs, 16 of two terms each, have no filling.
+    /// `None` if even the peaks are too many, as for 16 inputs of two terms each.
     pub(super) fn of(model: &Model, read: &[&str]) -> Option<Knots> {
         let axes = model.inputs.iter().map(|input| {
             if !read.contains(&input.name.as_str()) {
@@ -57,7 +58,7 @@ impl Knots {
         Some(Knots::over(axes, ranges.collect()))
     }
 
-    /// The same grid with the ends of the inputs' ranges, where it does not reach them and there is room.
+    /// The same grid extended by the ends of the inputs' ranges, if it does not include them and has room.
     pub(super) fn with_ends(&self, model: &Model) -> Knots {
         let axes = self.axes.iter().zip(&model.inputs).map(|(places, input)| {
             if places.len() == 1 {
@@ -78,7 +79,7 @@ impl Knots {
         }
     }
 
-    /// A grid of given places.
+    /// A grid with the given coordinates.
     pub(super) fn over(axes: Vec<Vec<f64>>, ranges: Vec<f64>) -> Knots {
         let mut strides = vec![1; axes.len()];
         for axis in (1..axes.len()).rev() {
@@ -91,35 +92,35 @@ impl Knots {
         }
     }
 
-    /// How many knots there are.
+    /// The number of knots.
     pub(super) fn count(&self) -> usize {
         count(&self.axes)
     }
 
-    /// The place of a knot along an axis.
+    /// The index of a knot along an axis.
     pub(super) fn place(&self, knot: usize, axis: usize) -> usize {
         knot / self.strides[axis] % self.axes[axis].len()
     }
 
-    /// Where a knot lies.
+    /// The coordinates of a knot.
     pub(super) fn point(&self, knot: usize) -> Vec<f64> {
         let axes = self.axes.iter().enumerate();
         axes.map(|(axis, places)| places[self.place(knot, axis)])
             .collect()
     }
 
-    /// The knot behind this one along an axis.
+    /// The next knot along an axis.
     pub(super) fn next(&self, knot: usize, axis: usize) -> Option<usize> {
         let behind = self.place(knot, axis) + 1 < self.axes[axis].len();
         behind.then(|| knot + self.strides[axis])
     }
 
-    /// The knot before this one along an axis.
+    /// The previous knot along an axis.
     pub(super) fn previous(&self, knot: usize, axis: usize) -> Option<usize> {
         (self.place(knot, axis) > 0).then(|| knot - self.strides[axis])
     }
 
-    /// The values of every knot's inputs, a column for each.
+    /// The coordinates of all knots, one column for each input.
     pub(super) fn columns(&self) -> Vec<Vec<f64>> {
         let column = |(axis, places): (usize, &Vec<f64>)| {
             let knots = 0..self.count();
@@ -128,7 +129,7 @@ impl Knots {
         self.axes.iter().enumerate().map(column).collect()
     }
 
-    /// Reads values at the knots, see [`read`].
+    /// Interpolates values at the knots, see [`read`].
     pub(super) fn read(&self, values: &[f64], point: &[f64]) -> Option<f64> {
         let axis = |axis: usize| self.axes.get(axis).map(Vec::as_slice);
         read(self.axes.len(), &axis, values, point)
@@ -140,7 +141,7 @@ fn count(axes: &[Vec<f64>]) -> usize {
     axes.iter().fold(1, times)
 }
 
-/// Places with another one half way between each two.
+/// Adds a coordinate half way between each two.
 fn with_middles(places: &[f64]) -> Vec<f64> {
     let middles = places.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
     let mut all: Vec<f64> = middles.chain(places.iter().copied()).collect();

@@ -4,7 +4,7 @@ use fuzzy::map::DecisionMap;
 
 use super::{Filling, Reading};
 
-/// A decision map without gaps: what rules cover is as they say, what they do not is filled from there.
+/// A decision map without gaps. Cells that rules cover have the value of the rules, the others are filled.
 #[derive(Debug, Clone)]
 pub struct FilledMap {
     map: DecisionMap,
@@ -22,12 +22,12 @@ impl FilledMap {
         &self.map
     }
 
-    /// Whether a cell is not as rules say.
+    /// Whether a cell is filled and not computed by rules.
     pub fn is_filled(&self, cell: usize) -> bool {
         self.filling.is_gap(self.map.coverage(cell)) || self.map.value(cell).is_none()
     }
 
-    /// The filling at a cell; `None` where rules say what it is, or there is nothing to fill from.
+    /// The filled value of a cell; `None` if rules cover it, or if nothing can be filled.
     pub fn filled(&self, cell: usize) -> Option<Reading> {
         if !self.is_filled(cell) || cell >= self.map.grid().cells() {
             return None;
@@ -43,7 +43,7 @@ impl FilledMap {
         self.filling.read(&inputs)
     }
 
-    /// The value of a cell; `None` where nothing is covered to fill it from, and off the grid.
+    /// The value of a cell; `None` off the grid, and if the cell is a gap that cannot be filled.
     pub fn value(&self, cell: usize) -> Option<f64> {
         match self.is_filled(cell) {
             true => self.filled(cell).map(|reading| reading.value),
@@ -58,8 +58,9 @@ impl FilledMap {
         filled as f64 / cells.max(1) as f64
     }
 
-    /// The value at a point with a coordinate for each axis of the grid, N-linearly between cells; beyond the grid,
-    /// at its end. `None` where nothing is covered, or the point has another number of coordinates.
+    /// The value at a point with one coordinate for each axis of the grid, interpolated linearly along each axis
+    /// between cells; beyond the grid it is constant. `None` if nothing is covered, or if the point has another number
+    /// of coordinates.
     pub fn read(&self, point: &[f64]) -> Option<f64> {
         let grid = self.map.grid();
         grid.interpolate(|cell| self.value(cell), point)
@@ -123,7 +124,7 @@ mod tests {
             sum += weight * map.value(cell).unwrap();
             weights += weight;
         }
-        // The classic form calls a saturated drone harmless.
+        // The classic form would call a saturated drone harmless.
         approx::assert_abs_diff_eq!(sum / weights, 49.0, epsilon = 2.0);
     }
 

@@ -1,20 +1,22 @@
-//! How far apart two knots are: by how much the output typically changes between them.
+//! The distance between knots, scaled by the typical change of the output between them.
 //!
-//! In shares of the ranges an input with a wide range and narrow terms would hardly count, and one that decides nothing as
-//! much as one that decides all. So a step along an input counts as much as the output changes over such a step in
-//! the covered part, by the root mean square: the geometric anisotropy of geostatistics, taken at the shortest lag.
+//! With distances in shares of the ranges, an input with a wide range and narrow terms would hardly count, and an
+//! irrelevant input would count as much as a decisive one. Instead, a step along an input counts by the root mean
+//! square of the change of the output over such steps in the covered part. This is the geometric anisotropy of
+//! geostatistics, at the shortest lag.
 
 use alloc::vec::Vec;
 
 use super::knots::Knots;
 
-/// An input along which the output hardly changes still tells knots apart, by this share of the others' change.
+/// The minimum weight of an input, as a share of the largest weight, so that knots along it have different coordinates
+/// even if the output hardly changes there.
 const LEAST_CHANGE: f64 = 1e-3;
 
-/// Coordinates are multiples of this, so that equal distances are equal to the last bit.
+/// Coordinates are rounded to multiples of this, so that equal distances are equal to the last bit.
 const QUANTUM: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// The coordinates of the places along each axis; the longest step between neighbours is 1.
+/// The coordinates of the knots along each axis; the longest step between neighbours is 1.
 pub(super) fn coordinates(knots: &Knots, values: &[f64], covered: &[bool]) -> Vec<Vec<f64>> {
     let axes = 0..knots.axes.len();
     let changes: Vec<Option<f64>> = axes
@@ -23,7 +25,7 @@ pub(super) fn coordinates(knots: &Knots, values: &[f64], covered: &[bool]) -> Ve
     let known = || changes.iter().flatten().copied();
     let largest = known().fold(0.0, f64::max);
     let mean = known().sum::<f64>() / known().count().max(1) as f64;
-    // Where the output changes nowhere all inputs count the same.
+    // If the output does not change anywhere, all inputs count the same.
     let weight = |change: Option<f64>| match largest > 0.0 {
         true => (change.unwrap_or(mean) / largest).max(LEAST_CHANGE),
         false => 1.0,
@@ -46,8 +48,8 @@ pub(super) fn coordinates(knots: &Knots, values: &[f64], covered: &[bool]) -> Ve
     coordinates.collect()
 }
 
-/// The root mean square of the output's change along an axis, per range of the input, over neighbours that are
-/// covered; `None` where there are none.
+/// The root mean square of the change of the output along an axis, per range of the input, over pairs of covered
+/// neighbours; `None` if there are no such pairs.
 fn change_along(knots: &Knots, values: &[f64], covered: &[bool], axis: usize) -> Option<f64> {
     let pairs = (0..covered.len()).filter_map(|knot| Some((knot, knots.next(knot, axis)?)));
     let pairs = pairs.filter(|(a, b)| covered[*a] && covered[*b]);

@@ -1,11 +1,12 @@
 //! Filling the gaps of a decision map by spatial interpolation.
 //!
-//! Learned rules cover what was flown. Where the antecedent that dominates has no rule, the coverage (the
-//! largest firing strength) is low and the value an accident of far-off rules; such places are filled from the covered
-//! rest of the map.
+//! Learned rules cover the conditions that were flown. If the dominant antecedent has no rule, the coverage (the
+//! largest firing strength) is low and the value depends on rules that are far away. Such points are filled from the
+//! covered part of the map.
 //!
-//! What is filled in is made of what rules say where they are sure of it: at the peaks of the terms, and half way between
-//! two, where the gap of a missing rule ends ([`Filling`]). So it does not depend on how finely a map is drawn.
+//! Filled values are computed from knots at which the rules are well defined: the peaks of the terms, and the points
+//! half way between two peaks, where the gap of a missing rule ends ([`Filling`]). So they do not depend on the
+//! resolution of the map.
 
 #[cfg(feature = "std")]
 mod complete;
@@ -39,8 +40,9 @@ pub use map::FilledMap;
 #[cfg(feature = "std")]
 pub use settings::{GapMethod, GapSettings};
 
-/// Whether a coverage is below the one from which on a place counts as covered. Half way between two peaks, where both
-/// terms should be at 0.5, rounding leaves one of them a hair below it.
+/// Whether a point with this coverage is a gap: whether the coverage is below `coverage_below`, with a tolerance of
+/// 1e-9 of it. Half way between two peaks, where both terms should be at 0.5, rounding may leave one of them slightly
+/// below.
 ///
 /// # Example
 /// ```

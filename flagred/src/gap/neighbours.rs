@@ -1,11 +1,11 @@
 //! The nearest few of many points.
 
-/// A k-d tree over points, balanced and in place: the middle of a slice splits it.
+/// A k-d tree over points, balanced and in place: the middle of a slice divides it.
 pub(super) struct Tree {
     dimensions: usize,
     points: Vec<f64>,
     order: Vec<u32>,
-    /// The neighbours found, nearest first: (squared distance, point).
+    /// The neighbours that were found, nearest first: (squared distance, point).
     found: Vec<(f64, usize)>,
 }
 
@@ -31,7 +31,7 @@ impl Tree {
         let middle = order.len() / 2;
         order.select_nth_unstable_by(middle, |a, b| {
             let coordinate = |i: &u32| self.points[*i as usize * self.dimensions + axis];
-            // Ties by number, so that the tree and with it the choice among equals is always the same.
+            // Ties are ordered by index, so that the tree and the choice among equal points are deterministic.
             coordinate(a).total_cmp(&coordinate(b)).then(a.cmp(b))
         });
         let next = (axis + 1) % self.dimensions;
@@ -40,7 +40,7 @@ impl Tree {
         self.split(&mut right[1..], next);
     }
 
-    /// The `k` points nearest to `point`, nearest first, each with its squared distance.
+    /// The `k` points nearest to `point`, nearest first, with their squared distances.
     pub(super) fn nearest(&mut self, point: &[f64], k: usize) -> &[(f64, usize)] {
         self.found.clear();
         let order = core::mem::take(&mut self.order);

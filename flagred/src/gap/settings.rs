@@ -1,4 +1,4 @@
-//! What is a gap, and how it is filled.
+//! Settings that define what counts as a gap and how it is filled.
 
 use fuzzy::{
     Model,
@@ -7,7 +7,7 @@ use fuzzy::{
 
 use super::complete::is_plain;
 
-/// How a gap is filled.
+/// The method that fills a gap.
 ///
 /// # Example
 /// ```
@@ -18,29 +18,29 @@ use super::complete::is_plain;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum GapMethod {
-    /// The value of the nearest covered knot, of equally near ones the highest.
+    /// The value of the nearest covered knot; of equally near ones, the highest value.
     Nearest,
     /// `sum(v / d^power) / sum(1 / d^power)` over the nearest covered knots at the edge of the gap.
     ///
-    /// Over *all* cells, as the method is often given, a corner reads an average of the whole map: 49 % for a
-    /// saturated drone. Hence the number of neighbours.
+    /// Over *all* cells, the usual form of the method, a corner of the map would get an average of the whole map: 49 %
+    /// for a saturated drone. Therefore the number of neighbours is limited.
     InverseDistance {
-        /// The power of the distance, over 0.
+        /// The power of the distance, above 0.
         power: f64,
-        /// How many knots count, at least 1.
+        /// The number of knots that count, at least 1.
         neighbours: usize,
     },
-    /// The thin-plate spline through the covered knots nearest to each place: it continues slopes, and can overshoot;
-    /// kept within the range of the output.
+    /// The thin-plate spline through the nearest covered knots. It continues slopes and can overshoot; values are kept
+    /// within the range of the output.
     #[default]
     ThinPlate,
-    /// The solution of Laplace's equation: every filled value is the mean of its neighbours, so it is smooth and
-    /// cannot overshoot.
+    /// The solution of Laplace's equation. Every filled value is the mean of its neighbours, so the result is smooth
+    /// and cannot overshoot.
     Harmonic,
 }
 
 impl GapMethod {
-    /// Every method, those with settings as they are when nothing else is said.
+    /// All methods, with default parameters.
     pub const ALL: [GapMethod; 4] = [
         GapMethod::Nearest,
         GapMethod::INVERSE_DISTANCE,
@@ -48,7 +48,7 @@ impl GapMethod {
         GapMethod::Harmonic,
     ];
 
-    /// Its name, as profiles have it.
+    /// The name of the method in profiles.
     pub fn name(self) -> &'static str {
         match self {
             GapMethod::Nearest => "nearest",
@@ -58,20 +58,20 @@ impl GapMethod {
         }
     }
 
-    /// Inverse distance as it is when nothing else is said: power 2, 3 neighbours.
+    /// Inverse distance with default parameters: power 2, 3 neighbours.
     pub const INVERSE_DISTANCE: GapMethod = GapMethod::InverseDistance {
         power: 2.0,
         neighbours: 3,
     };
 }
 
-/// What a cell must not be to count as covered, and how the others get their values.
+/// The conditions under which a cell is a gap, and the method that fills it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct GapSettings {
-    /// How the gap is filled.
+    /// The method that fills gaps.
     pub method: GapMethod,
-    /// A cell is a gap below this coverage; `None` is the least with which the dominating antecedent can fire, see
+    /// A cell with a lower coverage is a gap. `None` is the minimum with which the dominant antecedent can fire, see
     /// [`GapSettings::coverage_below`].
     pub coverage_below: Option<f64>,
 }
@@ -79,10 +79,11 @@ pub struct GapSettings {
 impl GapSettings {
     /// The coverage below which a cell of the map of a model is a gap.
     ///
-    /// Where none is set: if the terms of every input sum to 1 everywhere, the dominating antecedent has memberships of
-    /// 0.5 at least, where two neighbours meet. With the minimum as AND it then fires at 0.5 or more, with the product
-    /// of n inputs at `0.5^n`: less means that the dominating antecedent has no rule. With other terms, other
-    /// conjunctions, rule blocks and activation methods only what no rule covers at all is a gap.
+    /// The default follows from the operators. If the terms of every input sum to 1 everywhere, the dominant antecedent
+    /// has memberships of at least 0.5, the value where two neighbours meet. With the minimum as AND it then fires with
+    /// at least 0.5, with the product of n inputs with at least `0.5^n`. Less means that the dominant antecedent has no
+    /// rule. With other terms, other conjunctions, rule blocks and activation methods, only points that no rule covers
+    /// at all are gaps.
     pub fn coverage_below(&self, model: &Model) -> f64 {
         let least = || match model.operators.and {
             _ if !is_plain(model) => f64::MIN_POSITIVE,
@@ -102,7 +103,7 @@ impl GapSettings {
     }
 }
 
-/// Whether the memberships of a variable's terms sum to 1 all over its range.
+/// Whether the memberships of a variable's terms sum to 1 over its whole range.
 fn sums_to_one(variable: &Variable) -> bool {
     const STEPS: u32 = 500;
     (0..=STEPS).all(|i| {

@@ -1,18 +1,18 @@
-//! The thin-plate spline: the smoothest surface through the covered knots around a place (Duchon 1977).
+//! The thin-plate spline: the smoothest surface through the covered knots around a point (Duchon 1977).
 //!
-//! `f(x) = a + b x + sum_i w_i phi(|x - c_i|)`, `phi(r) = r^2 ln r`, with the weights such that f takes the known
-//! values at the centres c_i and `sum w_i = 0`, `sum w_i c_i = 0`. The centres are the covered knots nearest to a place:
-//! with two inputs nearly all there are. The surface follows slopes beyond what is known, so it can overshoot; values are
-//! kept within the range of the output.
+//! `f(x) = a + b x + sum_i w_i phi(|x - c_i|)`, `phi(r) = r^2 ln r`, with weights such that f has the known values at
+//! the centres c_i and `sum w_i = 0`, `sum w_i c_i = 0`. The centres are the covered knots nearest to the point; with
+//! two inputs these are nearly all of them. The surface continues slopes beyond the known values, so it can overshoot;
+//! values are kept within the range of the output.
 
 use super::{field::Field, neighbours::Tree};
 
-/// How many covered knots shape the surface at a place: with one and two inputs, and with more. Further ones change the
-/// fillings of our maps by less than a point.
+/// The number of covered knots that shape the surface at a point: with up to two inputs, and with more. More knots
+/// change the filled values of our maps by less than 1 %.
 const NEIGHBOURS: (usize, usize) = (32, 64);
 
-/// Where the neighbours lie in one plane they say nothing of the slope across it: a slope costs this much, so that it
-/// is 0 there. Elsewhere it changes nothing that could be seen.
+/// A penalty on slopes. If the neighbours are in one plane, the slope across it is undetermined, and the penalty makes
+/// it 0. Elsewhere it has no visible effect.
 const COST_OF_SLOPE: f64 = 1e-7;
 
 /// Fills the knots that are not covered, within `range`.
@@ -32,7 +32,7 @@ pub(super) fn fill(field: &mut Field, range: (f64, f64)) {
             .iter()
             .filter_map(|(_, index)| known.get(*index).copied())
             .collect();
-        // Seen from the place itself, so that the constant is the value there.
+        // Relative to the point itself, so that the constant is the value there.
         let centres: Vec<Vec<f64>> = neighbours
             .iter()
             .map(|n| {
@@ -47,7 +47,7 @@ pub(super) fn fill(field: &mut Field, range: (f64, f64)) {
     }
 }
 
-/// The spline through `known` values at `centres`, read at the origin.
+/// The spline through `known` values at `centres`, evaluated at the origin.
 fn value_at_origin(centres: &[Vec<f64>], known: &[f64]) -> Option<f64> {
     let dimensions = centres.first()?.len();
     let n = centres.len();
@@ -77,7 +77,7 @@ fn value_at_origin(centres: &[Vec<f64>], known: &[f64]) -> Option<f64> {
     Some(plane.first()? + bumps.sum::<f64>())
 }
 
-/// `r^2 ln r = r^2 ln(r^2) / 2` of a difference of places.
+/// `r^2 ln r = r^2 ln(r^2) / 2` of a difference of points.
 fn phi(difference: impl Iterator<Item = f64>) -> f64 {
     let square: f64 = difference.map(|x| x * x).sum();
     if square > 0.0 {
@@ -87,8 +87,8 @@ fn phi(difference: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
-/// Solves linear equations, given as rows with the right side behind, by elimination with partial pivoting; `None`
-/// where they determine nothing.
+/// Solves linear equations, given as rows with the right side last, by elimination with partial pivoting; `None` if the
+/// system is singular.
 fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let n = rows.len();
     for column in 0..n {

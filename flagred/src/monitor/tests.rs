@@ -14,7 +14,7 @@ use crate::{
     verdict::{Finding, Level, Limit, VerdictSettings},
 };
 
-/// The risk falls from 100 % at a mean margin of 0 to 0 % at 0.5, by two rules; `without_low` leaves out the first.
+/// The risk falls from 100 % at a mean margin of 0 to 0 % at 0.5, by two rules; `without_low` omits the first.
 fn rules(without_low: bool) -> Model {
     let margin = Variable::new("margin", 0.0, 0.5)
         .term(
@@ -90,7 +90,7 @@ fn profile() -> Profile {
     }
 }
 
-/// Flies (seconds, both motors' command, in the air) at a rate.
+/// Flies phases of (seconds, command of both motors, in the air) at a rate.
 fn fly(monitor: &mut Monitor, rate_hz: f64, phases: &[(f64, f64, bool)]) -> Vec<Update> {
     let mut assessments = Vec::new();
     let mut i = 0.0;
@@ -113,7 +113,7 @@ fn risk_at(assessments: &[Update], t_s: f64) -> Result<f64, Unknown> {
     at.risk.map(|estimate| estimate.risk_pct)
 }
 
-/// `x / max(per, at_least)`, with an input that the rules do not have; unknown where that is.
+/// `x / max(per, at_least)`, with an input that the rules do not have; unknown if that input is unknown.
 #[test]
 fn a_ratio_is_of_other_inputs() {
     let text = "flagred: 1
@@ -154,7 +154,7 @@ inputs:
     }
 }
 
-/// A motor that is unknown is unknown to a ratio by it, though the window still knows what it was.
+/// If a motor is unknown, so is a ratio that divides by its statistic, even if the window still has earlier values.
 #[test]
 fn a_ratio_by_motors_needs_them() {
     let text = "flagred: 1
@@ -455,7 +455,7 @@ fn a_profile_that_reads_no_motor_needs_none() {
         assert!(last.risk.is_ok() && last.level.is_some(), "{last:?}");
         assert!(monitor.margin().is_none() && monitor.spread().is_none());
     }
-    // Where the vehicle is parked there is no risk.
+    // A parked vehicle has no risk.
     let craft = Craft::new(0).with_signals(&["battery_v"]);
     let mut monitor = Monitor::new(&estimator, craft).unwrap();
     let update = monitor.push(&Sample {
@@ -465,7 +465,7 @@ fn a_profile_that_reads_no_motor_needs_none() {
         signals: &[0.05],
     });
     assert_eq!(update.risk, Err(Unknown::OnGround));
-    // A finding beside the risk is about motors, too.
+    // A finding that is not about the risk reads the motors too.
     profile.verdict.notices.reserve = Some(Limit {
         value: 0.1,
         after_s: 1.0,
@@ -536,7 +536,8 @@ fn a_missing_signal_has_its_value_until_it_comes_and_never_after() {
     let plan = estimator.plan().unwrap();
     let names = ["battery_v"];
     let known = Craft::new(2).with_signals(&names);
-    // By craft and the values of the samples, 2 on the ground and 4 in the air: which are assumed, and the input.
+    // Cases of a craft and the values of its samples, 2 on the ground and 4 in the air: which values are assumed, and
+    // the input.
     let nan = f64::NAN;
     type Case<'a> = (Craft<'a>, [f64; 6], [bool; 6], [f64; 6]);
     let cases: [Case<'_>; 4] = [
@@ -553,7 +554,7 @@ fn a_missing_signal_has_its_value_until_it_comes_and_never_after() {
             [true, true, true, false, false, false],
             [nan, nan, 0.4, 0.1, nan, 0.2],
         ),
-        // A sensor that was there on the ground is lost.
+        // A sensor that was present on the ground is lost.
         (
             known.with_optional(&names),
             [nan, 0.1, nan, nan, nan, nan],

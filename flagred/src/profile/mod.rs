@@ -1,4 +1,4 @@
-//! A profile: what a flight's signals mean to a rule set, and what its risk means to a pilot.
+//! Profiles, which map the signals of a flight to the inputs of a rule set, and its risk to levels for the pilot.
 
 use alloc::{string::String, vec::Vec};
 
@@ -17,10 +17,10 @@ mod rewrite;
 
 pub use crate::sample::Sampling;
 
-/// The JSON Schema of the format, for editors that complete and check while one types.
+/// The JSON Schema of the format, for editors that complete and check the text.
 pub const SCHEMA: &str = include_str!("../../rules/profile-schema.json");
 
-/// Everything between a flight and its verdict but the rules themselves.
+/// All settings for the assessment of a flight, except the rules.
 ///
 /// # Example: a third input, without a line of code
 ///
@@ -47,42 +47,43 @@ pub const SCHEMA: &str = include_str!("../../rules/profile-schema.json");
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// Its name.
+    /// The name of the profile, as reports show it.
     pub name: String,
-    /// What it is for, in the author's words.
+    /// The purpose of the profile, in the author's words.
     pub description: Option<String>,
-    /// The rule set: the name of a shipped one ([`crate::shipped`]), or a file beside the profile.
+    /// The rule set: the name of a shipped one ([`crate::shipped`]), or of a file next to the profile.
     pub rules: String,
-    /// Over how many seconds an input is taken that names no window of its own.
+    /// The window of inputs that do not set their own, in seconds.
     pub window_s: f64,
-    /// Where each input of the rule set comes from.
+    /// The sources of the inputs of the rule set.
     pub inputs: Vec<ProfileInput>,
     /// The output of the rule set that is the risk, in %.
     pub output: String,
-    /// When an input counts as known.
+    /// The conditions under which an input counts as known.
     pub sampling: Sampling,
-    /// What happens where no rule applies.
+    /// The filling where no rule applies.
     pub gap: GapSettings,
-    /// How risks add up to the elevated risk.
+    /// The parameters of the elevated risk.
     pub elevated_risk: AccumulatorSettings,
-    /// When levels are raised and lowered.
+    /// The conditions under which levels are raised and cleared.
     pub verdict: VerdictSettings,
     /// Other outputs that are risks.
     pub other_risks: Vec<OtherRisk>,
-    /// What a pilot reads where an input raised the risk. Inputs without an entry are described by their names.
+    /// The words of findings for the pilot, by the input that raised the risk. Inputs without an entry are described by
+    /// their names.
     pub findings: Vec<CauseWords>,
-    /// How often errors followed a risk, by rising risk; empty where it was not measured.
+    /// How often large attitude errors followed each band of the risk, ascending; empty if it was not measured.
     pub reliability: Vec<Reliability>,
 }
 
-/// What a pilot reads where an input raised the risk.
+/// The words of a finding for the pilot, by the input that raised the risk.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CauseWords {
     /// The name of the input in the profile.
     pub input: String,
-    /// A word for programs: small letters, digits and `_`.
+    /// A stable word for programs: small letters, digits and `_`.
     pub code: String,
-    /// Two or three words, at most 20 ASCII characters: part of texts of 50.
+    /// Two or three words, at most 20 ASCII characters, for messages limited to 50 characters.
     pub brief: String,
     /// What happened, and what it means. `{value}` is the value of the input, `{percent}` 100 times that.
     pub text: String,
@@ -90,56 +91,57 @@ pub struct CauseWords {
     pub advice: String,
 }
 
-/// The attitude error of a risk of 100 %, in degrees: the critical error of the paper.
+/// The attitude error that counts as a risk of 100 %, in degrees: the critical error of the paper.
 pub const CRITICAL_ERROR_DEG: f64 = 5.0;
 
-/// How many moments with a risk of a band were followed by a large attitude error.
+/// How often a large attitude error followed moments with a risk in a band.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Reliability {
-    /// The lower end of the band in %; it belongs to it.
+    /// The lower end of the band in %, inclusive.
     pub from_pct: f64,
-    /// The upper end in %; 100 belongs to the last band.
+    /// The upper end of the band in %, exclusive except for 100.
     pub to_pct: f64,
-    /// On real vehicles.
+    /// The frequency on real vehicles.
     pub real: Option<Followed>,
-    /// On simulated ones.
+    /// The frequency on simulated vehicles.
     pub simulated: Option<Followed>,
 }
 
-/// How many moments were followed by an attitude error over 5 degrees within 5 s.
+/// The number of moments that were followed by an attitude error over 5 degrees within 5 s.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Followed {
-    /// All moments, one each 0.5 s.
+    /// The number of moments, one every 0.5 s.
     pub moments: u64,
-    /// Those that were followed by such an error.
+    /// The number of moments that were followed by such an error.
     pub followed: u64,
 }
 
 impl Followed {
-    /// The share that was followed by such an error, in %; `None` without a moment.
+    /// The share of moments that were followed by such an error, in %; `None` without any moment.
     pub fn share_pct(&self) -> Option<f64> {
         (self.moments > 0).then(|| 100.0 * self.followed as f64 / self.moments as f64)
     }
 }
 
-/// Another output that is a risk, with levels of its own. Its findings are those of a profile of which it is the only risk.
+/// Another output that is a risk, with its own levels. Its findings are the same as if it were the only risk of the
+/// profile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OtherRisk {
     /// The output of the rule set, in %.
     pub output: String,
-    /// How its risks add up.
+    /// The parameters of its elevated risk.
     pub elevated_risk: AccumulatorSettings,
-    /// When to warn.
+    /// The conditions for WARN.
     pub warn: LevelSettings,
-    /// When it fails.
+    /// The conditions for FAIL.
     pub fail: LevelSettings,
 }
 
-/// An input of the rule set and where it comes from.
+/// An input of the rule set and its source.
 ///
 /// # Example
 /// ```
@@ -156,27 +158,27 @@ pub struct OtherRisk {
 pub struct ProfileInput {
     /// The name of the input in the rule set.
     pub name: String,
-    /// Where its value comes from.
+    /// The source of its value.
     pub source: Source,
-    /// What that is divided by.
+    /// The division by another input, if it is a ratio.
     pub ratio: Option<Ratio>,
-    /// Its value on a vehicle that does not send its signal.
+    /// The value to assume on a vehicle that does not send its signal.
     pub if_missing: Option<f64>,
 }
 
-/// What makes an input a ratio: `x / max(per, at_least)` of the value `x` of its source and of another input of the profile,
-/// which is not a ratio itself. The rule set need not have that input.
+/// The division that makes an input a ratio: `x / max(per, at_least)` of the value `x` of its source and another input
+/// of the profile, which is not a ratio itself. The rule set does not need to have that other input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ratio {
-    /// The input to divide by.
+    /// The name of the input to divide by.
     pub per: String,
-    /// The least to divide by, above 0.
+    /// The minimum of the divisor, above 0.
     pub at_least: f64,
 }
 
 impl Profile {
-    /// What is observed of samples of a craft, and the inputs of the profile, then those of `more`. The error is the name of a
-    /// signal, or of an input of a ratio, that there is not.
+    /// The channels for the samples of a craft, with the inputs of the profile followed by the inputs of `more`. The
+    /// error is the name of a missing signal, or of a missing input of a ratio.
     pub(crate) fn channels<'a>(
         &'a self,
         more: &'a [Source],
@@ -187,7 +189,7 @@ impl Profile {
             for name in input.source.signal.carried() {
                 match input.if_missing {
                     _ if names.contains(&name) => {}
-                    // It has a place that no sample fills.
+                    // Its channel exists, but no sample ever sets it.
                     Some(_) => names.push(name),
                     None => return Err(name.into()),
                 }
@@ -211,20 +213,20 @@ impl Profile {
         Ok((channels, inputs))
     }
 
-    /// Whether a ratio is made of the input of this name.
+    /// Whether a ratio divides by the input of this name.
     pub(crate) fn is_part(&self, name: &str) -> bool {
         let mut ratios = self.inputs.iter().filter_map(|input| input.ratio.as_ref());
         ratios.any(|ratio| ratio.per == name)
     }
 
-    /// Whether an input or a finding beside the risk is about the motors. A profile of which none is needs no motors: it can
-    /// assess any table of signals.
+    /// Whether an input, or a finding that is not about the risk, reads the motors. If not, the profile can assess any
+    /// table of signals.
     pub fn reads_motors(&self) -> bool {
         let mut signals = self.inputs.iter().map(|input| &input.source.signal);
         self.verdict.notices.any() || signals.any(Signal::is_made_of_motors)
     }
 
-    /// The names of the signals beside the motors that it needs, each once.
+    /// The names of the other signals that it needs, without duplicates.
     pub fn signals(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for input in &self.inputs {
@@ -237,7 +239,7 @@ impl Profile {
         names
     }
 
-    /// The same profile with another risk as the only one, and without what is told beside the risk.
+    /// The same profile with another risk as the only one, and without notices.
     pub(crate) fn of_risk(&self, risk: &OtherRisk) -> Profile {
         Profile {
             output: risk.output.clone(),
@@ -253,7 +255,7 @@ impl Profile {
         }
     }
 
-    /// What it says about time.
+    /// The settings that concern time.
     pub(crate) fn settings(&self) -> Settings {
         Settings {
             sampling: self.sampling,

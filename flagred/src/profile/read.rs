@@ -29,7 +29,7 @@ use verdict::{level, verdict};
 /// The version of the format.
 const VERSION: u64 = 1;
 
-/// The window of an input whose profile names none, in seconds.
+/// The window of an input if neither it nor its profile sets one, in seconds.
 const WINDOW_S: f64 = 2.0;
 
 type Found = Vec<Diagnostic>;
@@ -37,14 +37,14 @@ type Found = Vec<Diagnostic>;
 impl FromStr for Profile {
     type Err = Findings;
 
-    /// Reads a profile from YAML; on failure gives all errors of the text, each with its location and help.
+    /// Reads a profile from YAML; on failure returns all errors of the text, each with its location and help.
     fn from_str(text: &str) -> Result<Profile, Findings> {
         Profile::from_source(&Source::new(text))
     }
 }
 
 impl Profile {
-    /// As [`from_str`](Self::from_str), of a text that others read too.
+    /// As [`from_str`](Self::from_str), from a text that is shared with other readers.
     ///
     /// # Errors
     /// As [`from_str`](Self::from_str).
@@ -206,7 +206,7 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
     })
 }
 
-/// The other outputs that are risks; what one does not say is as for the first one.
+/// Reads the other outputs that are risks; missing settings are those of the first risk.
 fn other_risks(fields: &Fields, defaults: &OtherRisk, found: &mut Found) -> Vec<OtherRisk> {
     let entries = fields
         .get("other_risks")
@@ -289,7 +289,7 @@ enum Bounds {
     Below1,
 }
 
-/// A number that may be left out.
+/// Reads an optional number.
 fn number(fields: &Fields, key: &str, default: f64, bounds: Bounds, found: &mut Found) -> f64 {
     let Some(node) = fields.get(key) else {
         return default;

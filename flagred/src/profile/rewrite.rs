@@ -1,4 +1,4 @@
-//! A profile with other thresholds, as text: what else its author wrote stays, comments too.
+//! Changes the thresholds of a profile in its text. Everything else is preserved, including comments.
 
 use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 use core::ops::Range;
@@ -13,11 +13,12 @@ use super::Profile;
 use crate::verdict::{LevelSettings, Threshold, VerdictSettings};
 
 impl Profile {
-    /// The text of a profile with other levels and times of its verdict. Notices and the limit of idling stay.
+    /// Returns the text of a profile with other levels and times of its verdict. Notices and the limit for idle motors
+    /// do not change.
     ///
     /// # Errors
-    /// The findings of the text or of the one that would come out; or that it is written in a way that cannot be changed in
-    /// place.
+    /// The findings of the text or of the changed text, or a message if the text is written in a way that cannot be
+    /// changed in place.
     ///
     /// # Example
     /// ```
@@ -63,7 +64,7 @@ fn written(settings: &VerdictSettings) -> [(&'static str, String); 5] {
     ]
 }
 
-/// The text with other values of keys of the verdict.
+/// The text with other values for keys of the verdict, or `None` if they cannot be changed in place.
 fn edited(text: &str, tree: &Node, changes: &[(&str, String)]) -> Option<String> {
     if changes.is_empty() {
         return Some(text.to_owned());
@@ -79,7 +80,7 @@ fn edited(text: &str, tree: &Node, changes: &[(&str, String)]) -> Option<String>
         match get(verdict, key) {
             Some(node) => {
                 let old = text.get(node.span.clone())?;
-                // A block ends with the line break before what follows it.
+                // A block ends with the line break before the next key.
                 let end = node.span.start + old.trim_end().len();
                 edits.push((node.span.start..end, value.clone()));
             }
@@ -90,7 +91,7 @@ fn edited(text: &str, tree: &Node, changes: &[(&str, String)]) -> Option<String>
         let (at, first) = added(text, verdict, &missing)?;
         edits.push((at..at, first));
     }
-    // From the end, so that the places before stay where they are.
+    // From the end, so that earlier positions stay valid.
     edits.sort_by_key(|(span, _)| core::cmp::Reverse(span.start));
     let mut changed = text.to_owned();
     for (span, with) in edits {
@@ -109,7 +110,7 @@ fn get<'a>(mapping: &'a Node, key: &str) -> Option<&'a Node> {
     pair.map(|(_, value)| value)
 }
 
-/// What makes keys the first of a mapping, and where it is added.
+/// The text that inserts keys at the start of a mapping, and its position.
 fn added(text: &str, mapping: &Node, keys: &[(&str, String)]) -> Option<(usize, String)> {
     let Value::Mapping(known) = &mapping.value else {
         return None;
@@ -138,7 +139,7 @@ fn number(value: f64) -> String {
     format!("{value}")
 }
 
-/// A level in one line.
+/// A level on one line.
 fn level(settings: &LevelSettings) -> String {
     let LevelSettings {
         raise,
@@ -170,7 +171,7 @@ mod tests {
         text.parse::<Profile>().unwrap().verdict
     }
 
-    /// A profile whose verdict is written as given.
+    /// A profile with the given text as its verdict.
     fn profile(verdict: &str) -> String {
         format!(
             "flagred: 1\nname: x\nrules: flagred\ninputs: {{load: {{mean: motor_command}}}}\n{verdict}"
@@ -222,7 +223,7 @@ mod tests {
             "{refused}"
         );
         assert!(Profile::rewritten("name: x", &verdict(text)).is_err());
-        // Two keys have one value: it cannot be changed for one of them.
+        // Two keys share one value, which cannot be changed for only one of them.
         let shared = profile("verdict:\n  fail: &level {risk: 80}\n  warn: *level\n");
         let mut wanted = verdict(&shared);
         wanted.warn.raise.risk_pct = Some(70.0);

@@ -1,9 +1,9 @@
-//! The level over time: raised, held, lowered. One time of trouble is one finding.
+//! The level over time, and the findings: one period of trouble is one finding.
 
 use super::{Cause, Finding, Level, Measure, MotorFinding, VerdictSettings};
 use crate::motor::{Motor, MotorRecord};
 
-/// Time stamps are sums of steps: a duration this much shorter, in seconds, is long enough.
+/// A duration this much too short, in seconds, still counts, because timestamps are sums of steps.
 pub(crate) const ROUNDING_S: f64 = 1e-6;
 
 /// The level of a risk.
@@ -11,36 +11,36 @@ pub(crate) const ROUNDING_S: f64 = 1e-6;
 pub(crate) struct Alert {
     settings: VerdictSettings,
     level: Level,
-    /// When something last held the level.
+    /// The last time at which the level was held, in seconds.
     last_held_s: f64,
-    /// Since when the thresholds of WARN and FAIL are reached.
+    /// The times since which the thresholds of WARN and FAIL have been reached, in seconds.
     reached_since_s: [Option<f64>; 2],
     finding: Option<Finding>,
-    /// The finding is of a worse level than before, and nobody has told why.
+    /// Whether the level of the finding was raised and its cause is not set yet.
     asks_why: bool,
 }
 
-/// A motor that is a cause comes at least so near to a limit.
+/// The largest margin of a motor that can be the cause.
 const NEAR_LIMIT: f64 = 0.1;
 
-/// What a sample changed.
+/// The changes by a sample.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Step {
     pub(crate) change: Option<Level>,
     pub(crate) ended: Option<Finding>,
 }
 
-/// A risk at a time.
+/// The risk at a time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Now {
     pub(crate) t_s: f64,
     pub(crate) risk_pct: f64,
     pub(crate) elevated_pct: f64,
-    /// Just after take-off, when only FAIL is raised.
+    /// Whether the vehicle just took off, when only FAIL is raised.
     pub(crate) takes_off: bool,
-    /// The motors go down together, as at touch-down, when FAIL is not raised.
+    /// Whether all motors slow down together, as at touch-down, when FAIL is not raised.
     pub(crate) sinks: bool,
-    /// The motors idle in the air.
+    /// Whether the motors idle in the air.
     pub(crate) falls: bool,
 }
 
@@ -60,17 +60,17 @@ impl Alert {
         self.level
     }
 
-    /// The open finding as it stands.
+    /// The open finding, with its values so far.
     pub(crate) fn open(&self) -> Option<Finding> {
         self.finding
     }
 
-    /// Whether the latest sample raised the level of the finding: its cause is asked for, by [`Alert::explain`].
+    /// Whether the latest sample raised the level of the finding, so that its cause must be set by [`Alert::explain`].
     pub(crate) fn asks_why(&self) -> bool {
         self.asks_why
     }
 
-    /// Sets the cause of the finding; a motor is named only where motors near a limit are the cause.
+    /// Sets the cause of the finding; a motor is named only if motors near a limit are the cause.
     pub(crate) fn explain(&mut self, cause: Option<Cause>, is_of_limits: impl Fn(usize) -> bool) {
         self.asks_why = false;
         if let Some(finding) = &mut self.finding {
@@ -148,8 +148,8 @@ impl Alert {
         step
     }
 
-    /// Keeps what the motors do while a level is being reached, from its beginning. So a motor is judged where the level is
-    /// raised, not over what came before or after.
+    /// Records the margins of the motors from the moment at which a level begins to be reached. So the motor is chosen
+    /// by the time in which the level was raised, not by the time before or after.
     fn record(&self, reached: &[bool; 2], motors: &mut [Motor]) {
         let begins = |i: usize| reached[i] && self.reached_since_s[i].is_none();
         let (begins, any) = (begins(0) || begins(1), reached[0] || reached[1]);
@@ -161,7 +161,7 @@ impl Alert {
         }
     }
 
-    /// Opens the finding, or makes it a FAIL.
+    /// Opens the finding, or raises it to FAIL.
     fn raise(
         &mut self,
         t_s: f64,
@@ -178,7 +178,7 @@ impl Alert {
             raised_s: t_s,
             ..Finding::NONE
         });
-        // The span of an earlier FAIL goes on.
+        // An earlier FAIL continues.
         let failed_s = opened.failed_s.or(failed_s);
         let same = opened.severity == level;
         let is_worse = level > opened.severity;
@@ -207,8 +207,8 @@ impl Alert {
         });
     }
 
-    /// Ends the flight, or what was seen of it. A landing takes back a WARN that was raised just before it, unless FAIL is
-    /// being reached: that is not a landing.
+    /// Ends the flight, or the observed part of it. A landing withdraws a WARN that was raised just before it, unless
+    /// FAIL is being reached: that is not a landing.
     pub(crate) fn end(&mut self, t_s: f64, landed: bool) -> Step {
         let change = (self.level > Level::Good).then_some(Level::Good);
         self.level = Level::Good;
@@ -231,8 +231,8 @@ impl Alert {
     }
 }
 
-/// The motor with the least mean margin while the level was being reached, where it is near a limit. When a motor stops, the
-/// one opposite soon stands still, too: of motors at zero it is the one that is there for longest.
+/// The motor with the least mean margin while the level was being reached, if it is near a limit. When a motor stops,
+/// the opposite one soon stops too, so of several motors at zero the one that has been there longest counts.
 fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
     let known = motors
         .iter()
@@ -319,7 +319,7 @@ mod tests {
         }
     }
 
-    /// Ten samples a second of phases of (seconds, risk, elevated risk), with a motor near its upper limit.
+    /// Runs phases of (seconds, risk, elevated risk) at 10 Hz, with a motor near its upper limit.
     fn run(phases: &[(f64, f64, f64)]) -> (Vec<(f64, Level)>, Vec<Finding>, Flown) {
         let mut flown = Flown::new([0.4, 0.95]);
         let (mut changes, mut findings, mut i) = (vec![], vec![], 0);
@@ -338,7 +338,7 @@ mod tests {
     #[test]
     fn of_two_motors_at_zero_the_one_that_stopped_first_is_named() {
         let mut flown = Flown::new([0.0, 0.0]);
-        // A motor at the upper limit is as near to it.
+        // A motor at the upper limit is as near to its limit.
         for (at_zero_s, named) in [
             ([0.1, 0.3], 2),
             ([0.3, 0.1], 1),
@@ -430,7 +430,7 @@ mod tests {
 
     #[test]
     fn a_landing_takes_back_a_warn_that_was_raised_just_before_it() {
-        // Raised at 0.5 s, taken back for 2 s.
+        // Raised at 0.5 s, can be withdrawn for 2 s.
         let (_, _, mut flown) = run(&[(1.0, 0.0, 60.0)]);
         let mut later = flown.clone();
         assert_eq!(flown.end(2.4, true).ended, None);
@@ -443,12 +443,12 @@ mod tests {
             let (_, _, mut flown) = run(steps);
             assert!(flown.end(1.4, true).ended.is_some());
         }
-        // A link that is lost is no landing.
+        // A lost link is not a landing.
         let (_, _, mut flown) = run(&[(2.0, 0.0, 90.0)]);
         assert!(flown.end(2.0, false).ended.is_some());
     }
 
-    /// Motor 2 at its upper limit raises the level; then motor 1 is at its lower one for long.
+    /// Motor 2 at its upper limit raises the level; afterwards motor 1 is at its lower limit for a long time.
     #[test]
     fn the_motor_is_judged_where_the_level_is_raised_and_not_over_the_wreck() {
         let mut flown = Flown::new([0.4, 0.95]);

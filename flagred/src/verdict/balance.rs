@@ -1,7 +1,7 @@
-//! The balance of the motors: a motor that works harder than before, and whether all work as before.
+//! The balance of the motors: detects a motor that works harder than before, and whether all motors work as before.
 //!
-//! A motor that loses thrust is commanded higher until the vehicle is level again. Its own command rises most, with the turn
-//! of the nose left in: yaw is what distinguishes it from the motor opposite and from the other motor of its arm.
+//! A motor that loses thrust is commanded higher until the vehicle is level again. Its own command rises most, yaw
+//! included: yaw distinguishes it from the opposite motor and from the other motor of its arm.
 
 use super::{Limit, Measure, MotorFinding};
 use crate::{
@@ -15,16 +15,16 @@ const LATELY_S: f64 = 5.0;
 const TRIM_S: f64 = 30.0;
 const LOAD_S: f64 = 3.0;
 
-/// For so long the trim is learned before anything is compared with it, in seconds.
+/// The time for which the trim is learned before anything is compared with it, in seconds.
 const TRIM_KNOWN_AFTER_S: f64 = 10.0;
 
-/// The share of all shifts that one weak motor explains at least. A vehicle that leans towards a motor has 2/3.
+/// The minimum share of all shifts that one weak motor must explain. A vehicle that leans towards a motor has 2/3.
 const ONE_MOTOR: f64 = 0.75;
 
-/// Shifts this close are equal.
+/// Shifts that differ by less than this are equal.
 const EQUAL: f64 = 0.02;
 
-/// Motors that are farther apart than lately by this much do not go down together.
+/// If the differences between motors exceed those of the last seconds by this, the motors do not slow down together.
 const APART: f64 = 0.05;
 
 /// The balance of one flight. The averages of each motor are in [`Motor`].
@@ -35,16 +35,16 @@ pub(super) struct Balance {
     sinks: bool,
 }
 
-/// What is out of balance.
+/// A motor that is out of balance.
 pub(super) struct Unbalanced {
     pub(super) measure: Measure,
-    /// On the effective range.
+    /// The deviation, on the effective range.
     pub(super) value: f64,
     pub(super) limit: f64,
     pub(super) motor: MotorFinding,
 }
 
-/// What a sample shows.
+/// The results for one sample.
 #[derive(Default)]
 pub(super) struct Seen {
     pub(super) weak: Option<Unbalanced>,
@@ -63,12 +63,12 @@ impl Balance {
         self.is_back
     }
 
-    /// Whether the motors go down together, as they do at touch-down.
+    /// Whether all motors slow down together, as they do at touch-down.
     pub(super) fn sinks(&self) -> bool {
         self.sinks
     }
 
-    /// Takes in a sample of which every command is known. Trims are learned while no alarm stands.
+    /// Processes a sample in which all commands are known. Trims are learned only while there is no alarm.
     pub(super) fn push(
         &mut self,
         motors: &mut [Motor],
@@ -115,7 +115,7 @@ impl Balance {
     }
 }
 
-/// Whether the motors are no farther apart than in the last seconds. In a fall they are.
+/// Whether the motors differ no more than in the last seconds. In a fall they do.
 pub(super) fn is_together(motors: &[Motor]) -> bool {
     let count = motors.len() as f64;
     let mean = motors.iter().map(|m| m.command).sum::<f64>() / count;
@@ -129,13 +129,13 @@ pub(super) fn is_together(motors: &[Motor]) -> bool {
     !is_settled(motors) || !is_apart
 }
 
-/// Whether the averages of the last seconds have values of that long.
+/// Whether the averages of the last seconds cover that time.
 fn is_settled(motors: &[Motor]) -> bool {
     motors.iter().all(|m| m.difference.known_s >= LATELY_S)
 }
 
-/// One motor above its trim, where that explains how all have moved: by the mixer, a motor `i` that loses thrust moves the
-/// commands by the column `i` of the projection onto roll, pitch, yaw and thrust.
+/// The motor that is above its trim, if that explains the shifts of all motors: by the mixer, a motor `i` that loses
+/// thrust shifts the commands by column `i` of the projection onto roll, pitch, yaw and thrust.
 fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     let (motor, shift) = highest(motors, Motor::shift, None)?;
     let count = motors.len() as f64;
@@ -143,7 +143,7 @@ fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     let all: f64 = motors.iter().map(|m| m.shift() * m.shift()).sum();
     let explains = shift * shift >= ONE_MOTOR * own * all;
     (shift > limit && explains).then(|| {
-        // On a coaxial arm the other motor may rise nearly as far.
+        // On a coaxial arm the command of the other motor may rise nearly as much.
         let next = highest(motors, Motor::shift, Some(motor));
         let other = next.filter(|(_, next)| !is_ahead(shift, *next));
         Unbalanced {
@@ -155,7 +155,8 @@ fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     })
 }
 
-/// A motor that is farther from its trim than the limit, without the part that turns the nose.
+/// The motor that is out of balance, if a motor deviates from its trim by more than the limit, without the part that
+/// commands yaw.
 fn from_trim(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     let farthest = less_yaw(motors, Motor::shift).fold(0.0, |most: f64, x| most.max(x.abs()));
     let motor = culprit(motors, Motor::shift)?;
@@ -167,8 +168,8 @@ fn from_trim(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     })
 }
 
-/// A motor that is farther above the one opposite than the limit. A fault that was there before the trim was learned shows
-/// only here.
+/// A motor that exceeds the opposite one by more than the limit. Only this detects a fault that was present before the
+/// trim was learned.
 fn at_odds(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     let lately = |motor: &Motor| motor.difference.value;
     let above = less_yaw(motors, lately)
@@ -187,8 +188,8 @@ fn at_odds(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
     })
 }
 
-/// The motor that does not give its part: the highest one, where it is alone up there. Otherwise the one that stopped first,
-/// and where none did, the highest one. Two are named where nothing tells them apart.
+/// The motor that gives too little thrust: the highest one if it is clearly above all others; otherwise the one that
+/// stopped first, or the highest one if none stopped. Two are returned if they cannot be distinguished.
 fn culprit(motors: &[Motor], value: impl Fn(&Motor) -> f64 + Copy) -> Option<MotorFinding> {
     let (highest_one, most) = highest(motors, value, None)?;
     let next = highest(motors, value, Some(highest_one));
@@ -210,12 +211,12 @@ fn culprit(motors: &[Motor], value: impl Fn(&Motor) -> f64 + Copy) -> Option<Mot
     Some(named(motors, highest_one, Side::Upper, other))
 }
 
-/// Whether the highest motor is alone up there.
+/// Whether the highest motor is clearly above the next.
 fn is_ahead(most: f64, next: f64) -> bool {
     most - next >= most / 3.0
 }
 
-/// The motor with the largest value, the first of equal ones, of all but one.
+/// The motor with the largest value, the first of equal ones; `except` is skipped.
 fn highest(
     motors: &[Motor],
     value: impl Fn(&Motor) -> f64,

@@ -1,6 +1,6 @@
-//! Findings beside the risk: noise in the commands, little reserve of thrust, motors out of balance.
+//! Findings that are not about the risk: noise of the commands, little reserve of thrust, motors out of balance.
 //!
-//! Each is a moving average with a fixed time constant, so it needs no window.
+//! Each uses a moving average with a fixed time constant, so it needs no window.
 
 use super::{
     Finding, Level, Limit, Measure, MotorFinding, NoticeSettings,
@@ -13,25 +13,25 @@ use crate::{average::Average, motor::Motor};
 const NOISE_S: f64 = 10.0;
 const RESERVE_S: f64 = 3.0;
 
-/// Noise, reserve and imbalance of one flight.
+/// The state of the noise, reserve and imbalance of one flight.
 #[derive(Debug, Clone)]
 pub(crate) struct Notices {
     settings: NoticeSettings,
     noise_squared: Average,
     reserve: Average,
     balance: Balance,
-    /// Of the noise, the reserve, an imbalance and a weak motor.
+    /// The states for the noise, the reserve, an imbalance and a weak motor.
     watches: [Watch; 4],
 }
 
-/// Since when a limit is passed, and the finding that is open.
+/// The time since which a limit is exceeded, and the open finding.
 #[derive(Debug, Clone, Copy)]
 struct Watch {
     passed_since_s: Option<f64>,
     finding: Option<Finding>,
 }
 
-/// What is passed, and the motor it is about.
+/// A value that exceeds its limit, and the motor that it is about.
 struct Passed {
     measure: Measure,
     /// The value and its limit, on the effective range.
@@ -54,7 +54,8 @@ impl Notices {
         }
     }
 
-    /// Takes in a sample of flight, of a time and the seconds before it that it stands for. `is_calm` where no alarm stands.
+    /// Processes a sample in flight at `t_s` that applies to the `held_s` seconds before. `is_calm` is true while there
+    /// is no alarm.
     pub(crate) fn push(
         &mut self,
         (t_s, held_s): (f64, f64),
@@ -66,7 +67,7 @@ impl Notices {
         let known = commands.filter(|e| e.is_finite());
         let (sum, count) = known.fold((0.0, 0.0), |(sum, count), e| (sum + e, count + 1.0));
         let mean = sum / count;
-        // A noise is known once in 0.1 s or more.
+        // The noise is known at most once per 0.1 s.
         self.noise_squared
             .add(noise * noise, held_s.max(0.1), NOISE_S);
         self.reserve.add(1.0 - mean, held_s, RESERVE_S);
@@ -90,35 +91,35 @@ impl Notices {
         let limit = settings.imbalance;
         let seen = limit.map(|limit| self.balance.push(motors, held_s, limit, is_calm));
         let balance::Seen { weak, imbalance } = seen.unwrap_or_default();
-        // A weak motor explains what is out of balance.
+        // A weak motor explains the imbalance.
         let imbalance = imbalance.filter(|_| self.watches[3].finding.is_none());
         self.watches[2].push(t_s, Level::Warn, limit, imbalance.map(Passed::of));
         self.watches[3].push(t_s, Level::Warn, limit, weak.map(Passed::of));
     }
 
-    /// Whether the motors work as before an alarm, as far as that is looked at.
+    /// Whether the motors work as before an alarm; true if that is not monitored.
     pub(crate) fn is_back(&self) -> bool {
         self.settings.imbalance.is_none() || self.balance.is_back()
     }
 
-    /// Whether the motors are no farther apart than in the last seconds, as far as that is looked at.
+    /// Whether the motors differ no more than in the last seconds; true if that is not monitored.
     pub(crate) fn is_together(&self, motors: &[Motor]) -> bool {
         self.settings.imbalance.is_none() || balance::is_together(motors)
     }
 
-    /// Whether the motors go down together, as far as that is looked at.
+    /// Whether all motors slow down together; false if that is not monitored.
     pub(crate) fn sinks(&self) -> bool {
         self.balance.sinks()
     }
 
-    /// Ends the flight: the open findings.
+    /// Ends the flight and returns the open findings.
     pub(crate) fn end(&mut self) -> [Option<Finding>; 3] {
         let [noise, reserve, imbalance, weak] = self.watches.map(|watch| watch.finding);
         *self = Notices::new(self.settings);
         [noise, reserve, weak.or(imbalance)]
     }
 
-    /// The worst open finding but information.
+    /// The worst open finding above INFO.
     pub(crate) fn open(&self) -> Option<&Finding> {
         let mut open = self
             .watches
@@ -146,7 +147,8 @@ impl Passed {
 }
 
 impl Watch {
-    /// A finding that is open stays so until the flight ends, with what was passed first.
+    /// Updates the finding. An open finding stays open until the flight ends, with the motor and the limit of the first
+    /// time.
     fn push(&mut self, t_s: f64, level: Level, limit: Option<Limit>, passed: Option<Passed>) {
         let (Some(Limit { after_s, .. }), Some(passed)) = (limit, passed) else {
             self.passed_since_s = None;

@@ -1,13 +1,13 @@
-//! Statistics of the means of a window's slots: at most 130 values, whatever the window's length.
+//! Statistics of the means of a window's slots: at most 130 values for any length of the window.
 
 use super::{SLOTS, Window};
 
-/// The samples of a slot together.
+/// The mean of the samples of a slot.
 #[derive(Debug, Clone, Copy)]
 struct Mean {
-    /// The middle of their time, in seconds from now.
+    /// The middle of their time, in seconds relative to now.
     t_s: f64,
-    /// How much of their time is inside the window, in seconds.
+    /// The part of their time that is inside the window, in seconds.
     weight: f64,
     value: f64,
 }
@@ -46,9 +46,9 @@ impl Window {
 }
 
 impl Window {
-    /// The value below which `percent` % of the weight of the slots' means lies, which are sorted for it. Each mean stands at
-    /// the middle of its weight; between two of them the percentile is a straight line, beyond the outer ones it is
-    /// these. `None` in an empty window.
+    /// The value below which `percent` % of the weight of the slots' means is. The means are sorted, and each is at the
+    /// middle of its weight; between two of them the percentile is interpolated linearly, beyond the outer ones it is
+    /// constant. `None` in an empty window.
     pub(crate) fn percentile(&self, percent: f64) -> Option<f64> {
         let mut sorted = [(0.0, 0.0); SLOTS + 2];
         let mut count = 0;
@@ -128,7 +128,7 @@ mod tests {
             (&[5.0, 1.0, 3.0, 11.0], 75.0, 8.0),
             (&[5.0, 1.0, 3.0, 11.0], 100.0, 11.0),
             (&[2.0, 2.0, 2.0, 2.0], 60.0, 2.0),
-            // One spike moves a median by little, a mean by much.
+            // One spike moves the median little, and the mean much.
             (&[1.0, 1.0, 100.0, 1.0, 1.0], 50.0, 1.0),
         ] {
             let found = of(values, percent).unwrap();

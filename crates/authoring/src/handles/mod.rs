@@ -1,5 +1,5 @@
-//! The points by which the membership functions of a text are dragged: where they are, how far they go, and the edits that move
-//! one. An edit changes the numbers and nothing else, comments least of all.
+//! Handles for dragging the membership functions in a text: their positions, their limits, and the edits that move one.
+//! An edit changes only numbers; comments are preserved.
 
 mod moving;
 #[cfg(test)]
@@ -12,55 +12,55 @@ use fuzzy::{
 
 use crate::{Document, Edit, numbers};
 
-/// A point by which a membership function is dragged.
+/// A handle for dragging a membership function.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Handle {
-    /// The parameter that it moves: `peak`, `sd`; `point` of a piecewise function.
+    /// The name of the parameter that it changes: `peak`, `sd`; `point` for a piecewise function.
     pub name: &'static str,
-    /// Where it is, in the unit of the variable.
+    /// The position, in the unit of the variable.
     pub x: f64,
-    /// The degree there.
+    /// The degree at that position.
     pub degree: f64,
-    /// The least `x` it goes to.
+    /// The minimum of `x`.
     pub low: f64,
-    /// The greatest `x` it goes to.
+    /// The maximum of `x`.
     pub high: f64,
-    /// Whether it moves up and down too.
+    /// Whether it can also be moved vertically.
     pub moves_degree: bool,
 }
 
-/// What a handle moves.
+/// The parameter that a handle changes.
 #[derive(Debug, Clone, Copy)]
 enum Grip {
     /// The peak in a partition.
     Peak,
     /// The limit of a term in `steps`.
     Limit,
-    /// The parameter of this index, which is a place.
+    /// The parameter with this index, which is a position.
     Place(usize),
-    /// The parameter of this index: a width, so many times smaller than the handle's distance from a place.
+    /// The parameter with this index, which is a width: a fixed fraction of the handle's distance from a position.
     Width {
         parameter: usize,
         place: usize,
         times: f64,
     },
-    /// The point of this index.
+    /// The point with this index.
     Point(usize),
 }
 
-/// The handles of a term. Variables are counted inputs first; there are none in a profile, of a formula, and where the range or
-/// the term cannot be read.
+/// Returns the handles of a term. Variables are counted inputs first. There are none in a profile, for a formula, and
+/// if the range or the term cannot be read.
 pub fn of(document: &Document, variable: usize, term: usize) -> Vec<Handle> {
     let found = Place::find(document, variable, term);
     let handles = found.map(|place| place.handles()).unwrap_or_default();
     handles.into_iter().map(|(_, handle)| handle).collect()
 }
 
-/// The edits that move a handle to a place and a degree, as near as it goes there. Numbers are rounded to about a thousandth
-/// of the range.
+/// Returns the edits that move a handle to a position and a degree, or as near as it can move. Numbers are rounded to
+/// about a thousandth of the range.
 ///
 /// # Errors
-/// Why it cannot be moved.
+/// The reason why it cannot be moved.
 pub fn moved(
     document: &Document,
     (variable, term): (usize, usize),
@@ -116,7 +116,7 @@ impl<'d> Place<'d> {
         !self.spans.partition.is_empty()
     }
 
-    /// Decimals of a number that is a place: a thousandth of the range, or a little finer.
+    /// The number of decimals of a position: a thousandth of the range, or slightly finer.
     fn decimals(&self) -> usize {
         let width = self.variable.high - self.variable.low;
         (3.0 - width.log10().floor()).clamp(0.0, 17.0) as usize
@@ -142,7 +142,7 @@ impl<'d> Place<'d> {
         if matches!(shape, MembershipFunction::Constant { .. })
             && self.index < self.rules.model.inputs.len()
         {
-            // It is a degree, not a place.
+            // It is a degree, not a position.
             return Vec::new();
         }
         let parameters = shape.parameters();
@@ -151,7 +151,7 @@ impl<'d> Place<'d> {
             .collect()
     }
 
-    /// The handle of a term of a partition: its peak, between the neighbours' peaks.
+    /// The handle of a term of a partition: its peak, which moves between the neighbouring peaks.
     fn peak(&self) -> Option<(Grip, Handle)> {
         let peaks = self.variable.partition_peaks()?;
         let at = self.index_of_term;
@@ -175,7 +175,7 @@ impl<'d> Place<'d> {
         ))
     }
 
-    /// The handle of a term that ends at a limit, between the neighbours' limits; the last term has none.
+    /// The handle of a term that ends at a limit, which moves between the neighbouring limits; the last term has none.
     fn limit(&self) -> Option<(Grip, Handle)> {
         let limits = self.variable.step_limits()?;
         let at = self.index_of_term;
@@ -229,7 +229,7 @@ impl<'d> Place<'d> {
             (Shape::Gaussian2 { .. }, "left_sd") => Some((0, -1.0)),
             (Shape::Gaussian2 { .. }, "right_sd") => Some((2, 1.0)),
             (Shape::Cosine { .. }, "width") => Some((0, 0.5)),
-            // Where the degree is 0.5.
+            // The position with a degree of 0.5.
             (Shape::Spike { .. }, "width") => Some((0, std::f64::consts::LN_2 / 10.0)),
             (_, "slope" | "left_slope" | "right_slope") => return None,
             _ => None,

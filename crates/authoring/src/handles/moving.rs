@@ -1,4 +1,4 @@
-//! The terms of a variable after a handle has moved, and the check that edits give exactly these terms.
+//! The terms of a variable after a handle was moved, and the verification that edits result in exactly these terms.
 
 use fuzzy::{
     format,
@@ -9,7 +9,7 @@ use super::{Grip, Place, rounded};
 use crate::{Document, Edit, edited};
 
 impl Place<'_> {
-    /// The terms of the variable after a handle has moved.
+    /// The terms of the variable after a handle was moved.
     pub(super) fn moved(&self, grip: Grip, to: f64, degree: f64) -> Result<Vec<Term>, String> {
         let mut terms = self.variable.terms.clone();
         let shape = &self.term.membership_function;
@@ -69,7 +69,7 @@ impl Place<'_> {
         Ok(terms)
     }
 
-    /// The edits, where the text then means what is wanted and nothing else.
+    /// Returns the edits if the edited text has the wanted meaning and no other change.
     pub(super) fn verified(
         &self,
         document: &Document,
@@ -91,7 +91,7 @@ impl Place<'_> {
         let text = edited(document.text(), &edits);
         let read = fuzzy::yaml::read(&text).ok();
         let read = read.and_then(|tree| format::read_partly(&tree));
-        // As documents: a range that cannot be read is no number, which equals nothing.
+        // Compared as JSON: an unreadable range is NaN, which does not equal itself.
         let means = |model: &fuzzy::Model| serde_json::to_value(model).ok();
         match read.is_some_and(|read| means(&read.model) == means(&wanted)) {
             true => Ok(edits),

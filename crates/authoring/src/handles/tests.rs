@@ -32,7 +32,7 @@ fn document(text: &str) -> Document {
     Document::new(text, |_| None)
 }
 
-/// The text after a handle has moved.
+/// The text after a handle was moved.
 fn after(text: &str, term: (usize, usize), handle: usize, to: (f64, f64)) -> String {
     let document = document(text);
     edited(text, &moved(&document, term, handle, to).unwrap())

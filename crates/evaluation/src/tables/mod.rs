@@ -1,4 +1,4 @@
-//! The evaluation as tables, which [`words`](crate::words) and [`page`](crate::page) show.
+//! The evaluation as tables, which [`words`](crate::words) and [`page`](crate::page) display.
 
 mod profiles;
 
@@ -15,21 +15,21 @@ use crate::{
 };
 use profiles::{alarms, reliability, warnings};
 
-/// A table, with what is said below it.
+/// A table, with notes below it.
 pub(crate) struct Table {
-    /// Empty for the first.
+    /// The title; empty for the first table.
     pub(crate) title: String,
     pub(crate) columns: Vec<Column>,
-    /// A row may have a cell more than there are columns.
+    /// The rows. A row may have one cell more than there are columns.
     pub(crate) rows: Vec<Vec<String>>,
     pub(crate) notes: Vec<String>,
 }
 
 pub(crate) struct Column {
     pub(crate) head: String,
-    /// In characters; 0 where nothing follows.
+    /// The width in characters; 0 for the last column.
     pub(crate) width: usize,
-    /// Numbers stand on the right.
+    /// Whether cells are aligned to the right, as numbers.
     pub(crate) is_number: bool,
 }
 
@@ -48,7 +48,7 @@ fn number(head: &str, width: usize) -> Column {
     }
 }
 
-/// A name that comes from outside.
+/// A name from the user's data, with invisible characters made visible.
 fn seen(name: &str) -> String {
     visible(name).into_owned()
 }
@@ -72,7 +72,7 @@ pub(crate) fn tables(evaluation: &Evaluation) -> Vec<Table> {
     tables
 }
 
-/// What was evaluated, in lines.
+/// Lines that describe what was evaluated.
 pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
     let Some(first) = evaluation.estimators.first() else {
         return Vec::new();
@@ -109,7 +109,7 @@ pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
     lines
 }
 
-/// The reasons for which files were left out, and of how many.
+/// The reasons for which files were left out, each with the number of files.
 pub(crate) fn left_out(evaluation: &Evaluation) -> BTreeMap<String, usize> {
     let mut reasons = BTreeMap::new();
     for left in &evaluation.left_out {
@@ -179,7 +179,7 @@ fn areas(evaluation: &Evaluation) -> Table {
     }
 }
 
-/// Areas with a row for each group and a column for each estimator; `None` for a single group.
+/// Areas with a row for each group and a column for each estimator; `None` if there is only one group.
 fn by(
     title: &str,
     evaluation: &Evaluation,
@@ -208,7 +208,7 @@ fn by(
             let area = scores.and_then(|scores| scores.areas);
             area.map_or("-".to_owned(), |area| format!("{:.3}", area.roc))
         }));
-        // The same for all estimators: critical cases, or none, are those of the flights.
+        // The same for all estimators: whether there are critical cases depends on the flights.
         let none = scores.no_area(evaluation.cases);
         cells.extend(none.filter(|_| scores.cases > 0));
         cells
@@ -221,7 +221,7 @@ fn by(
     })
 }
 
-/// How the flights of each vehicle were judged.
+/// The verdicts of the flights of each vehicle.
 fn verdicts(evaluation: &Evaluation) -> Option<Table> {
     let mut vehicles: BTreeMap<String, Verdicts> = BTreeMap::new();
     for record in &evaluation.records {

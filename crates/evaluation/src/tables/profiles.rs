@@ -7,7 +7,7 @@ use crate::{
     warnings::Warnings,
 };
 
-/// The alarms of a profile where nothing happens, and before upsets.
+/// The alarms of a profile in calm times, and before upsets.
 pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
     let mut rows = vec![
         needless("calm stretches".to_owned(), &alarms.calm),
@@ -100,7 +100,7 @@ fn needless(name: String, of: &Needless) -> Vec<String> {
     ]
 }
 
-/// What the warnings of a profile are worth.
+/// The quality of the warnings of a profile.
 pub(super) fn warnings(
     profile: &Evaluated,
     all: &Warnings,
@@ -151,7 +151,7 @@ fn warned(kind: String, of: &Warnings) -> Vec<String> {
     ]
 }
 
-/// How often what had a risk became critical; `None` for scores that are no risks.
+/// How often cases with a risk were critical; `None` for scores that are not risks.
 pub(super) fn reliability(estimator: &Evaluated) -> Option<Table> {
     let bands = estimator.reliability.as_ref()?.iter();
     let rows = bands.map(|band| {

@@ -1,4 +1,4 @@
-//! What kind of vehicle ArduPilot flies, and which one it is.
+//! The kind and identity of an ArduPilot vehicle.
 
 use crate::geometry::tables;
 use crate::parameters::Parameters;
@@ -49,10 +49,10 @@ pub(crate) fn vehicle<'a>(
     vehicle
 }
 
-/// Where the id of a vehicle came from whose board wrote it as a text.
+/// The source of a vehicle id that the board wrote as a text.
 pub(crate) const BOARD: &str = "message of the board";
 
-/// Whether a text names the board and the 96 bits of its serial number: `Pixhawk4 0047002B 34385105 36363539`.
+/// Whether a text contains the board name and the 96 bits of its serial number: `Pixhawk4 0047002B 34385105 36363539`.
 fn is_board_id(text: &str) -> bool {
     let mut words = text.split(' ');
     let name = words.next().is_some_and(|name| !name.is_empty());
@@ -94,7 +94,7 @@ fn kind_of_parameters(parameters: &Parameters) -> (VehicleKind, String) {
         .unwrap_or((VehicleKind::Unknown, "the log names no firmware".into()))
 }
 
-/// Number of motors of a frame by the name or class that the log gives it.
+/// Number of motors of a frame, by its name or class in the log.
 fn motors_of_frame(frame: &str) -> Option<u16> {
     tables::motors_of_class(tables::parse(frame)?.0)
 }

@@ -10,14 +10,14 @@ use crate::input::Input;
 use crate::outputs::{Bounds, FRACTIONS, PULSES_US};
 use crate::{Flight, Intervals, Range, ReadError, VehicleKind, identity};
 
-/// An entry, and the line it stands in.
+/// An entry, and the line that contains it.
 pub(super) struct HeaderLine {
     line: u64,
     key: String,
     value: String,
 }
 
-/// The `# key: value` lines on top, and how many lines were read.
+/// Reads the `# key: value` lines at the top, and returns them with the number of lines.
 pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64), ReadError> {
     let mut header = Vec::new();
     let mut lines = 0;
@@ -47,13 +47,13 @@ pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64
 /// The value of `written_by` in the files that this crate writes.
 pub(super) const WRITER: &str = "flagred";
 
-/// Whether this crate wrote the file, so that its units are known, however odd the values of a damaged log are.
+/// Whether this crate wrote the file, so that its units are certain even if the values of a damaged log are odd.
 pub(super) fn is_ours(header: &[HeaderLine]) -> bool {
     let mut header = header.iter();
     header.any(|entry| entry.key == "written_by" && entry.value == WRITER)
 }
 
-/// The end of the last time in the air, where the log ended in the air.
+/// The end of the last time in the air, if the log ended in the air.
 pub(super) fn end_s(header: &[HeaderLine]) -> Result<Option<f64>, ReadError> {
     number_of(header, "end_s")
 }
@@ -71,7 +71,7 @@ fn number_of(header: &[HeaderLine], key: &str) -> Result<Option<f64>, ReadError>
     }
 }
 
-/// Gives the flight what the header says of it: limits, vehicle, geometry.
+/// Copies limits, vehicle and geometry from the header to the flight.
 pub(super) fn apply_header(
     flight: &mut Flight,
     header: Vec<HeaderLine>,
@@ -190,7 +190,7 @@ pub(super) fn apply_header(
                     )
                 })?;
                 let outside = times.iter().find(|t_s| !span_s.contains(t_s));
-                // A damaged log may have it anywhere: no GOOD comes of it.
+                // In a damaged log it may be anywhere, which cannot result in a verdict of GOOD.
                 if let Some(outside) = outside.filter(|_| !is_ours) {
                     let (from_s, to_s) = (span_s.start(), span_s.end());
                     let text = format!(

@@ -18,7 +18,7 @@ use crate::input::Input;
 use crate::signal::preferred;
 use crate::{Flight, Format, Motor, Options, ReadError};
 
-/// Whether the first line that is no comment names a column `t_s`.
+/// Whether the first line that is not a comment names a column `t_s`.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     let start = start.strip_prefix(BOM).unwrap_or(start);
     start
@@ -33,7 +33,7 @@ pub(crate) fn looks_like(start: &[u8]) -> bool {
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
 
-/// A cell without white space and quotes around it, however many.
+/// The content of a cell without surrounding white space and any number of surrounding quotes.
 fn cell(bytes: &[u8]) -> &[u8] {
     let mut bytes = bytes.trim_ascii();
     while let [b'"', inner @ .., b'"'] = bytes {
@@ -76,7 +76,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
         if !more.map_err(|error| broken(error, line))? {
             break;
         }
-        // A comment without a line end reads as a row of nothing.
+        // A comment without a line end is parsed as an empty row.
         if next.as_slice().is_empty() && next.len() <= 1 {
             continue;
         }
@@ -85,7 +85,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
         end = reader.position().byte();
     }
     drop(reader);
-    // A last row without a line end may be torn inside a number.
+    // A last row without a line end may be cut off inside a number.
     let is_torn = start + end == input.taken() && !input.is_at_line_end();
     match record.position().filter(|_| is_torn) {
         Some(torn) => {
@@ -114,7 +114,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     flight.series = preferred(vec![rows.series]);
     let declared = apply_header(&mut flight, header, &layout, span_s)?;
     flight.range = options.range_or_given(flight.range);
-    // Without limits the commands have no meaning yet.
+    // Without limits the meaning of the commands is unknown.
     if let Some(refused) = other_unit.filter(|_| flight.range.is_some()) {
         return Err(refused);
     }
@@ -134,10 +134,11 @@ fn problem(line: u64, problem: impl Into<String>, help: &str) -> ReadError {
     .with_path("the log")
 }
 
-/// Bytes of a row, with the comments above it. Longer header lines are not taken for a flight CSV.
+/// The maximum length of a row in bytes, with the comments above it. A file with longer header lines is not recognised
+/// as a flight CSV.
 const LONGEST_ROW: usize = 1_000_000;
 const MOST_COLUMNS: usize = 4096;
-/// ArduPilot's frames have up to 12 motors, its outputs 32.
+/// ArduPilot's frames have up to 12 motors, its outputs are up to 32.
 const MOST_MOTORS: usize = 32;
 
 fn too_long(line: u64) -> ReadError {
@@ -145,7 +146,7 @@ fn too_long(line: u64) -> ReadError {
     problem(line, text, "a row is one sample: end it with a line end")
 }
 
-/// Reads no more than the bytes that are left for a row, which otherwise would fill the memory.
+/// Limits the bytes that are read for a row, which otherwise could fill the memory.
 struct Bounded<'a, 'r> {
     input: &'a mut Input<'r>,
     left: &'a Cell<usize>,
@@ -162,17 +163,17 @@ impl Read for Bounded<'_, '_> {
     }
 }
 
-/// What the columns hold.
+/// The meaning of the columns.
 struct Layout {
     time: usize,
-    /// Column of each motor, in order.
+    /// The column of each motor, in order.
     motors: Vec<usize>,
     /// `pwm` or `motor`.
     stem: &'static str,
     in_air: Option<usize>,
     /// Column and name of each signal, and whether it is kept.
     signals: Vec<(usize, String, bool)>,
-    /// Columns that a row must have.
+    /// The number of columns that a row must have.
     columns: usize,
 }
 
@@ -267,7 +268,7 @@ impl Layout {
     }
 }
 
-/// Columns named `stem` and a number, with their numbers.
+/// The columns named `stem` and a number, with these numbers.
 fn numbered(names: &[String], stem: &str) -> Vec<(u64, usize)> {
     let number = |name: &String| name.strip_prefix(stem)?.parse().ok();
     names
@@ -277,7 +278,7 @@ fn numbered(names: &[String], stem: &str) -> Vec<(u64, usize)> {
         .collect()
 }
 
-/// The unit by the end of a name, as in `roll_deg`.
+/// The unit from the suffix of a name, as in `roll_deg`.
 fn unit_of(name: &str) -> &'static str {
     const UNITS: &[(&str, &str)] = &[
         ("_deg_s", "deg/s"),

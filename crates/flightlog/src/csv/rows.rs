@@ -7,15 +7,15 @@ use crate::outputs::{LONGEST_PULSE_US, PULSES_US};
 use crate::signal::{Label, SET_BACK_S};
 use crate::{Commands, Intervals, ReadError, Report, Series};
 
-/// A fraction this far outside 0 to 1 comes from rounding, or from limits that are slightly exceeded.
+/// Fractions up to this far outside 0 to 1 are rounding errors or slightly exceeded limits.
 const MOST_OUTSIDE: f64 = 0.5;
 const HELP_FRACTIONS: &str = "name pulse widths in us `pwm1`.. and add their limits; divide percent by 100; docs/flight-csv.md has DShot";
 const HELP_PULSES: &str = "name fractions from 0 to 1 `motor1`..; divide percent by 100 and name them so; docs/flight-csv.md has DShot";
 const HELP_SHORT: &str = "give every row a cell for each column, empty where the value is unknown";
-/// On either side of 0. Logs that count microseconds in 64 bits are within it, and so is what they are converted to. One damaged
-/// time beyond it would make all later ones go back.
+/// The furthest accepted time from 0, in seconds. It admits 64-bit counts of microseconds before and after conversion.
+/// A single damaged time beyond it would make all later ones go back.
 const FURTHEST_S: f64 = 1e14;
-/// The smallest step between motor commands that is taken for milliseconds.
+/// The smallest step between motor commands that is recognised as milliseconds.
 const LEAST_STEP_MS: f64 = 2.0;
 const LEAST_STEPS: usize = 5;
 
@@ -31,9 +31,9 @@ pub(super) struct Rows {
     first_s: f64,
     last_s: f64,
     last_was_short: Option<(u64, String)>,
-    /// What is added to the times since the clock started again.
+    /// The offset that is added to times since the clock restarted.
     offset_s: f64,
-    /// The time of the row before, where it went back.
+    /// The time of the previous row, if it went back.
     back_s: Option<f64>,
     pub(super) boots_s: Vec<f64>,
     pub(super) rebooted_in_air_s: Vec<f64>,
@@ -41,20 +41,20 @@ pub(super) struct Rows {
     is_whole: bool,
     /// The first row of motor commands with a later time than the row before: line and both times.
     first_step: Option<(u64, f64, f64)>,
-    /// Rows of motor commands with the time of the row before, and line and time of the first.
+    /// The number of rows of motor commands with the same time as the previous row, and line and time of the first.
     repeated: usize,
     first_repeated: Option<(u64, f64)>,
-    /// Of each column of pulse widths.
+    /// Counts for each column of pulse widths.
     pulses: Vec<Pulses>,
-    /// The first cell that cannot be used.
+    /// The error of the first unusable cell.
     refused: Option<ReadError>,
 }
 
-/// Cells of a column of pulse widths that are neither empty nor 0.
+/// Counts of the cells of a column of pulse widths that are neither empty nor 0.
 #[derive(Clone, Default)]
 struct Pulses {
     known: usize,
-    /// Those that are not a pulse width in us, and line and value of the first.
+    /// The number of cells that are not a pulse width in us, and line and value of the first.
     outside: usize,
     first: Option<(u64, f64)>,
 }
@@ -123,7 +123,7 @@ impl Rows {
         }
     }
 
-    /// Whether the last row has too few cells, as that of a file that is cut off.
+    /// Whether the last row has too few cells, as in a file that is cut off.
     pub(super) fn is_cut_off(&self) -> bool {
         self.last_was_short.is_some()
     }
@@ -144,7 +144,7 @@ impl Rows {
         }
         self.is_whole &= t_s.fract() == 0.0;
         let t_s = self.on_one_clock(t_s)?;
-        // A row with a damaged cell counts, with an unknown value in its place: without it the flight would be shorter.
+        // A row with a damaged cell is kept with an unknown value: without it the flight would be shorter.
         let mut damaged = None;
         let mut read = |column: &usize| match number(record, *column) {
             Ok(value) => value,
@@ -174,7 +174,7 @@ impl Rows {
         report.row(commands.len() + signals.len(), false);
         self.first_s = self.first_s.min(t_s);
         self.last_s = t_s;
-        // A row without any command that tells of a take-off or a landing is between two samples of the motors.
+        // A row without any command, which only marks a take-off or a landing, is not a sample of the motors.
         let is_between = took_off_or_landed && commands.iter().all(|command| command.is_nan());
         if !commands.is_empty() && !is_between {
             match self.commands.t_s().last() {
@@ -195,20 +195,20 @@ impl Rows {
         Ok(())
     }
 
-    /// Refuses the file, for the first reason.
+    /// Refuses the file; the first reason is kept.
     fn refuse(&mut self, line: u64, text: String, help: &str) {
         self.refused
             .get_or_insert_with(|| problem(line, text, help));
     }
 
-    /// The time of a row. Without it the row cannot be placed, and leaving it out would make the flight shorter.
+    /// The time of a row. A row without a time cannot be placed, and skipping it would make the flight shorter.
     fn time(&mut self, layout: &Layout, record: &ByteRecord, line: u64) -> Result<f64, String> {
         if let Ok(t_s) = number(record, layout.time)
             && t_s.is_finite()
         {
             return Ok(t_s);
         }
-        // Spreadsheets end a table with rows of empty cells.
+        // Spreadsheets may end a table with rows of empty cells.
         if record.iter().all(|bytes| cell(bytes).is_empty()) {
             return Err("all cells are empty".into());
         }
@@ -228,7 +228,7 @@ impl Rows {
         Err(text)
     }
 
-    /// Whether the vehicle is in the air, where the cell is not empty.
+    /// Whether the vehicle is in the air; `None` if the cell is empty.
     fn state(
         &mut self,
         record: &ByteRecord,
@@ -252,7 +252,7 @@ impl Rows {
         }
     }
 
-    /// Looks for commands in another unit than the names of their columns promise.
+    /// Detects commands in a unit that contradicts the names of their columns.
     fn look_at_units(&mut self, layout: &Layout, commands: &[f64], line: u64) {
         if layout.stem == "motor"
             && let Some(motor) = commands.iter().position(|command| is_far_outside(*command))
@@ -262,7 +262,7 @@ impl Rows {
             self.refuse(line, text, HELP_FRACTIONS);
         }
         for (pulses, &raw) in self.pulses.iter_mut().zip(commands) {
-            // 0 is the output of a motor that is off.
+            // 0 is the output for a motor that is off.
             if raw.is_nan() || raw == 0.0 {
                 continue;
             }
@@ -274,8 +274,8 @@ impl Rows {
         }
     }
 
-    /// A column whose cells are mostly not pulse widths, so that all motors would seem to be at one of their limits. Single
-    /// ones are damage.
+    /// An error for a column whose cells are mostly not pulse widths, because all motors would seem to be at a limit.
+    /// Single such cells are damage.
     pub(super) fn other_unit(&self) -> Option<ReadError> {
         let mut columns = (1..).zip(&self.pulses);
         let (number, pulses) = columns.find(|(_, pulses)| pulses.outside > pulses.known / 2)?;
@@ -284,20 +284,20 @@ impl Rows {
         Some(problem(line, text, HELP_PULSES))
     }
 
-    /// First and last time of the rows; of no rows, one that nothing is in.
+    /// The first and last time of the rows; without rows, an empty span.
     pub(super) fn span_s(&self) -> (f64, f64) {
         (self.first_s, self.last_s)
     }
 
-    /// Why the file is refused. The clock of a file that this crate wrote is in seconds.
+    /// The reason why the file is refused. The clock of a file that this crate wrote is in seconds.
     pub(super) fn refusal(&mut self, is_ours: bool) -> Option<ReadError> {
         let refused = self.refused.take();
         let of_clock = || self.milliseconds().or_else(|| self.coarse());
         refused.or_else(|| of_clock().filter(|_| !is_ours))
     }
 
-    /// The time on the clock of the first row. A clock that goes back for two rows or more was started again, as after a
-    /// reboot, and continues at the end of the time before.
+    /// The time on the clock of the first row. A clock that goes back for two rows or more was restarted, as after a
+    /// reboot, and continues from the last time before.
     fn on_one_clock(&mut self, t_s: f64) -> Result<f64, String> {
         let now_s = t_s + self.offset_s;
         if now_s >= self.last_s {
@@ -313,7 +313,7 @@ impl Rows {
                 if self.is_in_air() {
                     self.rebooted_in_air_s.push(self.last_s);
                 }
-                // For times of 1e9 s and more the sum is rounded.
+                // For times from 1e9 s the sum is rounded.
                 Ok((t_s + self.offset_s).max(self.last_s))
             }
             None => Err("the time goes back".into()),
@@ -326,7 +326,8 @@ impl Rows {
             .map_or(!self.has_air, |(_, state)| *state)
     }
 
-    /// Times that look like milliseconds or microseconds: whole numbers, and most steps between motor commands at least 2.
+    /// An error for times that look like milliseconds or microseconds: whole numbers, with most steps between motor
+    /// commands at least 2.
     fn milliseconds(&self) -> Option<ReadError> {
         let times = self.commands.t_s();
         let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
@@ -344,9 +345,9 @@ impl Rows {
         })
     }
 
-    /// Whole numbers that repeat: milliseconds at 1 kHz and above, or a clock of whole seconds. Which of the two cannot be told,
-    /// so the rows are not spread over the time between. Fractions that repeat need no spreading: windows are longer than
-    /// what such a clock leaves open.
+    /// An error for whole numbers that repeat: milliseconds at 1 kHz and above, or a clock of whole seconds. The two
+    /// cannot be distinguished, so the rows are not spread over time. Fractions that repeat need no spreading, because
+    /// windows are longer than the resolution of such a clock.
     fn coarse(&self) -> Option<ReadError> {
         let (line, t_s) = self.first_repeated?;
         (self.is_whole && self.repeated >= LEAST_STEPS).then(|| {
@@ -357,7 +358,7 @@ impl Rows {
         })
     }
 
-    /// `None` where the column is there and empty. The log may go on after the last row.
+    /// The times in the air; `None` if the column exists but is empty. The log may continue after the last row.
     pub(super) fn in_air(&self, end_s: Option<f64>) -> Option<Intervals> {
         if self.has_air && self.air_changes.is_empty() {
             return None;

@@ -1,4 +1,4 @@
-//! A flight as CSV.
+//! Writes a flight as CSV.
 
 use std::io::{self, Write};
 
@@ -6,19 +6,17 @@ use super::header::WRITER;
 use crate::{Basis, Flight, Hold, VehicleKind};
 
 impl Flight {
-    /// Writes the flight as CSV: its vehicle and ranges in the lines on top, then a row for
-    /// each row of motor commands, with the latest value of every signal at that time. A take-off
-    /// or a landing between two of them has a row without commands. A flight without motor commands
-    /// has a row for each row of its longest series.
+    /// Writes the flight as CSV: header lines with its vehicle and ranges, then a row for each row of motor commands,
+    /// with the latest value of every signal at that time. A take-off or a landing between two of these rows has its
+    /// own row without commands. A flight without motor commands has a row for each row of its longest series.
     ///
-    /// Commands in us are written as they are (`pwm1`..), all others as fractions of the
-    /// full range (`motor1`..). What is not known is an empty cell. Numbers are written so
-    /// that reading them gives the same number again. A text that a spreadsheet would take for
-    /// a formula has an apostrophe in front.
+    /// Commands in us are written unchanged (`pwm1`..), all others as fractions of the full range (`motor1`..). Unknown
+    /// values are empty cells. Numbers are written so that they are read back exactly. Texts that a spreadsheet would
+    /// interpret as a formula are preceded by an apostrophe.
     ///
     /// # Errors
     ///
-    /// When `out` cannot be written.
+    /// If writing to `out` fails.
     ///
     /// ```
     /// let log = "t_s,motor1,motor2,in_air\n0,0.5,0.25,0\n0.1,0.75,0.5,1\n";
@@ -40,7 +38,7 @@ impl Flight {
         for number in 1..=motors {
             write!(out, ",{stem}{number}")?;
         }
-        // Empty where it is not known: without the column every row counts as in the air.
+        // Empty if it is unknown: without the column, every row would count as in the air.
         write!(out, ",in_air")?;
         for signal in self.signals() {
             write!(out, ",{}", quoted(&signal.label.name))?;
@@ -63,12 +61,12 @@ impl Flight {
             }
             writeln!(out)
         };
-        // A take-off or a landing between two rows has a row of its own, without commands.
+        // A take-off or a landing between two rows has its own row, without commands.
         let mut changes = self.air_changes().into_iter().peekable();
         let unknown = vec![f64::NAN; motors];
         let mut row = |out: &mut dyn Write, t_s: f64, commands: &[f64]| {
             while let Some(change_s) = changes.next_if(|change_s| *change_s <= t_s) {
-                // A row of unknown commands at this time is a sample all the same.
+                // A row of unknown commands at this time is still a sample.
                 if change_s < t_s || commands.iter().all(|raw| raw.is_nan()) {
                     write_row(out, change_s, &unknown)?;
                 }
@@ -148,7 +146,7 @@ impl Flight {
             if let Some(frame) = &geometry.frame {
                 line(out, "frame", frame)?;
             }
-            // The columns are numbered from 1, so the name of a frame with gaps in its numbers does not suffice.
+            // Columns are numbered from 1, so the name of a frame is not enough if motor numbers have gaps.
             let in_turn = (1..).zip(&self.motors).all(|(n, motor)| n == motor.number);
             if geometry.frame.is_none() || !in_turn {
                 for (number, [roll, pitch, yaw]) in (1..).zip(&geometry.factors) {
@@ -157,7 +155,7 @@ impl Flight {
                 }
             }
         }
-        // Spare outputs of a log may have the functions of motors, too.
+        // Spare outputs in a log may have motor functions too.
         let columns = self.motors.len();
         if let Some(motors) = self
             .vehicle
@@ -208,10 +206,11 @@ fn cell(out: &mut dyn Write, value: Option<f64>) -> io::Result<()> {
     }
 }
 
-/// What makes a spreadsheet read a cell as a formula.
+/// The first characters that make a spreadsheet interpret a cell as a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
-/// A text in a comment. A line break would end it, and a spreadsheet splits it into cells as it does rows.
+/// A text for a comment line. Line breaks, which would end the comment, are replaced. Spreadsheets split comments into
+/// cells, so each cell is escaped.
 fn comment(text: &str) -> String {
     let mut written = String::with_capacity(text.len());
     for (i, cell) in text.split_inclusive([',', ';']).enumerate() {
@@ -224,7 +223,7 @@ fn comment(text: &str) -> String {
     written.replace(['\r', '\n'], " ")
 }
 
-/// A name as a cell: in quotes where it holds what would end the cell.
+/// A name as a cell, quoted if it contains characters that would end the cell.
 fn quoted(name: &str) -> String {
     let name = match name.starts_with(FORMULA) {
         true => &format!("'{name}"),

@@ -1,4 +1,4 @@
-//! From DataFlash messages, binary or text, to a `Flight`.
+//! Converts DataFlash messages, binary or text, to a `Flight`.
 
 use super::format::{Cells, Column, FMT, Format};
 use super::landing::{Landing, air_from_events, boots_in_air};
@@ -17,7 +17,7 @@ use crate::{Event, Flight, Options, Report, Series, VehicleKind, utc};
 pub(super) struct Collector<'o> {
     options: &'o Options,
     kinds: Vec<Option<Kind>>,
-    /// Motors that have a column of their own in MOT messages (firmware before 3.2).
+    /// The number of motors that have a column of their own in MOT messages (firmware before 3.2).
     named_motors: u16,
     clock: Clock,
     waiting: Option<Kept>,
@@ -31,7 +31,7 @@ pub(super) struct Collector<'o> {
     events: Vec<(f64, Landing)>,
     modes: Vec<(f64, Mode)>,
     texts: Vec<Event>,
-    /// Texts that stand above the messages of a text log.
+    /// The texts before the messages of a text log.
     pub(super) greetings: Vec<String>,
     utc_at_zero_s: Option<f64>,
 }
@@ -59,12 +59,12 @@ impl<'o> Collector<'o> {
         }
     }
 
-    /// Whether messages of this type hold anything that is read.
+    /// Whether messages of this type contain anything that is read.
     pub(super) fn wants(&self, type_id: u8) -> bool {
         kind(&self.kinds, type_id).is_some_and(|kind| !matches!(kind.role, Role::Nothing))
     }
 
-    /// Whether the fields of a text line are as many and such as its definition says.
+    /// Checks that the fields of a text line match their definition in number and type.
     pub(super) fn check(&self, type_id: u8, cells: &[&str]) -> Result<(), &'static str> {
         let Some(kind) = kind(&self.kinds, type_id) else {
             return Ok(());
@@ -83,12 +83,12 @@ impl<'o> Collector<'o> {
         Ok(())
     }
 
-    /// Takes in the description of a kind of message; gives whether it holds from now on.
+    /// Stores the definition of a message type, and returns whether it is in use from now on.
     pub(super) fn define(&mut self, format: Format) -> bool {
         let known = kind(&self.kinds, format.type_id).map(|kind| &kind.format);
         let (is_known, is_same) = (known.is_some(), known == Some(&format));
         if format.type_id == FMT && is_known {
-            // The definitions start over: the autopilot booted again into this log.
+            // The definitions are repeated: the autopilot booted again and continued this log.
             self.clock.expect_boot();
             self.redefine = true;
         }
@@ -118,7 +118,7 @@ impl<'o> Collector<'o> {
         true
     }
 
-    /// Takes in a message.
+    /// Processes a message.
     pub(super) fn message(&mut self, type_id: u8, cells: Cells<'_>) {
         if self.report.leaves_out(self.clock.is_full()) {
             return;
@@ -131,7 +131,7 @@ impl<'o> Collector<'o> {
         {
             return;
         }
-        // Parameters need no time, and may be logged with that of another thread.
+        // Parameters need no time, and may carry the time of another thread.
         if let Role::Parameter { name, value } = kind.role {
             let name = cells.text(&kind.format, name);
             let value = cells.number(&kind.format, value);
@@ -141,7 +141,7 @@ impl<'o> Collector<'o> {
             return;
         }
         let Some((column, unit)) = kind.time else {
-            // An event without a time does not tell when: the commands tell more.
+            // An event without a time is useless; the commands are the better source.
             if !matches!(kind.role, Role::Event(_) | Role::Arm(_) | Role::Nothing)
                 && !self.untimed.keep(type_id, cells)
             {
@@ -180,7 +180,7 @@ impl<'o> Collector<'o> {
         }
     }
 
-    /// Takes a message whose time is its own, and those before it that had none.
+    /// Processes a message with its own time, after the earlier messages that had none.
     fn take_timed(&mut self, type_id: u8, cells: Cells<'_>, t_s: f64) {
         for (t_s, kept) in self.untimed.timed_before(t_s) {
             kept.give(|type_id, cells| self.take(type_id, cells, t_s));
@@ -259,7 +259,7 @@ impl<'o> Collector<'o> {
         }
     }
 
-    /// The flight, once the whole log has been read.
+    /// Returns the flight, after the whole log has been read.
     pub(super) fn finish(mut self, mut flight: Flight) -> Flight {
         if self.waiting.take().is_some() {
             self.refute();
@@ -336,22 +336,22 @@ impl<'o> Collector<'o> {
     }
 }
 
-/// The kind of messages of a type.
+/// The definition and use of a message type.
 fn kind(kinds: &[Option<Kind>], type_id: u8) -> Option<&Kind> {
     kinds.get(usize::from(type_id))?.as_ref()
 }
 
-/// Series of different signals that definitions which change can make; any log has fewer.
+/// The number of different series that changing definitions can create; any log has fewer.
 const MOST_SERIES: usize = 256;
 
-/// The series with these signals of that message: where the definitions are repeated, the
-/// one of before.
+/// The index of the series of a message that has these signals. If the definitions are repeated, it is the existing
+/// one.
 fn series_of(known: &mut Vec<(&str, Series)>, name: &'static str, labels: Vec<Label>) -> usize {
     let same = |(of, series): &(&str, Series)| {
         *of == name && series.signals().map(|signal| signal.label).eq(&labels)
     };
     known.iter().position(same).unwrap_or_else(|| {
-        // The index after the last stands for none: its rows go nowhere.
+        // The index after the last means that the rows are dropped.
         if known.len() < MOST_SERIES {
             known.push((name, Series::new(labels)));
             return known.len() - 1;

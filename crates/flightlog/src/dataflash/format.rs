@@ -11,21 +11,21 @@ pub(crate) const FMT: u8 = 128;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Column {
     pub(crate) label: String,
-    /// The letter that stands for its type.
+    /// The letter of its type.
     pub(crate) kind: u8,
-    /// Its number in the payload of a binary record.
+    /// The position and type of the number in the payload of a binary record.
     field: NumericField,
 }
 
-/// A kind of message, as its FMT record describes it.
+/// The definition of a message type by its FMT record.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Format {
     pub(crate) type_id: u8,
-    /// Bytes of a binary record, its header of three included.
+    /// The length of a binary record in bytes, including its header of three bytes.
     pub(crate) length: usize,
     pub(crate) name: String,
     pub(crate) columns: Vec<Column>,
-    /// The fields do not fill the record, so their offsets may be wrong.
+    /// Whether the fields do not fill the record, so that their offsets may be wrong.
     pub(crate) damaged: bool,
 }
 
@@ -59,8 +59,7 @@ impl Format {
         }
     }
 
-    /// The format that a binary FMT record (its payload) describes; `None` when its
-    /// length cannot be one.
+    /// The format that the payload of a binary FMT record describes; `None` if its length is impossible.
     pub(crate) fn from_payload(payload: &[u8]) -> Option<Self> {
         let (&[type_id, length], rest) = payload.split_first_chunk()?;
         let (name, rest) = rest.split_first_chunk::<4>()?;
@@ -80,13 +79,13 @@ impl Format {
         (format.length >= filled).then_some(format)
     }
 
-    /// Whether a column is of one of these types.
+    /// Whether a column has one of these types.
     pub(crate) fn has_kind(&self, column: usize, kinds: &[u8]) -> bool {
         let described = self.columns.get(column);
         described.is_some_and(|described| kinds.contains(&described.kind))
     }
 
-    /// Index of the first of `labels` that this message has.
+    /// The index of the first of `labels` that this message has.
     pub(crate) fn column(&self, labels: &[&str]) -> Option<usize> {
         labels
             .iter()
@@ -94,7 +93,7 @@ impl Format {
     }
 }
 
-/// Bytes of a type of field; 0 for an unknown letter.
+/// The size of a field type in bytes; 0 for an unknown letter.
 fn width(kind: u8) -> usize {
     match kind {
         b'b' | b'B' | b'M' => 1,
@@ -107,7 +106,7 @@ fn width(kind: u8) -> usize {
     }
 }
 
-/// Text up to the first zero; `None` when it is not printable ASCII, so not a definition.
+/// The text up to the first zero; `None` if it is not printable ASCII, so not a definition.
 fn ascii(bytes: &[u8]) -> Option<Cow<'_, str>> {
     let text = bytes.split(|&byte| byte == 0).next()?;
     let printable = text.iter().all(|byte| (b' '..=b'~').contains(byte));
@@ -117,14 +116,14 @@ fn ascii(bytes: &[u8]) -> Option<Cow<'_, str>> {
 /// The fields of one message, in either encoding.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Cells<'a> {
-    /// Payload of a binary record, after its header.
+    /// The payload of a binary record, after its header.
     Binary(&'a [u8]),
-    /// Fields of a text line, after its name.
+    /// The fields of a text line, after its name.
     Text(&'a [&'a str]),
 }
 
 impl Cells<'_> {
-    /// The number in a column, scaled to its unit; `None` where there is none.
+    /// The number in a column, scaled to its unit; `None` if it is not a number.
     pub(crate) fn number(&self, format: &Format, column: usize) -> Option<f64> {
         let described = format.columns.get(column)?;
         match self {
@@ -151,7 +150,7 @@ impl Cells<'_> {
                 Some(String::from_utf8_lossy(text).trim().to_owned())
             }
             Self::Text(cells) => {
-                // A text may hold commas where it is the last column.
+                // A text in the last column may contain commas.
                 let to = match column + 1 == format.columns.len() {
                     true => cells.len(),
                     false => column + 1,
@@ -162,7 +161,7 @@ impl Cells<'_> {
     }
 }
 
-/// The type of number that a letter stands for, and its unit.
+/// The number type of a letter, and its unit.
 fn number_of(kind: u8) -> (Kind, f64) {
     match kind {
         b'b' => (Kind::I8, 1.0),
@@ -179,7 +178,7 @@ fn number_of(kind: u8) -> (Kind, f64) {
         b'd' => (Kind::F64, 1.0),
         b'q' => (Kind::I64, 1.0),
         b'Q' => (Kind::U64, 1.0),
-        // B, M, and what is no number: see `Cells::number`.
+        // B, M, and types that are not numbers: see `Cells::number`.
         _ => (Kind::U8, 1.0),
     }
 }

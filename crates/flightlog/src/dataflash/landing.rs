@@ -1,8 +1,8 @@
-//! When a vehicle was armed and in the air, by the events of a DataFlash log.
+//! Determines from the events of a DataFlash log when the vehicle was armed and in the air.
 
 use crate::Intervals;
 
-/// An event that changes one of the two.
+/// An event that changes the armed or in-air state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Landing {
     Armed,
@@ -13,7 +13,7 @@ pub(super) enum Landing {
 }
 
 impl Landing {
-    /// The event of that number in EV messages.
+    /// The event with this number in EV messages.
     pub(super) fn of(id: f64) -> Option<Self> {
         Some(match id as i64 {
             10 => Self::Armed,
@@ -25,8 +25,7 @@ impl Landing {
     }
 }
 
-/// Armed and in-air times from the events of the log, the latter only if any event tells.
-/// A boot ends both.
+/// Armed and in-air times from the events of the log; the latter only if there are such events. A boot ends both.
 pub(super) fn air_from_events(
     events: &[(f64, Landing)],
     boots_s: &[f64],
@@ -48,7 +47,7 @@ pub(super) fn air_from_events(
     let first = events.first().map(|&(_, event)| event);
     let armed = Intervals::from_changes(
         &changes(Landing::Armed, &[Landing::Disarmed]),
-        // A log whose first word is of flying or its end was already armed before.
+        // If the first event is about flying or about the end of a flight, the vehicle was armed before the log began.
         first.is_some_and(|event| event != Landing::Armed),
         first_s,
         last_s,
@@ -61,13 +60,13 @@ pub(super) fn air_from_events(
         last_s,
         "EV 28 (not landed) to EV 18 (land complete) or disarmed",
     );
-    // Firmware before 3.1 tells of arming, but not of leaving the ground.
+    // Firmware before 3.1 logs arming, but not take-off.
     let tells = |event| matches!(event, Landing::Left | Landing::Landed);
     let told = events.iter().any(|&(_, event)| tells(event));
     (armed, told.then_some(in_air))
 }
 
-/// The boots at which the vehicle was in the air by the events before them.
+/// The boots at which the vehicle was in the air according to the events before them.
 pub(super) fn boots_in_air(events: &[(f64, Landing)], boots_s: &[f64]) -> Vec<f64> {
     let is_flying = |boot_s: f64| {
         let before = events

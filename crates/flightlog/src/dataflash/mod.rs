@@ -1,8 +1,8 @@
-//! ArduPilot DataFlash logs, binary here and as text in [`text`].
+//! Reads ArduPilot DataFlash logs, in binary form here and as text in [`text`].
 //!
-//! A binary log is a row of records: `A3 95`, a type, and as many bytes as the FMT record
-//! of that type says. Records have no checksum, so one is accepted only when another one
-//! follows it; see <https://ardupilot.org/dev/docs/code-overview-adding-a-new-log-message.html>.
+//! A binary log is a sequence of records: `A3 95`, a type, and as many bytes as the FMT record of that type defines.
+//! Records have no checksum, so a record is accepted only if another one follows it; see
+//! <https://ardupilot.org/dev/docs/code-overview-adding-a-new-log-message.html>.
 
 mod collect;
 mod format;
@@ -20,18 +20,18 @@ use crate::input::Input;
 use crate::{Flight, Options};
 
 const HEAD: [u8; 2] = [0xa3, 0x95];
-/// Length of the FMT records, the only ones known before the log is read.
+/// The length of FMT records, the only length known before the log is read.
 const FMT_LENGTH: usize = 89;
-/// No record is longer: its length is one byte.
+/// The maximum length of a record, which is stored in one byte.
 const LONGEST: usize = 255;
 
-/// The names and units of the signals that these logs can carry.
+/// The names and units of the signals that these logs can contain.
 pub(crate) fn known_signals() -> impl Iterator<Item = (&'static str, &'static str)> {
     let signals = signals::SPECS.iter().flat_map(|spec| spec.signals);
     signals.map(|(_, name, unit)| (*name, *unit))
 }
 
-/// Whether the start of a file holds a DataFlash definition.
+/// Whether the start of a file contains a DataFlash definition.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     start.starts_with(&[HEAD[0], HEAD[1], FMT])
         || start
@@ -49,7 +49,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> io::Result<Fligh
 
 struct Scanner<'o> {
     collector: Collector<'o>,
-    /// Length of the records of each type; 0 for types without a definition.
+    /// The length of the records of each type; 0 for types without a definition.
     lengths: [u8; 256],
     wanted: [bool; 256],
 }
@@ -67,10 +67,10 @@ impl<'o> Scanner<'o> {
         }
     }
 
-    /// Reads the records of a window and returns how many bytes are done: all but a
-    /// record that may continue after the window, or all at the end of the log.
+    /// Reads the records of a window and returns the number of processed bytes: all except a record that may continue
+    /// after the window, or all at the end of the log.
     fn scan(&mut self, window: &[u8], at_end: bool) -> usize {
-        // Except at the end, the window holds two whole records and the head of the next.
+        // Except at the end, the window contains two whole records and the head of the next.
         let sure = match at_end {
             true => window.len(),
             false => window.len().saturating_sub(2 * LONGEST + HEAD.len()),
@@ -86,7 +86,7 @@ impl<'o> Scanner<'o> {
                 length = self.length(window.get(at..).unwrap_or_default());
                 continue;
             }
-            // The usual case: a record, and another one after it.
+            // The usual case: a record, followed by another one.
             messages += 1;
             length = next;
             let type_id = window[at + 2];
@@ -102,9 +102,9 @@ impl<'o> Scanner<'o> {
         at.min(window.len())
     }
 
-    /// Handles what is at the start of `bytes` where no record follows, or where there is no
-    /// record; returns its length. Up to `sure`, damage can be told from a record
-    /// that continues after the window.
+    /// Handles the start of `bytes` if it is not a record, or a record that is not followed by another; returns the
+    /// number of bytes handled. Up to `sure`, damage can be distinguished from a record that continues after the
+    /// window.
     fn step(&mut self, bytes: &[u8], sure: usize, at_end: bool) -> usize {
         let found = self.record(bytes);
         let report = &mut self.collector.report;
@@ -145,7 +145,7 @@ impl<'o> Scanner<'o> {
         }
     }
 
-    /// What is at the start of `bytes`.
+    /// Classifies the start of `bytes`.
     fn record<'a>(&self, bytes: &'a [u8]) -> Found<'a> {
         let length = self.length(bytes);
         if bytes.len() < 3 && HEAD.starts_with(&bytes[..bytes.len().min(2)]) {
@@ -162,8 +162,8 @@ impl<'o> Scanner<'o> {
         if bytes.len() == length || self.starts(&bytes[length..]) {
             return Found::Record { type_id, payload };
         }
-        // No record follows. If a record starts inside of this one
-        // and is itself followed by another, then this one lost bytes; else the next did.
+        // No record follows. If a record that starts inside this one is itself followed by another, then bytes of this
+        // one are missing; otherwise the next record is damaged.
         let inner = self.next_head(bytes, 1, length);
         if inner < length && self.starts(&bytes[inner + self.length(&bytes[inner..])..]) {
             return Found::Damage { skip: inner };
@@ -171,7 +171,7 @@ impl<'o> Scanner<'o> {
         Found::Record { type_id, payload }
     }
 
-    /// Length of the record that starts here; 0 when none does.
+    /// The length of the record that starts here; 0 if none does.
     fn length(&self, bytes: &[u8]) -> usize {
         match bytes {
             [a, b, type_id, ..] if [*a, *b] == HEAD => self.lengths[usize::from(*type_id)].into(),
@@ -184,7 +184,7 @@ impl<'o> Scanner<'o> {
         self.length(bytes) > 0 || HEAD.starts_with(&bytes[..bytes.len().min(2)])
     }
 
-    /// Where the next record starts, from `from` and before `to`; `to` when none does.
+    /// The position of the next record, from `from` and before `to`; `to` if there is none.
     fn next_head(&self, bytes: &[u8], from: usize, to: usize) -> usize {
         (from..to)
             .find(|&at| {

@@ -5,7 +5,7 @@ use super::signals::{From, INSTANCE, SPECS, Spec};
 use crate::Options;
 use crate::signal::Label;
 
-/// The use of a kind of message. Numbers are columns.
+/// The use of a message type. Numbers are columns.
 #[derive(Debug)]
 pub(super) enum Role {
     Nothing,
@@ -20,9 +20,9 @@ pub(super) enum Role {
         number: Option<usize>,
         name: usize,
     },
-    /// Output commands: what their labels start with, column and number of each.
+    /// Output commands: the prefix of their labels, then the column and number of each.
     Outputs(&'static str, Vec<(usize, u16)>),
-    /// Index of the series, and how each of its signals is made.
+    /// The index of the series, and how each of its signals is computed.
     Series(usize, Vec<Part>),
 }
 
@@ -33,26 +33,26 @@ pub(super) enum Part {
     Length(Vec<usize>),
 }
 
-/// A kind of message and what it is read for.
+/// A message type and its use.
 #[derive(Debug)]
 pub(super) struct Kind {
     pub(super) format: Format,
     pub(super) role: Role,
-    /// Column of the time and its unit in seconds.
+    /// The column of the time, and its unit in seconds.
     pub(super) time: Option<(usize, f64)>,
     pub(super) instance: Option<usize>,
 }
 
 impl Kind {
-    /// `series` gives the index of the series that has these signals, for the message
-    /// of that name.
+    /// Determines the use of a message type. `series` returns the index of the series that has these signals, for the
+    /// message with that name.
     pub(super) fn new(
         format: Format,
         options: &Options,
         series: impl FnOnce(&'static str, Vec<Label>) -> usize,
     ) -> Self {
-        // TimeMS of a GPS message is the time in the GPS week; T is that since boot, and
-        // Time is all that firmware before 3.1 has.
+        // In a GPS message, TimeMS is the time of the GPS week and T is the time since boot. Firmware before 3.1 has
+        // only Time.
         let labels: &[(&str, f64)] = match format.name.as_str() {
             "GPS" => &[("TimeUS", 1e-6), ("T", 1e-3), ("Time", 1e-3)],
             _ => &[("TimeUS", 1e-6), ("TimeMS", 1e-3)],
@@ -60,7 +60,7 @@ impl Kind {
         let time = labels
             .iter()
             .find_map(|(label, unit)| Some((format.column(&[label])?, *unit)));
-        // Times are integers; where they are not, the definition is damaged.
+        // Times are integers; otherwise the definition is damaged.
         let timed = time.is_none_or(|(column, _)| format.has_kind(column, b"QI"));
         let role = match timed && !format.damaged {
             true => role(&format).or_else(|| {
@@ -82,7 +82,7 @@ impl Kind {
     }
 }
 
-/// The role of a message that holds no signals.
+/// The use of a message type without signals.
 fn role(format: &Format) -> Option<Role> {
     let column = |label| format.column(&[label]);
     match format.name.as_str() {
@@ -102,10 +102,10 @@ fn role(format: &Format) -> Option<Role> {
     }
 }
 
-/// Message of firmware before 3.2 that has a column for each motor.
+/// The message of firmware before 3.2 that has a column for each motor.
 pub(super) const MOTORS: &str = "MOT";
 
-/// The columns labelled with one of `stems` and a number.
+/// The columns whose label is one of `stems` followed by a number.
 fn outputs(format: &Format, stems: &[&'static str]) -> Option<Role> {
     let number = |label: &str| {
         stems.iter().find_map(|stem| {
@@ -117,7 +117,7 @@ fn outputs(format: &Format, stems: &[&'static str]) -> Option<Role> {
     let (stems, columns): (Vec<_>, Vec<_>) = columns
         .filter_map(|(column, described)| {
             let (stem, output) = number(&described.label)?;
-            // Pulses are integers of 16 bits; what is not, is damaged.
+            // Pulse widths are 16-bit integers; otherwise the definition is damaged.
             if !format.has_kind(column, b"Hh") {
                 return None;
             }
@@ -127,7 +127,7 @@ fn outputs(format: &Format, stems: &[&'static str]) -> Option<Role> {
     Some(Role::Outputs(stems.first()?, columns))
 }
 
-/// The signals that a message of this format holds and that are asked for.
+/// The signals that a message of this format contains and that the options request.
 fn parts(spec: &Spec, format: &Format, options: &Options) -> Vec<(Part, Label)> {
     let integer = |column: usize| format.has_kind(column, b"hHiI");
     spec.signals

@@ -1,22 +1,22 @@
-//! Which DataFlash messages hold which signals.
+//! Maps DataFlash messages to signals.
 
-/// How a signal is made from the fields of a message.
+/// How a signal is computed from the fields of a message.
 pub(crate) enum From {
     /// The first of these labels that the message has.
     Field(&'static [&'static str]),
-    /// As `Field`; logged in hundredths where the field is an integer (firmware before 3.3).
+    /// As `Field`; in hundredths if the field is an integer (firmware before 3.3).
     Hundredths(&'static [&'static str]),
-    /// Length of the vector of these.
+    /// The length of the vector of these fields.
     Length(&'static [&'static str]),
 }
 
-/// Signals of one kind of message: how made, name, unit.
+/// The signals of one message type: computation, name, unit.
 pub(crate) struct Spec {
     pub(crate) message: &'static str,
     pub(crate) signals: &'static [(From, &'static str, &'static str)],
 }
 
-/// Labels of the field that tells several sensors, cores or batteries apart: number 0 counts.
+/// Labels of the field that numbers several sensors, cores or batteries; only number 0 is used.
 pub(crate) const INSTANCE: &[&str] = &["I", "Inst", "Instance", "IMU", "C"];
 
 use From::{Field, Hundredths, Length};

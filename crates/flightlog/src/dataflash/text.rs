@@ -1,4 +1,4 @@
-//! DataFlash logs as text (`.log`): a line a message, the name first.
+//! Reads DataFlash logs as text (`.log`): one message per line, which begins with its name.
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
@@ -8,10 +8,10 @@ use super::format::{Cells, FMT, Format};
 use crate::input::Input;
 use crate::{Flight, Options};
 
-/// Bytes of a line; longer lines are damaged, and skipped.
+/// The maximum length of a line in bytes; longer lines are damaged and skipped.
 const LONGEST_LINE: u64 = 4096;
 
-/// Lines above the definitions that are kept: the firmware's name is among them.
+/// The number of lines before the definitions that are kept, because they contain the name of the firmware.
 const GREETINGS: usize = 20;
 
 /// Whether one of the first lines defines a message.
@@ -48,7 +48,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> io::Result<Fligh
         .finish(Flight::empty(crate::Format::DataFlashText)))
 }
 
-/// Skips the rest of a line; gives its length.
+/// Skips the rest of a line and returns its length.
 fn skip_line(input: &mut Input<'_>) -> io::Result<u64> {
     let mut skipped = 0;
     loop {
@@ -65,7 +65,7 @@ fn skip_line(input: &mut Input<'_>) -> io::Result<u64> {
 
 struct Lines<'o> {
     collector: Collector<'o>,
-    /// Type of each message by its name.
+    /// The type of each message by its name.
     types: HashMap<String, u8>,
 }
 
@@ -124,7 +124,7 @@ impl Lines<'_> {
         self.collector.report.messages += 1;
         let (type_id, name) = (format.type_id, format.name.clone());
         if self.collector.define(format) && type_id != FMT {
-            // A type has one name at a time: there are 256 at most.
+            // A type has one name at a time, so there are at most 256 entries.
             self.types.retain(|_, known| *known != type_id);
             self.types.insert(name, type_id);
         }

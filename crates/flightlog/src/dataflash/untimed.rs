@@ -2,14 +2,15 @@
 
 use super::format::Cells;
 
-/// Most bytes kept, an allowance for each message included: a log without any time must not fill the memory.
+/// The maximum size of the kept messages in bytes, with an allowance for each message, so that a log without any time
+/// does not fill the memory.
 const MOST_BYTES: usize = 1 << 24;
 const BYTES_A_MESSAGE: usize = 64;
 
 /// A message that is kept until its time is known.
 pub(super) enum Kept {
     Binary(u8, Vec<u8>),
-    /// The cells with commas between them: no cell holds one.
+    /// The cells joined by commas: no cell contains one.
     Text(u8, String),
 }
 
@@ -40,22 +41,22 @@ impl Kept {
     }
 }
 
-/// Spreads messages without a time evenly between the messages around them that have
-/// one (most often GPS, five times a second).
+/// Assigns times to messages without one, spread evenly between the surrounding messages with a time (usually GPS at
+/// 5 Hz).
 #[derive(Default)]
 pub(super) struct Untimed {
     kept: Vec<Kept>,
     kept_bytes: usize,
-    /// How many of them came before the first message that had a time.
+    /// The number of kept messages before the first message with a time.
     before_first: usize,
-    /// Time of the last message that had one.
+    /// The time of the last message with a time.
     last_s: Option<f64>,
-    /// Time from one message to the next the last time that messages were spread.
+    /// The time between messages when messages were last spread.
     step_s: f64,
 }
 
 impl Untimed {
-    /// Sets a message aside; `false` when there are too many already.
+    /// Keeps a message until its time is known; returns `false` if there are too many already.
     pub(super) fn keep(&mut self, type_id: u8, cells: Cells<'_>) -> bool {
         let has_room = self.kept_bytes < MOST_BYTES;
         if has_room {
@@ -70,18 +71,18 @@ impl Untimed {
         self.kept.is_empty()
     }
 
-    /// The first message with a time has come, but is not confirmed yet.
+    /// Notes that the first message with a time was read, but is not confirmed yet.
     pub(super) fn mark_first(&mut self) {
         self.before_first = self.kept.len();
     }
 
-    /// That message was right, and its time is `first_s`.
+    /// Notes that the first message with a time was right, and that its time is `first_s`.
     pub(super) fn confirm_first(&mut self, first_s: f64) {
         self.last_s.get_or_insert(first_s);
     }
 
-    /// The messages set aside, with their times, now that one at `t_s` follows them. Those
-    /// before the first message with a time are spread as those after it.
+    /// Returns the kept messages with their times, when a message at `t_s` follows them. Messages before the first
+    /// message with a time are spread like those after it.
     pub(super) fn timed_before(&mut self, t_s: f64) -> impl Iterator<Item = (f64, Kept)> + use<> {
         let from_s = self.last_s.replace(t_s).unwrap_or(t_s).min(t_s);
         let before = std::mem::take(&mut self.before_first);
@@ -92,7 +93,7 @@ impl Untimed {
         self.spread(from_s, before)
     }
 
-    /// The messages after the last one that had a time; none when no message had one.
+    /// Returns the messages after the last message with a time; none if there was no such message.
     pub(super) fn timed_at_end(&mut self) -> impl Iterator<Item = (f64, Kept)> + use<> {
         if self.last_s.is_none() {
             self.kept.clear();
@@ -100,7 +101,7 @@ impl Untimed {
         self.spread(self.last_s.unwrap_or_default(), 0)
     }
 
-    /// `from_s` is the time of the message that came after `before` of those set aside.
+    /// Spreads the kept messages. `from_s` is the time of the message that came after the first `before` of them.
     fn spread(&mut self, from_s: f64, before: usize) -> impl Iterator<Item = (f64, Kept)> + use<> {
         let step_s = self.step_s;
         self.kept_bytes = 0;

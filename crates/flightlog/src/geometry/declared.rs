@@ -1,10 +1,10 @@
-//! The motor layout that parameters, messages and headers declare.
+//! The motor layout that parameters, messages or headers declare.
 
 use super::tables;
 use crate::Vehicle;
 use crate::parameters::Parameters;
 
-/// Most rotors that PX4 describes.
+/// The maximum number of rotors that PX4 describes.
 const PX4_ROTORS: u16 = 12;
 
 /// The motor layout that a log or a live vehicle declares.
@@ -49,14 +49,14 @@ impl Declared {
         }
     }
 
-    /// By FRAME_CLASS and FRAME_TYPE (3.5 and later), or by the class in the message
-    /// `Frame: QUAD` and FRAME, which is the type in older firmware. Without
-    /// that message the number of motors stands for the class, where only one fits.
+    /// The layout by FRAME_CLASS and FRAME_TYPE (3.5 and later), or by the class in the message `Frame: QUAD` and
+    /// FRAME, which is the type in older firmware. Without that message the class follows from the number of motors, if
+    /// only one class fits.
     pub(crate) fn of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Self {
         let frame = vehicle.frame.as_deref();
         let number = |name: &str| parameters.get(name).map(|value| value as i64);
         let named = frame.and_then(|frame| Some((frame, tables::parse(frame)?)));
-        // 0 stands for a class that was never set.
+        // 0 means that the class was never set.
         let class = number("FRAME_CLASS").filter(|&class| class > 0);
         if let (Some(class), Some(kind)) = (class, number("FRAME_TYPE")) {
             return Self::Frame {
@@ -101,8 +101,8 @@ impl Declared {
         }
     }
 
-    /// By positions, thrust axes and moment ratios of PX4's control allocation (1.13 and
-    /// later), before that by the number of the airframe.
+    /// The layout by positions, thrust axes and moment ratios of PX4's control allocation (1.13 and later), or by the
+    /// number of the airframe in older versions.
     pub(crate) fn of_px4(parameters: &Parameters) -> Self {
         if let Some(factors) = rotors(parameters) {
             return Self::Factors {
@@ -121,7 +121,7 @@ impl Declared {
     }
 }
 
-/// Factors by the moments of the rotors.
+/// The factors from the moments of the rotors.
 fn rotors(parameters: &Parameters) -> Option<Vec<(u16, [f64; 3])>> {
     let (moments, _): (Vec<[f64; 3]>, Vec<_>) = rotor_effects(parameters)?.into_iter().unzip();
     let turns = |axis: usize| moments.iter().any(|moment| moment[axis].abs() > 1e-9);
@@ -129,8 +129,8 @@ fn rotors(parameters: &Parameters) -> Option<Vec<(u16, [f64; 3])>> {
     (turns(0) && turns(1)).then(|| (1..).zip(tables::normalised(moments)).collect())
 }
 
-/// The moment that a unit of command of each rotor makes, `position x axis - KM axis`, and its force along the axis,
-/// both times the thrust coefficient (<https://docs.px4.io/main/en/config/actuators.html>).
+/// The moment per unit of command of each rotor, `position x axis - KM axis`, and its force along the axis, both
+/// multiplied by the thrust coefficient (<https://docs.px4.io/main/en/config/actuators.html>).
 pub(crate) fn rotor_effects(parameters: &Parameters) -> Option<Vec<([f64; 3], [f64; 3])>> {
     let count = parameters.get("CA_ROTOR_COUNT")? as u16;
     let coefficients = thrust_coefficients(parameters, count.min(PX4_ROTORS));
@@ -154,8 +154,8 @@ pub(crate) fn rotor_effects(parameters: &Parameters) -> Option<Vec<([f64; 3], [f
         .collect()
 }
 
-/// CA_ROTORn_CT of every rotor. Unless all are known they count as equal, which they are by default: one beside a default
-/// that is not known would be a difference that the vehicle does not have.
+/// CA_ROTORn_CT of every rotor. Unless all are known, they count as equal, which is the default: combining known values
+/// with assumed ones could introduce a difference that the vehicle does not have.
 fn thrust_coefficients(parameters: &Parameters, count: u16) -> Vec<f64> {
     let known = (0..count).map(|rotor| parameters.get(&format!("CA_ROTOR{rotor}_CT")));
     let known: Option<Vec<f64>> = known.collect();
@@ -169,7 +169,7 @@ fn airframe_group(airframe: i64) -> Option<(i64, i64)> {
     Some(match airframe {
         // The hexacopter of PX4's own simulator.
         10_044 => (HEXA, X),
-        // The wide frames are numbered as the others with an X.
+        // The wide frames are numbered like the other X frames.
         4000..=4999 | 10_000..=10_999 => (QUAD, X),
         5000..=5999 => (QUAD, PLUS),
         6000..=6999 => (HEXA, X),

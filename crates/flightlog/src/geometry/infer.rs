@@ -1,34 +1,34 @@
 //! Infers the motor layout from the commands of a flight.
 //!
-//! A mixer adds thrust, roll, pitch and yaw, so the commands of `n` motors lie in a space of
-//! four dimensions (thrust curves and limits bend it a little). A layout fits when little of
-//! the variance of the commands lies outside of its space.
+//! A mixer adds thrust, roll, pitch and yaw, so the commands of `n` motors are in a four-dimensional space (thrust
+//! curves and limits distort it a little). A layout fits if little of the variance of the commands is outside its
+//! space.
 
 use super::{Basis, Geometry, in_order, tables};
 use crate::Flight;
 
-/// Least number of rows in the air.
+/// The minimum number of rows in the air.
 const FEWEST_ROWS: usize = 100;
-/// A layout fits when at most this share of the variance is outside of its space. Calm and
-/// gusty flights have 0 to 0.02; failed motors and motors at a limit raise it.
+/// A layout fits if at most this share of the variance is outside its space. Calm and gusty flights have 0 to 0.02;
+/// failed motors and motors at a limit raise it.
 const FITS: f64 = 0.05;
-/// From this share on a layout does not fit.
+/// A layout does not fit if at least this share of the variance is outside its space.
 const FITS_NOT: f64 = 0.2;
-/// A share is clearly larger than another one times the first plus the second of these.
+/// A share is clearly larger than another one if it exceeds that one times the first number plus the second.
 const CLEARLY: (f64, f64) = (5.0, 0.002);
-/// Correlation of effort and output of the rate controller from which a layout is right, and how far
-/// it must be above that of others. Right layouts have 0.44 to 1, and more than any other.
+/// The minimum correlation of effort and output of the rate controller for a layout to be right, and the minimum
+/// difference to other layouts. Right layouts have 0.44 to 1, and more than any other.
 const FOLLOWS: f64 = 0.4;
 const FOLLOWS_ABOVE: f64 = 0.2;
-/// Correlation of effort and attitude error up to which a layout may be wrong. Right
-/// layouts have 0.0 to 0.9: well-tuned and slow flights little.
+/// The correlation of effort and attitude error up to which a layout may be wrong. Right layouts have 0.0 to 0.9;
+/// well-tuned and slow flights have low values.
 const GOES_WITHOUT: f64 = 0.1;
-/// Correlation from which another layout fits; and a lower one, if it is above that of the
-/// declared layout by the second number.
+/// The correlation from which another layout fits. A lower correlation is enough if it exceeds that of the declared
+/// layout by the second number.
 const GOES_WITH: f64 = 0.4;
 const GOES_WITH_RATHER: (f64, f64) = (0.25, 0.6);
 
-/// The signals that tell whether a layout is right: outputs of the rate controllers, attitude.
+/// The signals that show whether a layout is right: the outputs of the rate controllers, and the attitude.
 pub(crate) const SIGNALS: [&str; 7] = [
     "roll_output",
     "pitch_output",
@@ -39,8 +39,8 @@ pub(crate) const SIGNALS: [&str; 7] = [
     "pitch_deg",
 ];
 
-/// The common layout that fits the commands, if only one does. Layouts with the same space
-/// count as one, for which the most common stands.
+/// The common layout that fits the commands, if only one does. Layouts with the same space count as one; the most
+/// common of them is returned.
 pub(super) fn geometry(flight: &Flight, class: Option<i64>) -> Option<Geometry> {
     let variance = Variance::of_commands(flight, false)?;
     let of_class = |of: &i64| class.is_none_or(|class| class == *of);
@@ -52,7 +52,7 @@ pub(super) fn geometry(flight: &Flight, class: Option<i64>) -> Option<Geometry> 
     let (alike, others): (Vec<_>, Vec<_>) = shares
         .into_iter()
         .partition(|(share, ..)| share - least < 1e-6);
-    // Where nothing but the nose was turned, several layouts fit; what they say of yaw has to be the same.
+    // If only yaw was commanded, several layouts fit; they must agree on yaw.
     let alike_in_yaw = |factors: &[[f64; 3]]| {
         let (_, _, first) = alike.first()?;
         let product = |a: &[[f64; 3]], b: &[[f64; 3]]| -> f64 {
@@ -71,7 +71,7 @@ pub(super) fn geometry(flight: &Flight, class: Option<i64>) -> Option<Geometry> 
     if let Some(geometry) = by_outputs(&variance, &alike) {
         return Some(geometry);
     }
-    // Any four motors span the same space.
+    // With four motors, all layouts span the same space.
     let mut alike = alike.into_iter().filter(|_| flight.motors.len() > 4);
     let (_, name, factors) = alike.next()?;
     let same: Vec<String> = alike.map(|(_, name, _)| name).collect();
@@ -91,8 +91,8 @@ pub(super) fn geometry(flight: &Flight, class: Option<i64>) -> Option<Geometry> 
     })
 }
 
-/// The layout whose efforts follow the outputs of the rate controllers, if those that follow
-/// them nearly as well have the same yaw.
+/// The layout whose efforts follow the outputs of the rate controllers, if all layouts that follow them nearly as well
+/// have the same yaw factors.
 fn by_outputs(variance: &Variance, layouts: &[(f64, String, Vec<[f64; 3]>)]) -> Option<Geometry> {
     let correlation = |factors: &[[f64; 3]]| variance.with_outputs(factors).unwrap_or(-1.0);
     let (_, name, factors) = layouts
@@ -119,7 +119,7 @@ fn is_clearly_more(share: f64, than: f64) -> bool {
     share > times * than + more
 }
 
-/// Why the commands of the flight contradict a layout.
+/// The reason why the commands of the flight contradict a layout.
 pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<String> {
     let variance = Variance::of_commands(flight, false)?;
     let is_other = |name: &String| Some(name) != geometry.frame.as_ref();
@@ -166,7 +166,7 @@ pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<Stri
     })
 }
 
-/// The layouts that the motors of a flight may have: class, name, factors.
+/// The layouts that are possible for the motors of a flight: class, name, factors.
 fn layouts(flight: &Flight) -> impl Iterator<Item = (i64, String, Vec<[f64; 3]>)> {
     let candidates = tables::candidates(flight.motors.len()).iter();
     candidates.filter_map(|&(class, kind)| {
@@ -175,7 +175,8 @@ fn layouts(flight: &Flight) -> impl Iterator<Item = (i64, String, Vec<[f64; 3]>)
     })
 }
 
-/// Variances and covariances of the commands in the air, and of these with what they serve.
+/// Variances and covariances of the commands in the air, with the controller outputs and attitude errors that they
+/// respond to.
 struct Variance {
     commands: Covariance,
     /// The last columns are the outputs of the rate controllers of roll, pitch and yaw.
@@ -185,7 +186,8 @@ struct Variance {
 }
 
 impl Variance {
-    /// `all_run` leaves out the times at which a motor stands still: it does not follow the mixer.
+    /// Computes them from a flight. `all_run` excludes the times at which a motor is stopped, because it does not
+    /// follow the mixer then.
     fn of_commands(flight: &Flight, all_run: bool) -> Option<Self> {
         let motors = flight.motors.len();
         let mut commands = Covariance::new(motors);
@@ -227,7 +229,7 @@ impl Variance {
         })
     }
 
-    /// The share of the variance, without that of the thrust, that is outside of the space of a mixer.
+    /// The share of the variance that is outside the space of a mixer; the variance of the thrust is excluded.
     fn outside(&self, factors: &[[f64; 3]]) -> f64 {
         let motors = factors.len();
         let axes = (0..3).map(|axis| factors.iter().map(|f| f[axis]).collect());
@@ -239,20 +241,20 @@ impl Variance {
         ((total - inside) / total.max(1e-12)).max(0.0)
     }
 
-    /// The least of the correlations of the roll, pitch and yaw efforts with the outputs of the rate controllers.
+    /// The smallest correlation of the roll, pitch and yaw efforts with the outputs of the rate controllers.
     fn with_outputs(&self, factors: &[[f64; 3]]) -> Option<f64> {
         // A tricopter has no yaw effort.
         let axes = (0..3).filter(|&axis| factors.iter().any(|f| f[axis] != 0.0));
         least(axes.map(|axis| self.with_outputs.with_effort(factors, axis)))
     }
 
-    /// The least of the correlations of the roll and pitch efforts with the attitude errors.
+    /// The smallest correlation of the roll and pitch efforts with the attitude errors.
     fn with_errors(&self, factors: &[[f64; 3]]) -> Option<f64> {
         least((0..2).map(|axis| self.with_errors.with_effort(factors, axis)))
     }
 }
 
-/// The least of some numbers; `None` where one is unknown.
+/// The minimum of the numbers; `None` if one is unknown.
 fn least(numbers: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let numbers = numbers.collect::<Option<Vec<f64>>>()?;
     numbers.into_iter().reduce(f64::min)
@@ -294,7 +296,7 @@ impl Covariance {
         }
     }
 
-    /// Adds commands and further values, if all of these are known.
+    /// Adds commands and further values, if all of them are known.
     fn add_known(&mut self, commands: &mut Vec<f64>, values: &[f64]) {
         if values.iter().all(|value| value.is_finite()) {
             let motors = commands.len();
@@ -304,15 +306,14 @@ impl Covariance {
         }
     }
 
-    /// Correlation of the effort of an axis with the value of that axis, which is in a column after
-    /// the commands.
+    /// The correlation of the effort of an axis with the value of that axis, which is in a column after the commands.
     fn with_effort(&self, factors: &[[f64; 3]], axis: usize) -> Option<f64> {
         if self.count < FEWEST_ROWS {
             return None;
         }
         let motors = factors.len();
         let column = |axis: usize| factors.iter().map(|f| f[axis]).collect::<Vec<f64>>();
-        // The least-squares effort of an axis is along the part of its column that is orthogonal to the others.
+        // The least-squares effort of an axis is along the part of its column that is orthogonal to the other columns.
         let others = (0..3).filter(|&other| other != axis).map(column);
         let mut direction = column(axis);
         for other in orthonormal(std::iter::once(vec![1.0; motors]).chain(others)) {
@@ -331,7 +332,7 @@ impl Covariance {
         product.copied().unwrap_or_default() / self.count.max(1) as f64
     }
 
-    /// Variance along a direction over the first values.
+    /// The variance along a direction in the space of the first values.
     fn along(&self, direction: &[f64]) -> f64 {
         let part = |i: usize, di: f64| -> f64 {
             let row = direction.iter().enumerate();
@@ -345,7 +346,7 @@ impl Covariance {
     }
 }
 
-/// An orthonormal basis of the space of these vectors (Gram-Schmidt).
+/// An orthonormal basis of the space spanned by these vectors (Gram-Schmidt).
 fn orthonormal(vectors: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::new();
     for mut vector in vectors {

@@ -8,7 +8,7 @@ pub(crate) use declared::{Declared, rotor_effects};
 
 use crate::{Flight, Motor, Series, VehicleKind};
 
-/// Mixer factors of the motors, and where they came from.
+/// The mixer factors of the motors, and their source.
 ///
 /// # Example: turning the nose is no imbalance
 /// ```
@@ -27,26 +27,24 @@ use crate::{Flight, Motor, Series, VehicleKind};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Geometry {
-    /// `[roll, pitch, yaw]` of each motor, in the order of [`Flight::motors`]; the largest of
-    /// each axis is 1. More thrust of a motor rolls the vehicle to the right where roll is
-    /// positive (a motor on the left), raises the nose where pitch is positive (a motor in
-    /// front), and turns the nose to the right where yaw is positive (a propeller that turns
-    /// counter-clockwise). Yaw is 0 for all motors where no motor command turns the vehicle,
-    /// as on a tricopter.
+    /// `[roll, pitch, yaw]` of each motor, in the order of [`Flight::motors`]; the largest of each axis is 1. More
+    /// thrust of a motor rolls the vehicle to the right if roll is positive (a motor on the left), raises the nose if
+    /// pitch is positive (a motor in front), and turns the nose to the right if yaw is positive (a propeller that turns
+    /// counter-clockwise). Yaw is 0 for all motors if no motor command turns the vehicle, as on a tricopter.
     pub factors: Vec<[f64; 3]>,
-    /// Frame class and type in ArduPilot's words, such as `QUAD/X`; `None` for motor positions
-    /// without a name.
+    /// The frame class and type with ArduPilot's names, such as `QUAD/X`; `None` for motor positions without a name.
     pub frame: Option<String>,
-    /// Declared, inferred or assumed.
+    /// Whether it is declared, inferred or assumed.
     pub basis: Basis,
-    /// Where it came from, such as `FRAME_CLASS = 1, FRAME_TYPE = 1`.
+    /// The source, such as `FRAME_CLASS = 1, FRAME_TYPE = 1`.
     pub source: String,
-    /// Why the commands contradict it; `None` where they do not.
+    /// The reason why the commands contradict it; `None` if they do not.
     pub doubt: Option<String>,
 }
 
-/// First and last time of what is read of every log: the motor commands and the signals of the geometry. Which others are
-/// kept must not change when the vehicle is armed or in the air. Of a log without any of these, the time of all that is kept.
+/// The first and last time of the data that is read from every log: the motor commands and the signals of the geometry.
+/// The choice of other signals must not change when the vehicle is armed or in the air. For a log without any of these
+/// data, the time span of all kept signals.
 pub(crate) fn span_s(flight: &Flight) -> Option<(f64, f64)> {
     let is_read = |series: &&Series| {
         let mut signals = series.signals();
@@ -60,19 +58,19 @@ pub(crate) fn span_s(flight: &Flight) -> Option<(f64, f64)> {
         .or_else(|| flight.time_span_s())
 }
 
-/// How a [`Geometry`] is known.
+/// How a [`Geometry`] was determined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Basis {
-    /// By parameters, messages or a header.
+    /// Declared by parameters, messages or a header.
     Declared,
-    /// By the motor commands, which only one of the common layouts fits.
+    /// Inferred from the motor commands, which fit only one of the common layouts.
     Inferred,
-    /// The most common layout for that number of motors. The yaw pattern is the same in
-    /// ArduPilot's and PX4's usual orders; roll and pitch may be turned.
+    /// The most common layout for this number of motors. The usual motor orders of ArduPilot and PX4 have the same yaw
+    /// pattern; roll and pitch may be rotated.
     Assumed,
 }
 
@@ -94,13 +92,14 @@ pub struct Frame {
     pub class: i64,
     /// FRAME_TYPE.
     pub kind: i64,
-    /// Such as `QUAD/X`.
+    /// The name, such as `QUAD/X`.
     pub name: String,
-    /// The number of each motor, and its roll, pitch and yaw as in [`Geometry::factors`].
+    /// The number and the factors of each motor; see [`Geometry::factors`].
     pub motors: Vec<(u16, [f64; 3])>,
 }
 
-/// The frames of ArduPilot whose motors are known, for a program that reads FRAME_CLASS and FRAME_TYPE itself.
+/// Returns the frames of ArduPilot whose motors are known, for programs that read FRAME_CLASS and FRAME_TYPE
+/// themselves.
 ///
 /// # Example
 /// ```
@@ -118,13 +117,13 @@ pub fn ardupilot_frames() -> impl Iterator<Item = Frame> {
     })
 }
 
-/// The geometry of these motors by what is declared; quadrotors of an unknown type are assumed
-/// to be numbered as usual.
+/// The geometry of these motors from the declared layout. Quadrotors of an unknown type are assumed to have the usual
+/// motor numbers.
 pub(crate) fn of(motors: &[Motor], declared: &Declared) -> Option<Geometry> {
     let layout = match declared {
         Declared::Factors { factors, .. } => Some(factors.clone()),
         Declared::Frame { class, kind, .. } => {
-            // The type of a tricopter is seldom set, and only one of them is special.
+            // The type of a tricopter is rarely set, and only one type differs.
             let kind = kind.or((*class == tables::TRI).then_some(tables::X));
             kind.and_then(|kind| tables::layout(*class, kind))
         }
@@ -152,8 +151,8 @@ pub(crate) fn of(motors: &[Motor], declared: &Declared) -> Option<Geometry> {
     })
 }
 
-/// The geometry of a flight by what its log declares; by its commands where the log does not
-/// declare any. Says where the commands contradict what is declared.
+/// The geometry of a flight from the layout that its log declares, or inferred from its commands if the log declares
+/// none. Records a doubt if the commands contradict the declared layout.
 pub(crate) fn find(flight: &Flight, declared: &Declared) -> Option<Geometry> {
     if !matches!(
         flight.vehicle.kind,
@@ -170,7 +169,7 @@ pub(crate) fn find(flight: &Flight, declared: &Declared) -> Option<Geometry> {
     }
 }
 
-/// The factors of these motors, by their numbers; `None` where one is not in the layout.
+/// The factors of these motors, by their numbers; `None` if one is missing from the layout.
 fn in_order(motors: &[Motor], layout: &[(u16, [f64; 3])]) -> Option<Vec<[f64; 3]>> {
     let of_motor = |motor: &Motor| {
         let found = layout.iter().find(|(number, _)| *number == motor.number);

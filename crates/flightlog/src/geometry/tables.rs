@@ -25,7 +25,7 @@ const H: i64 = 3;
 const PLUS_REVERSED: i64 = 6;
 pub(super) const Y6B: i64 = 10;
 
-/// FRAME_CLASS, its name, and the number of its motors; `None` for what is no multirotor.
+/// FRAME_CLASS, its name, and the number of its motors; `None` for classes that are not multirotors.
 const CLASSES: &[(i64, &str, Option<u16>)] = &[
     (QUAD, "QUAD", Some(4)),
     (HEXA, "HEXA", Some(6)),
@@ -110,7 +110,7 @@ pub(super) fn candidates(motors: usize) -> &'static [(i64, i64)] {
     }
 }
 
-/// Every class with every type.
+/// All combinations of class and type.
 pub(super) fn frames() -> impl Iterator<Item = (i64, i64)> {
     let kinds = |class: i64| KINDS.iter().map(move |(kind, _)| (class, *kind));
     CLASSES.iter().flat_map(move |(class, ..)| kinds(*class))
@@ -137,7 +137,7 @@ pub(super) fn name(class: i64, kind: i64) -> String {
     }
 }
 
-/// Class and type of a frame by its name, such as `QUAD/X`; older firmware names the class alone.
+/// Class and type of a frame by its name, such as `QUAD/X`; older firmware logs only the class.
 pub(crate) fn parse(name: &str) -> Option<(i64, Option<i64>)> {
     let name = name.trim().to_ascii_uppercase();
     let (class, kind) = match name.split_once(['/', ' ']) {
@@ -333,7 +333,8 @@ fn octaquad(kind: i64) -> Option<Vec<[f64; 3]>> {
         12 => arms(BETAFLIGHT, &[CW, CCW, CCW, CW, CCW, CW, CW, CCW]),
         14 => arms(CLOCKWISE, &[CCW, CW, CW, CCW, CCW, CW, CW, CCW]),
         18 => arms(BETAFLIGHT, &[CCW, CW, CW, CCW, CW, CCW, CCW, CW]),
-        // Both motors of an arm turn alike. ArduPilot drives the upper ones at 0.9, which is left out here.
+        // Both motors of an arm turn in the same direction. ArduPilot drives the upper ones at 0.9, which is ignored
+        // here.
         20 => arms(DIAGONALS, &[CCW, CW, CCW, CW, CW, CCW, CW, CCW]),
         21 => arms(CLOCKWISE, &[CCW, CCW, CW, CW, CCW, CCW, CW, CW]),
         _ => None,
@@ -369,7 +370,7 @@ fn y6(kind: i64) -> Vec<[f64; 3]> {
     }
 }
 
-/// A servo turns a tricopter, so no motor does. Its motors are 1 (right), 2 (left) and 4 (rear).
+/// A tricopter yaws by a servo, so no motor has a yaw factor. Its motors are 1 (right), 2 (left) and 4 (rear).
 fn tri(kind: i64) -> Vec<(u16, [f64; 3])> {
     let up = if kind == PLUS_REVERSED { -1.0 } else { 1.0 };
     vec![
@@ -422,7 +423,7 @@ mod tests {
         known.collect()
     }
 
-    /// On a ring of equal arms the axes are apart, and each is balanced.
+    /// On a ring of equal arms the axes are independent, and each is balanced.
     #[test]
     fn rings_are_balanced_and_their_axes_apart() {
         let frames = all();

@@ -1,7 +1,6 @@
 use crate::{Basis, Flight, Options};
 
-/// A flight CSV with commands out of a mixer, and the attitude error that its roll and pitch
-/// efforts follow.
+/// A flight CSV with commands computed by a mixer, and an attitude error that its roll and pitch efforts follow.
 fn flight(header: &str, mixer: &[[f64; 3]]) -> Flight {
     read(header, mixer, false)
 }
@@ -56,7 +55,7 @@ fn geometry(header: &str, frame: &str) -> super::Geometry {
 fn the_layout_of_six_and_eight_motors_is_found_by_their_commands() {
     for (frame, found) in [
         ("HEXA/X", "HEXA/X"),
-        // The same space, turned by 90 degrees.
+        // The same space, rotated by 90 degrees.
         ("HEXA/PLUS", "HEXA/X"),
         ("HEXA/DJI_X", "HEXA/DJI_X"),
         ("Y6/Y6B", "Y6/Y6B"),
@@ -68,14 +67,14 @@ fn the_layout_of_six_and_eight_motors_is_found_by_their_commands() {
         assert_eq!(found_here.basis, Basis::Inferred, "{frame}");
         assert_eq!(found_here.frame.as_deref(), Some(found), "{frame}");
     }
-    // Motors that do not move together are no mixer.
+    // Motors that do not move together do not follow a mixer.
     let mut odd = mixer("OCTA/X");
     odd.swap(0, 3);
     odd.swap(1, 6);
     assert_eq!(flight("", &odd).geometry, None);
 }
 
-/// The outputs of the rate controllers tell apart what the commands alone do not.
+/// The outputs of the rate controllers distinguish layouts that the commands alone do not.
 #[test]
 fn the_outputs_of_the_controllers_name_the_layout() {
     for frame in [
@@ -108,7 +107,7 @@ fn the_outputs_of_the_controllers_name_the_layout() {
             .unwrap();
         assert!(doubt.contains(flown), "{doubt}");
     }
-    // Which signals are kept makes no difference.
+    // The choice of kept signals makes no difference.
     let log = {
         let mut csv = Vec::new();
         read("", &mixer("QUAD/H"), true)
@@ -165,7 +164,7 @@ fn a_motor_that_stops_is_no_sign_of_another_layout() {
     let log = String::from_utf8(log).unwrap();
     let rows = log.lines().enumerate().map(|(i, line)| {
         let mut cells: Vec<&str> = line.split(',').collect();
-        // Late in the flight one stops, and the motor that makes up for its turning of the nose nearly does.
+        // Late in the flight one motor stops, and the motor that compensates for its yaw nearly stops.
         if i > 200 {
             cells[1] = "0";
             cells[4] = "0.02";
@@ -202,7 +201,7 @@ fn headers_name_the_frame_or_the_factors() {
     }
 }
 
-/// What is written is read back: a frame by its name, positions by their factors.
+/// The written geometry is read back: a frame by its name, positions by their factors.
 #[test]
 fn a_written_geometry_is_read_back() {
     for header in [
@@ -291,7 +290,7 @@ fn parameters_of_either_autopilot_tell_the_layout() {
         of(&airframe(12_001.0), 8).unwrap().frame.as_deref(),
         Some("OCTAQUAD/X")
     );
-    // An airframe of another number of motors is not that of these.
+    // An airframe with another number of motors does not match these motors.
     assert_eq!(of(&airframe(6001.0), 8), None);
     assert_eq!(of(&airframe(10_044.0), 4), None);
     assert_eq!(of(&airframe(4001.0), 4).unwrap().basis, Basis::Declared);

@@ -1,12 +1,12 @@
 //! The checksum of MAVLink packets (<https://mavlink.io/en/guide/serialization.html#checksum>).
 
-/// CRC-16/MCRF4XX of the packet from its length on, and of the number that stands for the
-/// definition of its message.
+/// CRC-16/MCRF4XX of the packet, starting with its length, and of CRC_EXTRA, a number that depends on the definition of
+/// the message.
 pub(crate) fn accumulate(bytes: &[u8], extra: u8) -> u16 {
     let mut eights = bytes.chunks_exact(8);
     let sum = eights.by_ref().fold(0xffff_u16, |sum, eight| {
         let [low, high] = sum.to_le_bytes();
-        // Each byte alone, as it is after the bytes behind it: the sum is linear.
+        // Each byte alone, followed by the bytes after it as zeros: the sum is linear.
         let first = [low, high, 0, 0, 0, 0, 0, 0];
         let tables = TABLES.iter().rev();
         tables
@@ -24,8 +24,7 @@ pub(crate) fn accumulate(bytes: &[u8], extra: u8) -> u16 {
         })
 }
 
-/// The checksum of each byte alone (polynomial 0x1021, bits reversed), and of each byte with
-/// one to seven zeros behind it.
+/// The checksum of each byte alone (polynomial 0x1021, bits reversed), and of each byte followed by one to seven zeros.
 const TABLES: [[u16; 256]; 8] = {
     let mut tables = [[0; 256]; 8];
     let mut byte = 0;
@@ -62,8 +61,8 @@ pub(crate) fn extra(id: u32) -> Option<u8> {
     EXTRA.get(index).map(|(_, extra)| *extra)
 }
 
-/// Messages of the dialect `ardupilotmega`, which holds `common`, and their CRC_EXTRA, as
-/// <https://github.com/mavlink/mavlink/tree/master/message_definitions/v1.0> defines them.
+/// The messages of the dialect `ardupilotmega`, which includes `common`, and their CRC_EXTRA, as defined by
+/// <https://github.com/mavlink/mavlink/tree/master/message_definitions/v1.0>.
 #[rustfmt::skip]
 const EXTRA: &[(u32, u8)] = &[
     (0, 50), (1, 124), (2, 137), (4, 237), (5, 217), (6, 104), (7, 119), (11, 89), (20, 214),
@@ -115,7 +114,7 @@ mod tests {
     fn the_check_value_of_the_algorithm() {
         // CRC-16/MCRF4XX of "123456789" is 0x6f91.
         assert_eq!(accumulate(b"12345678", b'9'), 0x6f91);
-        // Eight bytes at a time are as one at a time.
+        // Eight bytes at a time give the same result as single bytes.
         let one_by_one = |bytes: &[u8]| {
             bytes.iter().fold(0xffff_u16, |sum, &byte| {
                 (sum >> 8) ^ TABLES[0][usize::from(byte ^ sum as u8)]

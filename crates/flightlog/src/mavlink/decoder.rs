@@ -1,5 +1,5 @@
-//! The state of one vehicle by its messages: armed, in the air, parameters, outputs. Telemetry logs
-//! and live links use the same decoder.
+//! The state of one vehicle from its messages: armed, in the air, parameters, outputs. Telemetry logs and live links
+//! use the same decoder.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,9 +12,9 @@ use crate::{PulseRange, Vehicle, identity, px4};
 use super::Packet;
 use super::outputs::KnownOutputs;
 
-/// The component of a system that is its autopilot.
+/// The component id of the autopilot of a system.
 pub(crate) const AUTOPILOT: u8 = 1;
-/// MAV_AUTOPILOT of ArduPilot, of what is no autopilot, and of PX4.
+/// MAV_AUTOPILOT of ArduPilot, of components that are not autopilots, and of PX4.
 const ARDUPILOT: u8 = 3;
 const NO_AUTOPILOT: u8 = 8;
 const PX4: u8 = 12;
@@ -31,10 +31,10 @@ const PARAM_ERROR: u32 = 345;
 /// MAV_PARAM_ERROR of a parameter that exists but could not be read.
 const READ_FAILED: u8 = 8;
 
-/// Parameters that wait for the first heartbeat, at most: any vehicle has fewer.
+/// The maximum number of parameters that wait for the first heartbeat; any vehicle has fewer.
 const MOST_WAITING: usize = 1 << 12;
 
-/// A payload with the zeros that version 2 leaves out at its end.
+/// A payload, filled up with the zeros that version 2 omits at its end.
 pub(crate) type Payload = [u8; 255];
 
 pub(crate) fn filled(packet: &Packet<'_>) -> Payload {
@@ -54,14 +54,14 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(text).trim().to_owned()
 }
 
-/// What a message changed.
+/// The change that a message caused.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Told {
-    /// Nothing that the decoder keeps.
+    /// No change in the decoder.
     Nothing,
-    /// Armed, in the air or the mode: [`Decoder`] has them.
+    /// A change of armed, in the air or the mode, which [`Decoder`] returns.
     State,
-    /// A parameter became known, or known not to be readable.
+    /// A parameter is now known, or known to be unreadable.
     Parameter,
     Outputs(ServoOutputs),
     Text(String),
@@ -71,13 +71,13 @@ pub(crate) enum Told {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ServoOutputs {
     pub(crate) port: u8,
-    /// Time of the vehicle, which starts over after 71 minutes.
+    /// The time of the vehicle, which wraps around after 71 minutes.
     pub(crate) time_us: u32,
-    /// Outputs 1 to 16 of the port; those above 8 are 0 in version 1.
+    /// Outputs 1 to 16 of the port; in version 1 those above 8 are 0.
     pub(crate) pulses_us: [u16; 16],
 }
 
-/// The state of one vehicle, by its messages so far.
+/// The state of one vehicle, from its messages so far.
 #[derive(Debug, Default)]
 pub(crate) struct Decoder {
     autopilot: Option<u8>,
@@ -85,18 +85,18 @@ pub(crate) struct Decoder {
     version: Option<u32>,
     id: Option<(String, &'static str)>,
     pub(crate) parameters: Parameters,
-    /// Whether a parameter that is set anew counts, as on a live link; of a log, its first value does.
+    /// Whether a later value of a parameter replaces the first, as on a live link. For a log, the first value is used.
     takes_changes: bool,
-    /// What parameters were set to in the air: that counts from the landing on.
+    /// Parameters that were set in the air; they apply after the landing.
     changed: BTreeMap<String, f64>,
-    /// Parameters that the vehicle reported not to have, or not to give away.
+    /// Parameters that the vehicle reported as missing or unreadable.
     absent: BTreeSet<String>,
-    /// PARAM_VALUE messages that came before the autopilot was known: name, value, type.
+    /// PARAM_VALUE messages that arrived before the type of the autopilot was known: name, value, type.
     waiting: Vec<(String, [u8; 4], u8)>,
     is_armed: bool,
-    /// By HEARTBEAT.system_status.
+    /// From HEARTBEAT.system_status.
     is_active: Option<bool>,
-    /// By EXTENDED_SYS_STATE.landed_state.
+    /// From EXTENDED_SYS_STATE.landed_state.
     is_flying: Option<bool>,
     /// Whether EXTENDED_SYS_STATE ever had a landed state.
     has_landed_state: bool,
@@ -106,7 +106,7 @@ pub(crate) struct Decoder {
 }
 
 impl Decoder {
-    /// That of a live link: parameters may be set anew between flights.
+    /// The decoder of a live link, where parameters may be set between flights.
     #[cfg(feature = "mavlink")]
     pub(crate) fn live() -> Decoder {
         Decoder {
@@ -119,7 +119,7 @@ impl Decoder {
         self.autopilot == Some(PX4)
     }
 
-    /// Whether a heartbeat of an autopilot came.
+    /// Whether a heartbeat of an autopilot has arrived.
     pub(crate) fn is_known(&self) -> bool {
         self.autopilot.is_some()
     }
@@ -133,16 +133,16 @@ impl Decoder {
         self.mode
     }
 
-    /// Firmware of PX4, which tells its version by a message of its own.
+    /// The firmware of PX4, which reports its version in a separate message.
     pub(crate) fn px4_firmware(&self) -> Option<String> {
         self.version.filter(|_| self.is_px4()).map(px4::firmware)
     }
 
     /// Whether the vehicle is in the air; `None` while that is unknown.
     ///
-    /// EXTENDED_SYS_STATE says so. Without it the heartbeat of ArduPilot does, which is on standby
-    /// while landed and active while not; during a failsafe it is critical either way, which
-    /// counts as in the air. PX4 is active as soon as it is armed, so its heartbeat does not tell.
+    /// The source is EXTENDED_SYS_STATE. Without it, it is the heartbeat of ArduPilot, which is on standby while landed
+    /// and active otherwise. During a failsafe it is critical in either case, which counts as in the air. PX4 is active
+    /// as soon as it is armed, so its heartbeat is not used.
     pub(crate) fn is_in_air(&self) -> Option<bool> {
         let by_heartbeat = self.is_active.filter(|_| !self.is_px4());
         self.is_flying
@@ -150,32 +150,33 @@ impl Decoder {
             .map(|flying| flying && self.is_armed)
     }
 
-    /// Whether the vehicle ever reported a landed state. A heartbeat does not: it is critical after a landing in a failsafe, too.
+    /// Whether the vehicle has ever reported a landed state. A heartbeat is not one: after a landing in a failsafe it
+    /// is still critical.
     pub(crate) fn has_landed_state(&self) -> bool {
         self.has_landed_state
     }
 
-    /// Whether the landed state of the armed vehicle is in the air and nobody stopped its motors on purpose, as a pilot does who
-    /// lands and does not wait for the land detector.
+    /// Whether the armed vehicle reports that it is in the air, and its motors were not stopped on purpose, as by a
+    /// pilot who lands and does not wait for the land detector.
     #[cfg(feature = "mavlink")]
     pub(crate) fn reports_flight(&self) -> bool {
         self.is_flying == Some(true) && self.is_armed && !self.is_terminating
     }
 
-    /// [`Decoder::is_in_air`]; a vehicle that does not tell is in the air while it is armed.
+    /// [`Decoder::is_in_air`]; a vehicle that does not report it counts as in the air while it is armed.
     pub(crate) fn is_in_air_or_armed(&self) -> bool {
         self.is_in_air().unwrap_or(self.is_armed)
     }
 
-    /// The type in its heartbeats, if it is that of a vehicle.
+    /// The type in its heartbeats, if it is the type of a vehicle.
     pub(crate) fn mav_type(&self) -> Option<(u8, MavType)> {
         let number = self.mav_type?;
         Some((number, mav_type(number.into())?))
     }
 
-    /// Takes in a message of the vehicle.
+    /// Processes a message of the vehicle.
     pub(crate) fn message(&mut self, component: u8, id: u32, payload: &Payload) -> Told {
-        // Ground stations store parameters under the number of another component.
+        // Ground stations store parameters under other component ids.
         if component != AUTOPILOT && id != PARAM_VALUE {
             return Told::Nothing;
         }
@@ -192,7 +193,7 @@ impl Decoder {
                 Told::Nothing
             }
             EXTENDED_SYS_STATE => {
-                // 1 on the ground, 2 in the air, 3 taking off, 4 landing; 0 is not known.
+                // 1 on the ground, 2 in the air, 3 taking off, 4 landing; 0 is unknown.
                 self.is_flying = match payload[1] {
                     1 => Some(false),
                     2..=4 => Some(true),
@@ -202,7 +203,7 @@ impl Decoder {
                 Told::State
             }
             STATUSTEXT => Told::Text(text(&payload[1..51])),
-            // The index, system and component of who asked, then the name.
+            // The index, system and component of the requester, then the name.
             PARAM_ERROR => self.parameter_error(text(&payload[4..20]), payload[20]),
             _ => Told::Nothing,
         }
@@ -222,7 +223,7 @@ impl Decoder {
         self.is_active = match status {
             // Active, critical (a failsafe) and emergency (going down).
             4..=6 => Some(true),
-            // While it terminates the flight, what was the case goes on.
+            // While the flight is terminated, the previous state remains.
             8 => self.is_active.or(Some(self.is_armed)),
             _ => Some(false),
         };
@@ -254,7 +255,7 @@ impl Decoder {
         }
     }
 
-    /// Whether the vehicle reported that it does not have a parameter, or does not give it away.
+    /// Whether the vehicle reported that it does not have a parameter, or that it cannot be read.
     #[cfg(feature = "mavlink")]
     pub(crate) fn is_absent(&self, name: &str) -> bool {
         self.absent.contains(name)
@@ -290,7 +291,7 @@ impl Decoder {
         Told::Parameter
     }
 
-    /// Takes in the parameters that were set in the air, on the ground; says whether any changed.
+    /// Applies, on the ground, the parameters that were set in the air; returns whether any changed.
     #[cfg(feature = "mavlink")]
     pub(crate) fn take_changed(&mut self) -> bool {
         if self.changed.is_empty() || self.is_in_air_or_armed() {
@@ -302,14 +303,14 @@ impl Decoder {
         true
     }
 
-    /// Takes in the parameters that wait for a heartbeat, of a vehicle that never sent one.
+    /// Applies the parameters that wait for a heartbeat, for a vehicle that never sent one.
     pub(crate) fn finish(&mut self) {
         for (name, value, kind) in std::mem::take(&mut self.waiting) {
             self.learn(name, value, kind);
         }
     }
 
-    /// Forgets what may have changed while the vehicle booted again; what it is stays.
+    /// Resets the state that may have changed while the vehicle rebooted, and keeps its type.
     #[cfg(feature = "mavlink")]
     pub(crate) fn boot(&mut self) {
         *self = Self {
@@ -321,7 +322,7 @@ impl Decoder {
         };
     }
 
-    /// The vehicle by its heartbeat.
+    /// The vehicle that its heartbeat describes.
     pub(crate) fn vehicle(&self) -> Vehicle {
         let mut vehicle = Vehicle::default();
         if let Some(number) = self.mav_type {
@@ -343,14 +344,14 @@ impl Decoder {
         vehicle
     }
 
-    /// Motors and ranges by the parameters, and what is assumed without them.
+    /// Motors and ranges from the parameters, with assumptions for missing ones.
     pub(crate) fn outputs(&self, vehicle: &Vehicle, given: Option<PulseRange>) -> KnownOutputs {
         KnownOutputs::of(&self.parameters, vehicle, self.is_px4(), given)
     }
 }
 
 fn servo_outputs(payload: &Payload) -> ServoOutputs {
-    // Extensions of version 2 follow the port.
+    // The extensions of version 2 follow the port.
     let offset = |output: usize| {
         if output < 8 {
             4 + 2 * output
@@ -366,21 +367,21 @@ fn servo_outputs(payload: &Payload) -> ServoOutputs {
     }
 }
 
-/// Rejects damaged limits, with which every command would seem to be at a limit.
+/// Whether a limit is plausible. With damaged limits, every command would seem to be at a limit.
 fn is_plausible(name: &str, value: f64) -> bool {
     let most = if name.starts_with("MOT_SPIN_") {
         1.0
     } else if name.starts_with("MOT_PWM_") || is_radio_limit(name) {
         LONGEST_PULSE_US
     } else {
-        // PX4 has -1 for a limit that is the bank's.
+        // PX4 uses -1 for "the limit of the bank".
         let is_limit = name.starts_with("PWM_") && !name.contains("FUNC");
         return value.is_finite() && (!is_limit || (-1.0..=LONGEST_PULSE_US).contains(&value));
     };
     (0.0..=most).contains(&value)
 }
 
-/// RCn_MIN and RCn_MAX.
+/// Whether the parameter is RCn_MIN or RCn_MAX.
 fn is_radio_limit(name: &str) -> bool {
     name.starts_with("RC") && (name.ends_with("_MIN") || name.ends_with("_MAX"))
 }

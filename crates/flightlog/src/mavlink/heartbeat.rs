@@ -1,4 +1,4 @@
-//! What a heartbeat says of the vehicle that sends it.
+//! The vehicle that a heartbeat describes.
 
 use super::{
     Packet,
@@ -6,8 +6,8 @@ use super::{
 };
 use crate::Vehicle;
 
-/// The vehicle that a heartbeat speaks for; `None` for other messages and for what is no vehicle, such as ground
-/// stations, gimbals and radios, whose heartbeats have an armed flag too.
+/// The vehicle that a heartbeat describes; `None` for other messages, and for components that are not vehicles, such as
+/// ground stations, gimbals and radios, whose heartbeats have an armed flag too.
 pub fn vehicle_of(packet: &Packet<'_>) -> Option<Vehicle> {
     if packet.component != AUTOPILOT || packet.id != 0 {
         return None;

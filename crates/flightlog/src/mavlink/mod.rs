@@ -1,7 +1,6 @@
-//! MAVLink, live and in telemetry logs: packets out of bytes, and the state of a vehicle out of its
-//! packets.
+//! MAVLink, live and in telemetry logs: decodes bytes to packets, and packets to the state of a vehicle.
 //!
-//! Nothing here opens a port: bytes and the time come in, packets and bytes to send go out.
+//! Nothing here opens a port. The caller passes bytes and the time, and receives packets and bytes to send.
 
 mod checksum;
 pub(crate) mod decoder;
@@ -22,7 +21,7 @@ mod stream;
 #[cfg(feature = "mavlink")]
 mod telemetry;
 
-/// The messages, as the MAVLink project defines them for ArduPilot; they hold those common to all autopilots.
+/// The messages that the MAVLink project defines for ArduPilot, including those common to all autopilots.
 #[cfg(feature = "mavlink")]
 pub use ::mavlink::dialects::ardupilotmega as dialect;
 

@@ -1,16 +1,16 @@
-//! Motors, ranges and geometry by the parameters of a vehicle, and what is assumed where it reported none. Live links and
-//! telemetry logs use the same rules, so that a recording is assessed on the same assumptions as the flight was watched.
+//! Motors, ranges and geometry from the parameters of a vehicle, with assumptions for missing ones. Live links and
+//! telemetry logs use the same rules, so that a recording is assessed with the same assumptions as the live flight.
 
 use super::servo::{bank, field, px4_motors};
 use crate::geometry::Declared;
 use crate::parameters::Parameters;
 use crate::{Motor, PulseRange, Range, Vehicle, ardupilot, px4};
 
-/// What parameters tell of motors and of the range of their commands.
+/// The motors and the range of their commands, from parameters.
 pub(crate) struct KnownOutputs {
     /// The motors in order of their number, and the output of each, from 1.
     pub(crate) motors: Vec<(Motor, u16)>,
-    /// How many motors the vehicle has, where it reported that.
+    /// The number of motors that the vehicle reported, if it did.
     #[cfg(feature = "mavlink")]
     pub(crate) expected: Option<u16>,
     pub(crate) range: Range,
@@ -18,11 +18,11 @@ pub(crate) struct KnownOutputs {
     /// Whether `effective` is assumed.
     pub(crate) is_effective_assumed: bool,
     pub(crate) declared: Declared,
-    /// What is assumed because the vehicle did not report it, in words.
+    /// The assumptions for values that the vehicle did not report, in words.
     pub(crate) assumed: Vec<String>,
 }
 
-/// How many motors the vehicle has, where it reported that.
+/// The number of motors that the vehicle reported, if it did.
 pub(super) fn motors_expected(
     parameters: &Parameters,
     vehicle: &Vehicle,
@@ -33,8 +33,8 @@ pub(super) fn motors_expected(
 }
 
 impl KnownOutputs {
-    /// Without parameters that name them the motors are the first outputs, as many as the type of vehicle has. Limits that
-    /// are not known are those `given` by the user, else those of a vehicle on which nobody changed them.
+    /// Determines motors and ranges. If no parameter names the motors, they are the first outputs, as many as the type
+    /// of vehicle has. Unknown limits are those `given` by the user, otherwise the defaults of the autopilot.
     pub(crate) fn of(
         parameters: &Parameters,
         vehicle: &Vehicle,
@@ -96,7 +96,7 @@ impl KnownOutputs {
     }
 }
 
-/// The motors, and whether they are on the first outputs only because no parameter names them.
+/// The motors, and whether they are the first outputs only because no parameter names them.
 fn motors_of_px4(parameters: &Parameters, expected: Option<u16>) -> (Vec<(Motor, u16)>, bool) {
     let named = px4_motors(parameters);
     if !named.is_empty() {

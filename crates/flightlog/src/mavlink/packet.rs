@@ -1,18 +1,17 @@
-//! Where a packet begins and ends, and whether it is whole
-//! (<https://mavlink.io/en/guide/serialization.html>).
+//! Finds packets in bytes and verifies them (<https://mavlink.io/en/guide/serialization.html>).
 
 use super::checksum::{accumulate, extra};
 
-/// First bytes of packets of version 1 and 2.
+/// The first bytes of packets of version 1 and 2.
 const MARKERS: [u8; 2] = [0xfe, 0xfd];
 const CHECKSUM: usize = 2;
 const SIGNATURE: usize = 13;
-/// Flag of a packet that is signed, the only one that is understood here.
+/// The flag of a signed packet, the only supported flag.
 const SIGNED: u8 = 1;
-/// Bytes of the longest packet: head, payload, checksum and signature.
+/// The length of the longest packet in bytes: head, payload, checksum and signature.
 pub(crate) const LONGEST: usize = 10 + 255 + CHECKSUM + SIGNATURE;
 
-/// The version of the protocol that a packet is in.
+/// The version of the protocol of a packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Version {
     /// MAVLink 1.
@@ -26,38 +25,39 @@ pub enum Version {
 pub struct Packet<'a> {
     /// The version of the protocol.
     pub version: Version,
-    /// Counts the packets of a sender, over all messages.
+    /// The sequence number, which counts all packets of a sender.
     pub sequence: u8,
     /// The vehicle or ground station that sent it.
     pub system: u8,
-    /// The part of the system that sent it; 1 is the autopilot.
+    /// The component of the system that sent it; 1 is the autopilot.
     pub component: u8,
-    /// Which message it carries.
+    /// The id of the message.
     pub id: u32,
-    /// It carries a signature, which cannot be verified without the sender's key.
+    /// Whether it is signed. A signature cannot be verified without the sender's key.
     pub is_signed: bool,
-    /// The message as bytes; version 2 leaves zeros off at the end.
+    /// The payload of the message; version 2 omits zeros at its end.
     pub payload: &'a [u8],
-    /// All of the packet.
+    /// The whole packet.
     pub bytes: &'a [u8],
-    /// Whether the checksum holds; `None` where it cannot be verified, as for messages of other dialects.
+    /// Whether the checksum is right; `None` if it cannot be verified, as for messages of other dialects.
     pub sound: Option<bool>,
 }
 
-/// What bytes begin with.
+/// The start of some bytes.
 enum Start<'a> {
-    /// All of a packet, its checksum right or not.
+    /// A whole packet, with a right or wrong checksum.
     Whole(Packet<'a>),
-    /// Perhaps a packet, but not all of it.
+    /// Possibly the first part of a packet.
     Part,
-    /// A packet that asks for a feature of the protocol that is not known here.
+    /// A packet that requires an unsupported feature of the protocol.
     Flags(u8),
-    /// No packet.
+    /// Not a packet.
     Other,
 }
 
 impl<'a> Packet<'a> {
-    /// The packet at the start of `bytes`, its checksum right or not; `None` when there is none, or not all of it.
+    /// The packet at the start of `bytes`, with a right or wrong checksum; `None` if there is none, or only a part of
+    /// one.
     pub(crate) fn at(bytes: &'a [u8]) -> Option<Self> {
         match start(bytes) {
             Start::Whole(packet) => Some(packet),
@@ -120,32 +120,32 @@ fn start(bytes: &[u8]) -> Start<'_> {
     })
 }
 
-/// What is at the start of some bytes.
+/// The result of looking for a packet at the start of some bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Next<'a> {
     /// A packet; the next one begins after [`Packet::bytes`].
     Packet(Packet<'a>),
-    /// A packet with a message that the dialect does not have, so its checksum cannot be verified; it ends where another
-    /// packet begins, or where the bytes end.
+    /// A packet with a message that is not in the dialect, so that its checksum cannot be verified. Another packet, or
+    /// nothing, follows it.
     Unverified(Packet<'a>),
-    /// This many bytes are not a packet.
+    /// This number of bytes is not part of a packet.
     Skip(usize, Why),
-    /// Perhaps the beginning of a packet; more bytes will tell.
+    /// Possibly the beginning of a packet; more bytes are needed.
     More,
 }
 
-/// Why bytes are skipped.
+/// The reason why bytes are skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Why {
     /// They do not begin like a packet.
     NoPacket,
     /// The checksum is wrong.
     Checksum,
-    /// The packet asks for a feature of the protocol that this reader does not have.
+    /// The packet requires a feature of the protocol that this reader does not support.
     UnknownFlags(u8),
 }
 
-/// Returns what is at the start of `bytes`: a packet of MAVLink 1 or 2, or bytes to skip.
+/// Returns the packet of MAVLink 1 or 2 at the start of `bytes`, or the number of bytes to skip.
 ///
 /// ```
 /// use flagred_flightlog::mavlink::{Next, Why, next_packet};
@@ -172,7 +172,7 @@ pub fn next_packet(bytes: &[u8]) -> Next<'_> {
         Start::Whole(packet) => match packet.sound {
             Some(true) => Next::Packet(packet),
             Some(false) => Next::Skip(1, Why::Checksum),
-            // Its length can be believed only where another packet, or nothing, follows.
+            // Its length is credible only if another packet, or nothing, follows.
             None => match bytes.get(packet.bytes.len()) {
                 Some(byte) if !MARKERS.contains(byte) => Next::Skip(1, Why::NoPacket),
                 _ => Next::Unverified(packet),
@@ -188,8 +188,8 @@ pub fn next_packet(bytes: &[u8]) -> Next<'_> {
 mod tests {
     use super::*;
 
-    /// A heartbeat of version 1 as pymavlink 2.4.50 packs it: system 1, component 1,
-    /// quadrotor, ArduPilot, armed, mode 5, active.
+    /// A heartbeat of version 1 as packed by pymavlink 2.4.50: system 1, component 1, quadrotor, ArduPilot, armed, mode
+    /// 5, active.
     const HEARTBEAT: [u8; 17] = [
         0xfe, 0x09, 0x00, 0x01, 0x01, 0x00, 0x05, 0x00, 0x00, 0x00, 0x02, 0x03, 0x81, 0x04, 0x03,
         0xbe, 0xb9,
@@ -271,7 +271,7 @@ mod round_trips {
     }
 
     proptest! {
-        /// Whatever comes in, every step takes at least a byte or asks for more, and never panics.
+        /// With any input, every step consumes at least one byte or needs more, and never panics.
         #[test]
         fn any_bytes_are_taken(bytes in prop::collection::vec(prop_oneof![Just(0xfd), Just(0xfe), any::<u8>()], 0..600)) {
             let mut at = 0;

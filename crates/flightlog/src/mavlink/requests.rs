@@ -1,4 +1,4 @@
-//! What to ask a vehicle for, and when to ask again.
+//! Decides what to request from a vehicle, and when to repeat a request.
 #![expect(
     deprecated,
     reason = "the old way to ask for rates is what old vehicles understand"
@@ -13,29 +13,30 @@ use super::{
     telemetry::RATED,
 };
 
-/// How often motor commands are asked for: what the shipped profiles are calibrated on.
+/// The requested rate of motor commands in Hz, for which the shipped profiles are calibrated.
 pub const MOTOR_RATE_HZ: f64 = 25.0;
 
-/// How often each message in [`RATED`] is asked for, in Hz: motor commands, attitude and the landed state.
+/// The requested rate of each message in [`RATED`], in Hz: motor commands, attitude and the landed state.
 const RATES_HZ: [f64; RATED.len()] = [MOTOR_RATE_HZ, 4.0, 4.0];
-/// The old groups of messages they are in.
+/// The old message groups (streams) that contain them.
 const STREAMS: [MavDataStream; RATED.len()] = [
     MavDataStream::MAV_DATA_STREAM_RC_CHANNELS,
     MavDataStream::MAV_DATA_STREAM_EXTRA1,
     MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
 ];
-/// Seconds to listen before the first request: rates are those of the link, and whoever shares it may have asked for more.
+/// The time to listen before the first request, in seconds. Rates apply to the whole link, and another station that
+/// shares it may have requested higher ones.
 const LISTEN_S: f64 = 1.0;
-/// The share of a wanted rate below which it is asked for again.
+/// The share of the requested rate below which it is requested again.
 const SLOW_AGAIN: f64 = 0.5;
-/// Seconds to wait for the wanted rate.
+/// The time to wait for the requested rate, in seconds.
 const RATE_WAIT_S: f64 = 2.0;
-/// Seconds to wait after a few requests without effect: the link may be slow.
+/// The time to wait after a few requests without effect, in seconds: the link may be slow.
 const RATE_PATIENCE_S: f64 = 15.0;
-/// Of packets that get lost, at most this share is made up for in a measured rate.
+/// The maximum packet loss that is compensated for in a measured rate.
 const MOST_LOST: f64 = 0.9;
-/// Seconds until a parameter is requested again, and the number of requests: on a link that loses 3 of 10 packets each
-/// way, one in a million stays unknown.
+/// The time until a parameter is requested again, in seconds, and the number of requests. On a link that loses 3 of 10
+/// packets in each direction, one parameter in a million remains unknown.
 const PARAMETER_WAIT_S: f64 = 0.5;
 const PARAMETER_TRIES: u32 = 20;
 
@@ -43,14 +44,14 @@ const PARAMETER_TRIES: u32 = 20;
 #[derive(Debug, Default)]
 pub struct Requests {
     rate_tries: u32,
-    /// When rates were last asked for or looked at, and how many of each message had come then.
+    /// The time at which rates were last requested or measured, and the number of each message received until then.
     looked: Option<(f64, [u64; RATED.len()])>,
-    /// The messages that came too rarely at the latest look.
+    /// Whether the rate of each message was too low in the latest measurement.
     slow: [bool; RATED.len()],
     has_old_way: bool,
     has_been_fast: bool,
     slow_looks: u32,
-    /// Whether the next look measures a rate that just fell.
+    /// Whether the next measurement is of a rate that just dropped.
     measures: bool,
     slowed_hz: Option<f64>,
     parameter_tries: u32,
@@ -59,33 +60,34 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Nothing was requested yet.
+    /// Creates the state before any request.
     pub fn new() -> Requests {
         Requests::default()
     }
 
-    /// Whether all parameters came, or were asked for often enough.
+    /// Whether all parameters arrived, or were requested often enough.
     pub fn parameters_done(&self) -> bool {
         self.parameters_done
     }
 
-    /// Returns the rate of the motor commands, in Hz, once each time that it falls below half of the wanted one: somebody
-    /// else asked for less, or the link became too slow. It is measured after the fall, over two seconds or more.
+    /// Returns the rate of the motor commands, in Hz, once each time it drops below half of the requested rate, because
+    /// another station requested less or the link is too slow. It is measured after the drop, over at least two
+    /// seconds.
     pub fn take_slowed_hz(&mut self) -> Option<f64> {
         self.slowed_hz.take()
     }
 
-    /// Measures rates anew, after the link was silent.
+    /// Restarts the measurement of rates, after the link was silent.
     pub fn resume(&mut self) {
         self.looked = None;
         self.slow_looks = 0;
         self.measures = false;
     }
 
-    /// Adds the messages to send now to `out`. The time is that of the receiver's clock, in seconds; `lost_share` is the
-    /// share of the vehicle's packets that get lost on the way, which does not count as a low rate.
+    /// Adds the messages to send now to `out`. `now_s` is the time of the receiver's clock in seconds; `lost_share` is
+    /// the share of the vehicle's packets that are lost on the way, which does not count as a low rate.
     ///
-    /// A message that comes often enough is not asked for, so that no rate of a shared link is lowered.
+    /// A message with a sufficient rate is not requested, so that no rate of a shared link is lowered.
     pub fn due(
         &mut self,
         now_s: f64,
@@ -99,7 +101,7 @@ impl Requests {
         }
     }
 
-    /// Goes by the rate of the messages received: acknowledgements get lost.
+    /// Measures the rate of the received messages, because acknowledgements may be lost.
     fn ask_rates(
         &mut self,
         now_s: f64,
@@ -125,7 +127,8 @@ impl Requests {
             return;
         }
         if !is_refused {
-            // As many more may be just outside of the time: a rate that is high enough is never taken for a low one.
+            // As many messages may have arrived just outside the measured time, so that a sufficient rate is never
+            // judged too low.
             let (share, outside) = if self.rate_tries == 0 {
                 (1.0, 1.0)
             } else {
@@ -138,12 +141,13 @@ impl Requests {
             });
             self.has_been_fast |= !self.slow[0];
             self.slow_looks = if self.slow[0] { self.slow_looks + 1 } else { 0 };
-            // The rate fell within the time of the first slow look, so that one has commands from before. A short silence of
-            // the link is over by the next look.
+            // The rate dropped within the first slow measurement, which therefore contains commands from before. A
+            // short silence of the link has ended by the next measurement.
             if self.slow_looks == 2 && self.has_been_fast {
                 self.slowed_hz = Some(rate_hz(0));
             }
-            // Where a station asked for less, the rate is measured before it is asked for again, which would raise it.
+            // If another station requested less, the rate is measured before it is requested again, which would raise
+            // it.
             let is_asked = telemetry.rate_asker().is_some();
             self.measures = self.slow_looks == 1 && self.has_been_fast && is_asked;
         }
@@ -152,7 +156,7 @@ impl Requests {
             return;
         }
         if !self.slow.contains(&true) {
-            // The next time that a rate is low is no sign of a slow link.
+            // The next low rate will not mean that the link is slow.
             self.rate_tries = 1;
             return;
         }
@@ -212,7 +216,7 @@ impl Requests {
     }
 }
 
-/// Whether everything is known that the motors and their range depend on, or known not to exist.
+/// Whether all parameters that determine the motors and their range are known, or known not to exist.
 pub fn parameters_known(telemetry: &Telemetry) -> bool {
     telemetry.missing_parameters().is_empty()
 }

@@ -1,11 +1,11 @@
-//! Messages into packets, and out of them.
+//! Packs messages into packets, and unpacks them.
 
 use ::mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 
 use super::{Key, Packet, Version, dialect::MavMessage};
 
 impl Packet<'_> {
-    /// The message; `None` where a field holds a value that the dialect does not know.
+    /// Decodes the message; `None` if a field contains a value that the dialect does not define.
     pub fn message(&self) -> Option<MavMessage> {
         let version = match self.version {
             Version::V1 => MavlinkVersion::V1,
@@ -15,7 +15,7 @@ impl Packet<'_> {
     }
 }
 
-/// Numbers the packets of one component.
+/// Packs messages of one component and numbers the packets.
 #[derive(Debug, Clone)]
 pub struct Sender {
     component: u8,
@@ -24,7 +24,7 @@ pub struct Sender {
 }
 
 impl Sender {
-    /// A sender that is this component of whatever system it speaks for.
+    /// Creates a sender with this component id, for any system.
     pub fn new(component: u8) -> Sender {
         Sender {
             component,
@@ -33,7 +33,7 @@ impl Sender {
         }
     }
 
-    /// The same, signing its packets: they are of version 2 whatever is asked for.
+    /// Signs all packets with `key`. Signed packets always have version 2.
     pub fn signed(self, key: Key) -> Sender {
         Sender {
             key: Some(key),
@@ -41,7 +41,7 @@ impl Sender {
         }
     }
 
-    /// The next packet, as a part of `system`.
+    /// Packs a message into the next packet, sent as a component of `system`.
     ///
     /// # Example
     /// ```

@@ -1,18 +1,18 @@
-//! The outputs of SERVO_OUTPUT_RAW: 1 to 16 are those of port 0, 17 to 32 those of port 1.
+//! The outputs of SERVO_OUTPUT_RAW: port 0 has the outputs 1 to 16, port 1 the outputs 17 to 32.
 
 use crate::{Motor, parameters::Parameters, px4};
 
-/// Outputs of one port.
+/// The number of outputs of a port.
 pub(crate) const OUTPUTS_A_PORT: usize = 16;
 
-/// The port of an output (from 1), which for PX4 is its bank (0 MAIN, 1 AUX), and the index of the output there.
+/// The port of an output (from 1), which for PX4 is its bank (0 MAIN, 1 AUX), and the index of the output in it.
 pub(crate) fn bank(output: u16) -> (u8, usize) {
     let index = usize::from(output.saturating_sub(1));
     let port = u8::try_from(index / OUTPUTS_A_PORT).unwrap_or(u8::MAX);
     (port, index % OUTPUTS_A_PORT)
 }
 
-/// The name of the field of an output.
+/// The name of the message field of an output.
 pub(crate) fn field(output: u16) -> String {
     match bank(output) {
         (0, index) => format!("servo{}_raw", index + 1),

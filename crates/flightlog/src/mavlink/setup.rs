@@ -1,5 +1,5 @@
-//! Which outputs drive the motors of a live vehicle and what their limits are, from the parameters it told; and which
-//! parameters those are.
+//! The outputs that drive the motors of a live vehicle and their limits, from its parameters, and the names of the
+//! parameters that are needed.
 
 use super::outputs::{KnownOutputs, motors_expected};
 use super::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
@@ -9,12 +9,12 @@ use crate::{
     Geometry, Motor, PulseRange, Range, Vehicle, ardupilot, geometry, parameters::Parameters,
 };
 
-/// What an output that is not driven, or not known, reads.
+/// The values of an output that is not driven or not known.
 const NO_PULSE: [u16; 2] = [0, u16::MAX];
-/// Outputs of PX4's AUX bank that any board has.
+/// The number of outputs of PX4's AUX bank on any board.
 const AUX_OUTPUTS: usize = 8;
 
-/// Motors and the range of their commands, with where each is known from.
+/// Motors and the range of their commands, each with its source.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -22,15 +22,15 @@ const AUX_OUTPUTS: usize = 8;
 pub struct Setup {
     /// The motors in order of their number.
     pub motors: Vec<Motor>,
-    /// How much each motor rolls, pitches and yaws the vehicle; `None` where that is not known.
+    /// How much each motor rolls, pitches and yaws the vehicle; `None` if unknown.
     pub geometry: Option<Geometry>,
-    /// Range of the commands, 0 % to 100 %.
+    /// The range of the commands, 0 % to 100 %.
     pub range: Range,
     /// The part of the range that is used in flight, as fractions of it.
     pub effective_range: Range,
-    /// What is assumed because the vehicle did not report it, in words; empty where nothing is.
+    /// The assumptions for values that the vehicle did not report, in words; empty without assumptions.
     pub assumed: Vec<String>,
-    /// How many motors the vehicle reported to have.
+    /// The number of motors that the vehicle reported.
     #[cfg_attr(feature = "serde", serde(skip))]
     expected: Option<usize>,
     /// The output of each motor, from 1.
@@ -39,7 +39,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Motors and ranges by what is known, and what is assumed without it.
+    /// Determines motors and ranges from the known parameters, with assumptions for missing ones.
     pub(super) fn of(
         parameters: &Parameters,
         vehicle: &Vehicle,
@@ -59,12 +59,13 @@ impl Setup {
         }
     }
 
-    /// The number of motors that the vehicle reported to have; outputs may be known for fewer of them.
+    /// The number of motors that the vehicle reported; outputs may be known for fewer motors.
     pub fn motors_expected(&self) -> Option<usize> {
         self.expected
     }
 
-    /// Whether the same packets give the same commands and the same geometry: the setups differ in words at most.
+    /// Whether the same packets result in the same commands and the same geometry. Equivalent setups may differ in
+    /// their texts.
     pub fn is_equivalent(&self, other: &Setup) -> bool {
         let limits = |of: &Setup| {
             let (range, used) = (&of.range, &of.effective_range);
@@ -81,7 +82,7 @@ impl Setup {
             && same_factors(self.geometry.as_ref(), other.geometry.as_ref())
     }
 
-    /// The commands of some pulses on the effective range, 0..1, a value a motor; NaN where it is not known.
+    /// Converts pulses to commands on the effective range, 0..1, one value for each motor; NaN is unknown.
     pub fn effective_commands(&self, pulses: &Pulses, commands: &mut [f64]) {
         for (command, &output) in commands.iter_mut().zip(&self.outputs) {
             let index = output.checked_sub(1);
@@ -108,7 +109,7 @@ impl Setup {
     }
 }
 
-/// Whether two geometries have the same factors but for rounding.
+/// Whether two geometries have the same factors, apart from rounding.
 fn same_factors(one: Option<&Geometry>, other: Option<&Geometry>) -> bool {
     let factors = |geometry: Option<&Geometry>| {
         geometry.map_or(Vec::new(), |geometry| geometry.factors.concat())
@@ -116,7 +117,7 @@ fn same_factors(one: Option<&Geometry>, other: Option<&Geometry>) -> bool {
     are_alike(&factors(one), &factors(other))
 }
 
-/// Whether numbers are the same but for rounding: a parameter has single precision.
+/// Whether numbers are the same, apart from rounding: parameters have single precision.
 fn are_alike(one: &[f64], other: &[f64]) -> bool {
     let alike = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-6 * a.abs().max(1.0);
     one.len() == other.len() && one.iter().zip(other).all(alike)
@@ -150,12 +151,12 @@ fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String
     let first_known = functions(1..=16).all(|name| parameters.get(&name).is_some());
     let found = ardupilot::motors(parameters, vehicle, field).len();
     if first_known && vehicle.motors.is_some_and(|all| found < usize::from(all)) {
-        // Then the others are on outputs that only some vehicles have.
+        // The other motors are then on outputs that only some vehicles have.
         names.extend(functions(17..=32));
     }
     let unset = |name| parameters.get(name).is_some_and(|value| value <= 0.0);
     if unset("MOT_PWM_MIN") || unset("MOT_PWM_MAX") {
-        // Then the throttle stick gives the range.
+        // The range is then that of the throttle channel.
         names.push("RCMAP_THROTTLE".to_owned());
         if let Some(channel) = parameters.get("RCMAP_THROTTLE") {
             names.extend(["MIN", "MAX"].map(|end| format!("RC{channel}_{end}")));
@@ -164,7 +165,7 @@ fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String
     names
 }
 
-/// Before PARAM_ERROR, PX4 did not answer requests for parameters that it does not have, so functions are requested until all
+/// Before PARAM_ERROR existed, PX4 did not answer requests for missing parameters, so functions are requested until all
 /// motors are found.
 fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     let motors = px4_motors(parameters);
@@ -175,7 +176,7 @@ fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     let Some((_, output)) = motors.first().filter(|_| motors.len() >= all) else {
         let main = (1..=OUTPUTS_A_PORT).map(|output| format!("PWM_MAIN_FUNC{output}"));
         let aux = (1..=AUX_OUTPUTS).map(|output| format!("PWM_AUX_FUNC{output}"));
-        // Before 1.13 there are these instead, of one bank or of all.
+        // Versions before 1.13 have these instead, for one bank or for all.
         let old = ends.map(|end| format!("PWM_MAIN_{end}"));
         let older = ends.map(|end| format!("PWM_{end}"));
         let first = std::iter::once(count).chain(main).chain(aux);

@@ -6,14 +6,14 @@ use ::mavlink::{MAVLinkV2MessageRaw, SigningConfig, SigningData};
 
 use super::Packet;
 
-/// Bytes of a key.
+/// The length of a key in bytes.
 const BYTES: usize = 32;
 
-/// The secret that a vehicle and those who speak with it share, and the time stamps heard and sent so far. Clones share
-/// these.
+/// The secret key that a vehicle shares with its ground stations, and the timestamps received and sent so far. Clones
+/// share both.
 ///
-/// A packet is genuine where its signature holds and its time stamp is later than that of the packet before from the same
-/// system, component and link; the first one may be a minute behind the clock of this machine.
+/// A packet is genuine if its signature is valid and its timestamp is later than that of the previous packet from the
+/// same system, component and link. The first packet may be up to a minute behind the clock of this machine.
 ///
 /// # Example
 /// ```
@@ -34,7 +34,7 @@ const BYTES: usize = 32;
 pub struct Key(Arc<SigningData>);
 
 impl Key {
-    /// A key from its 32 bytes, or from 64 hexadecimal digits, with or without white space around them; `None` for
+    /// Creates a key from 32 bytes, or from 64 hexadecimal digits with optional white space around them; `None` for
     /// anything else.
     pub fn from_bytes(bytes: &[u8]) -> Option<Key> {
         let secret = match <[u8; BYTES]>::try_from(bytes) {
@@ -45,7 +45,7 @@ impl Key {
         Some(Key(Arc::new(SigningData::from_config(config))))
     }
 
-    /// Whether a packet is signed with this key, and no replay.
+    /// Whether a packet is signed with this key, and is not a replay.
     pub(super) fn verify(&self, packet: &Packet<'_>) -> bool {
         let mut raw = MAVLinkV2MessageRaw::new();
         let bytes = raw.as_mut_slice().get_mut(..packet.bytes.len());
@@ -62,7 +62,7 @@ impl Key {
     }
 }
 
-/// Without the secret.
+/// Does not show the secret.
 impl fmt::Debug for Key {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Key(..)")
@@ -95,7 +95,7 @@ mod tests {
         MavMessage::HEARTBEAT(HEARTBEAT_DATA::default())
     }
 
-    /// What of some packets is taken, and what is counted: unsigned and not genuine.
+    /// The numbers of accepted, unsigned and not genuine packets.
     fn taken<'a>(packets: impl IntoIterator<Item = &'a [u8]>) -> (usize, u64, u64) {
         let mut stream = Stream::with_key(Key::from_bytes(&[7; 32]).unwrap());
         let mut count = 0;
@@ -124,7 +124,7 @@ mod tests {
         let mut genuine = Sender::new(1).signed(Key::from_bytes(&[7; 32]).unwrap());
         let mut foreign = Sender::new(1).signed(Key::from_bytes(&[8; 32]).unwrap());
         let first = genuine.packet(Version::V2, 1, &heartbeat());
-        // A signed packet is of version 2, whatever the vehicle speaks.
+        // A signed packet has version 2, whichever version the vehicle uses.
         let second = genuine.packet(Version::V1, 1, &heartbeat());
         let wrong = foreign.packet(Version::V2, 1, &heartbeat());
         let unsigned =

@@ -2,21 +2,21 @@
 
 use super::{Next, Packet, Why, next_packet};
 
-/// What was skipped.
+/// Counts of skipped data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Skipped {
-    /// Bytes that belong to no packet that could be read.
+    /// Bytes that are not part of any packet that could be read.
     pub bytes: u64,
-    /// Packets whose checksum was wrong, and bytes that only looked like the beginning of one.
+    /// Packets with a wrong checksum, and bytes that only looked like the beginning of a packet.
     pub checksums: u64,
-    /// Packets with a message that is not known here, which are returned unverified, or with an unknown feature of the
-    /// protocol, which are skipped.
+    /// Packets with an unknown message, which are returned unverified, or with an unsupported feature of the protocol,
+    /// which are skipped.
     pub unknown: u64,
     /// Signed packets, which cannot be verified without the key.
     pub signed: u64,
-    /// With a key: packets that are not signed.
+    /// With a key: unsigned packets.
     pub unsigned: u64,
-    /// With a key: packets whose signature is wrong, or whose time stamp came before.
+    /// With a key: packets whose signature is wrong, or whose timestamp is not new.
     pub bad_signatures: u64,
 }
 
@@ -27,7 +27,7 @@ impl Skipped {
     }
 }
 
-/// Why a whole packet is not taken.
+/// The reason why a whole packet is not accepted.
 enum Refusal {
     /// It is signed, and there is no key.
     Signed,
@@ -37,9 +37,9 @@ enum Refusal {
     NotGenuine,
 }
 
-/// Bytes as they arrive, and the packets in them.
+/// Splits bytes into packets as they arrive.
 ///
-/// Its memory is bounded by the largest piece that was pushed and one packet.
+/// Its memory is bounded by the largest slice that was pushed plus one packet.
 ///
 /// # Example: a packet that arrives in pieces
 /// ```
@@ -62,12 +62,12 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// A stream that starts here.
+    /// Creates a stream without any bytes.
     pub fn new() -> Stream {
         Stream::default()
     }
 
-    /// A stream of which only packets are taken that are signed with a key.
+    /// Creates a stream that accepts only packets signed with `key`.
     #[cfg(feature = "mavlink")]
     pub fn with_key(key: super::Key) -> Stream {
         Stream {
@@ -76,18 +76,18 @@ impl Stream {
         }
     }
 
-    /// Adds the bytes that arrived.
+    /// Adds bytes that arrived.
     pub fn push(&mut self, bytes: &[u8]) {
         self.buffer.drain(..self.taken.min(self.buffer.len()));
         self.taken = 0;
         self.buffer.extend_from_slice(bytes);
     }
 
-    /// Returns the next packet; `None` until more bytes arrive. Signed packets are counted and skipped, or with a key those
-    /// that are not genuine.
+    /// Returns the next packet; `None` until more bytes arrive. Signed packets are counted and skipped; with a key,
+    /// packets that are not genuine are.
     ///
-    /// A packet with an unknown message is returned, too, for recording: [`Packet::sound`] is `None`, as its checksum cannot
-    /// be verified.
+    /// A packet with an unknown message is returned as well, for recording. Its [`Packet::sound`] is `None`, because
+    /// its checksum cannot be verified.
     pub fn packet(&mut self) -> Option<Packet<'_>> {
         let length = loop {
             match next_packet(self.buffer.get(self.taken..)?) {
@@ -145,7 +145,7 @@ impl Stream {
         self.taken = 0;
     }
 
-    /// What was skipped since the stream began.
+    /// The counts of skipped data since the stream began.
     pub fn skipped(&self) -> Skipped {
         self.skipped
     }

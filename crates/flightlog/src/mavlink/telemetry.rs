@@ -1,4 +1,4 @@
-//! What the packets of one vehicle tell about its motors.
+//! The motor commands and the state of one vehicle from its packets.
 
 use super::{
     Packet, Setup, Version,
@@ -14,56 +14,56 @@ use crate::{
 
 const ATTITUDE: u32 = 30;
 const COMMAND_ACK: u32 = 77;
-/// MAV_CMD_SET_MESSAGE_INTERVAL, and the MAV_RESULT of a command that is accepted.
+/// MAV_CMD_SET_MESSAGE_INTERVAL, and the MAV_RESULT of an accepted command.
 const SET_MESSAGE_INTERVAL: f64 = 511.0;
 const ACCEPTED: f64 = 0.0;
 
-/// Messages of which a certain rate is wanted: motor commands, attitude and the landed state.
+/// The messages for which a rate is requested: motor commands, attitude and the landed state.
 pub(super) const RATED: [u32; 3] = [36, ATTITUDE, 245];
 
-/// Ports of SERVO_OUTPUT_RAW: the second has ArduPilot's outputs from 17 on, and PX4's AUX outputs.
+/// The number of ports of SERVO_OUTPUT_RAW. The second port has ArduPilot's outputs from 17 on, and PX4's AUX outputs.
 const PORTS: usize = 2;
-/// The pulses of all outputs at a time, in us.
+/// The pulse widths of all outputs at a time, in us.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pulses(pub(super) [[u16; OUTPUTS_A_PORT]; PORTS]);
 
-/// The latest pulses of each port, and whether they came since commands were last told.
+/// The latest pulses of each port, and whether they arrived since the last commands were reported.
 type Outputs = [([u16; OUTPUTS_A_PORT], bool); PORTS];
 const NO_OUTPUTS: Outputs = [([u16::MAX; OUTPUTS_A_PORT], false); PORTS];
 
-/// A landed state older than this, in seconds, is not believed over idle motors.
+/// While the motors idle, a landed state older than this, in seconds, is not used.
 const LANDED_FRESH_S: f64 = 1.5;
 
-/// A clock that jumps is believed only where the one before has been silent for so long, in seconds.
+/// A clock that jumps is accepted only after the old clock has been silent for this time, in seconds.
 const CLOCK_SILENT_S: f64 = 2.0;
 
-/// A clock of a live vehicle, and when its latest accepted stamp came.
+/// A clock of a live vehicle, and the time at which its latest accepted stamp arrived.
 #[derive(Debug, Default)]
 struct LiveClock {
     clock: Clock,
     heard_s: Option<f64>,
-    /// The latest stamp as it came: a packet that comes twice is no witness of itself.
+    /// The latest stamp as received: a repeated packet does not confirm a timestamp.
     stamp: Option<u32>,
 }
 
-/// What a packet changed.
+/// The change that a packet caused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum News {
-    /// Nothing that matters here.
+    /// No relevant change.
     Nothing,
-    /// A parameter became known.
+    /// A parameter is now known.
     Parameter,
-    /// New motor commands, at this time in seconds since the vehicle booted.
+    /// New motor commands arrived.
     Commands {
-        /// The time.
+        /// The time of the commands, in seconds since the vehicle booted.
         t_s: f64,
     },
-    /// The vehicle booted again: all that was known of it is forgotten, and this packet with it.
+    /// The vehicle rebooted: its state, including this packet, is discarded.
     Rebooted,
 }
 
-/// Follows one vehicle by its packets.
+/// Tracks the state of one vehicle from its packets.
 ///
 /// # Example: from a heartbeat to motor commands
 /// ```
@@ -114,7 +114,7 @@ pub struct Telemetry {
     clock: LiveClock,
     boot_clock: LiveClock,
     clock_jumps: u64,
-    /// When a landed state came.
+    /// The time at which a landed state last arrived.
     landed_state_s: Option<f64>,
     outputs: Outputs,
     /// The port that completes the commands of all motors.
@@ -123,7 +123,7 @@ pub struct Telemetry {
     has_commands: bool,
     interval_refused: bool,
     rate_asker: Option<(u8, u8)>,
-    /// The range of motor outputs where the vehicle does not report it.
+    /// The range of motor outputs to use if the vehicle does not report it.
     given: Option<PulseRange>,
 }
 
@@ -158,12 +158,12 @@ impl Telemetry {
         Telemetry { given, ..self }
     }
 
-    /// Whether the vehicle reports a range of its own where one was given.
+    /// Whether the vehicle reports its own range although a range was given.
     pub fn ignores_range(&self, setup: &Setup) -> bool {
         self.given.is_some_and(|given| given.range() != setup.range)
     }
 
-    /// The system it follows.
+    /// The system id of the vehicle.
     pub fn system(&self) -> u8 {
         self.system
     }
@@ -173,7 +173,7 @@ impl Telemetry {
         &self.vehicle
     }
 
-    /// The version of the protocol of its latest heartbeat.
+    /// The protocol version of its latest heartbeat.
     pub fn version(&self) -> Version {
         self.version
     }
@@ -183,14 +183,16 @@ impl Telemetry {
         self.decoder.is_armed()
     }
 
-    /// Whether it is in the air: by EXTENDED_SYS_STATE, without it by the state in the heartbeats of ArduPilot (active
-    /// in the air, on standby while landed). A vehicle that does not tell is in the air while it is armed.
+    /// Whether the vehicle is in the air, by EXTENDED_SYS_STATE or, without it, by the state in the heartbeats of
+    /// ArduPilot (active in the air, standby while landed). A vehicle that reports neither counts as in the air while
+    /// it is armed.
     pub fn is_in_air(&self) -> bool {
         self.decoder.is_in_air_or_armed()
     }
 
-    /// Whether it reports at `now_s` of the receiver's clock that it is in the air; `None` where it only is armed, where its
-    /// landed state (EXTENDED_SYS_STATE) is older than 1.5 s, and while its motors are stopped on purpose.
+    /// Whether the vehicle reports at `now_s` of the receiver's clock that it is in the air. `None` if it is only
+    /// armed, if its landed state (EXTENDED_SYS_STATE) is older than 1.5 s, and while its motors are stopped on
+    /// purpose.
     pub fn reported_in_air(&self, now_s: f64) -> Option<bool> {
         let is_fresh = |heard_s: f64| now_s - heard_s <= LANDED_FRESH_S;
         match self.is_in_air() {
@@ -200,17 +202,17 @@ impl Telemetry {
         }
     }
 
-    /// Whether it ever sent motor outputs (SERVO_OUTPUT_RAW).
+    /// Whether it has ever sent motor outputs (SERVO_OUTPUT_RAW).
     pub fn has_commands(&self) -> bool {
         self.has_commands
     }
 
-    /// How many of each message in [`RATED`] came so far.
+    /// The number of messages of each kind in [`RATED`] that arrived so far.
     pub(super) fn seen(&self) -> [u64; RATED.len()] {
         self.seen
     }
 
-    /// The system and component of the latest other station whose MAV_CMD_SET_MESSAGE_INTERVAL the vehicle accepted.
+    /// The system and component id of the latest other station whose MAV_CMD_SET_MESSAGE_INTERVAL the vehicle accepted.
     pub fn rate_asker(&self) -> Option<(u8, u8)> {
         self.rate_asker
     }
@@ -220,30 +222,30 @@ impl Telemetry {
         self.interval_refused
     }
 
-    /// The value of a parameter; `None` while it is not known. What it is set to in the air counts from the landing on.
+    /// The value of a parameter; `None` while it is unknown. A value that is set in the air applies after the landing.
     pub fn parameter(&self, name: &str) -> Option<f64> {
         self.decoder.parameters.get(name)
     }
 
-    /// Whether parameters came since this was last asked: then [`Telemetry::setup`] may have changed.
+    /// Whether parameters arrived since the last call, so that [`Telemetry::setup`] may have changed.
     pub fn take_parameters_changed(&mut self) -> bool {
         std::mem::take(&mut self.parameters_changed)
     }
 
-    /// How many time stamps jumped while the clock before went on; these packets were left out.
+    /// The number of packets that were ignored because their timestamps jumped while the previous clock continued.
     pub fn clock_jumps(&self) -> u64 {
         self.clock_jumps
     }
 
-    /// Takes in a packet that came at `now_s` of the receiver's clock; those of other systems tell nothing.
+    /// Processes a packet that arrived at `now_s` of the receiver's clock; packets of other systems are ignored.
     ///
-    /// A clock that jumps, back or ahead, is believed once its old time has been silent for 2 s: a vehicle that reboots
-    /// falls silent, one that somebody else speaks for does not.
+    /// A clock that jumps back or ahead is accepted after its old time has been silent for 2 s: a vehicle that reboots
+    /// is silent for that long, while a vehicle whose packets somebody else forges is not.
     pub fn receive(&mut self, packet: &Packet<'_>, now_s: f64) -> News {
         if packet.system != self.system {
             return News::Nothing;
         }
-        // The checksum of an unknown message cannot be verified: nothing may rest on its content.
+        // The checksum of an unknown message cannot be verified, so its content is not used.
         if packet.sound.is_none() {
             return News::Nothing;
         }
@@ -273,7 +275,7 @@ impl Telemetry {
             self.landed_state_s = Some(now_s);
         }
         self.has_commands |= id == RATED[0];
-        // The two ports of one row of commands are one.
+        // The two ports of one row of commands count once.
         let is_other_port = id == RATED[0] && usize::from(payload[20]) != self.last_port;
         let index = RATED.iter().position(|&rated| rated == id);
         if let Some(index) = index.filter(|_| !is_other_port) {
@@ -290,7 +292,7 @@ impl Telemetry {
             }
             COMMAND_ACK if number(0, Kind::U16) == Some(SET_MESSAGE_INTERVAL) => {
                 let is_accepted = number(2, Kind::U8) == Some(ACCEPTED);
-                // To whom it is: 0 in version 1, and by vehicles that do not tell.
+                // The addressee; 0 in version 1, and from vehicles that do not set it.
                 let (system, component) = (payload[8], payload[9]);
                 if system == 0 || system == self.system {
                     self.interval_refused |= !is_accepted;
@@ -303,7 +305,8 @@ impl Telemetry {
         News::Nothing
     }
 
-    /// Attitude has a clock of its own, which goes on over 49 days where that of the commands starts over.
+    /// Attitude messages have a separate clock, which continues for 49 days, while the clock of the commands wraps
+    /// around.
     fn check_boot(&mut self, boot_ms: u32, now_s: f64) -> News {
         let clock = &mut self.boot_clock;
         if clock.stamp.replace(boot_ms) == Some(boot_ms) {
@@ -322,7 +325,7 @@ impl Telemetry {
             return News::Nothing;
         }
         if port != self.last_port {
-            // Those of the motors at hand follow, with the same time.
+            // The port that completes the commands follows, with the same time.
             self.outputs[port] = (outputs.pulses_us, true);
             return News::Nothing;
         }
@@ -339,7 +342,7 @@ impl Telemetry {
         }
         self.outputs[port] = (outputs.pulses_us, true);
         for (pulses, is_new) in &mut self.outputs {
-            // What did not come again is not known any more.
+            // Pulses that were not sent again are unknown.
             if !std::mem::take(is_new) {
                 *pulses = [u16::MAX; OUTPUTS_A_PORT];
             }
@@ -359,7 +362,7 @@ impl Telemetry {
         News::Rebooted
     }
 
-    /// Motors and ranges from what is known; what is not is assumed, and said to be.
+    /// Determines motors and ranges from the known parameters. Missing ones are assumed, and reported as such.
     pub fn setup(&self) -> Setup {
         Setup::of(
             &self.decoder.parameters,
@@ -369,13 +372,13 @@ impl Telemetry {
         )
     }
 
-    /// The parameters that motors and ranges rest on, and gains, as far as they were told.
+    /// The known parameters that determine motors and ranges, and the gains.
     pub fn parameters(&self) -> Vec<Parameter> {
         self.decoder.parameters.of_motors("PARAM_VALUE")
     }
 
-    /// The parameters that motors and their range depend on, that are not known yet, and that the vehicle did not report not
-    /// to have.
+    /// The parameters that motors and their range depend on and that are not known yet, except those that the vehicle
+    /// reported as missing.
     pub(super) fn missing_parameters(&self) -> Vec<String> {
         let mut names = missing(
             &self.decoder.parameters,
@@ -392,14 +395,14 @@ impl Telemetry {
         Pulses([first, second])
     }
 
-    /// The latest commands on the effective range, 0..1, a value a motor; NaN where it is not known.
+    /// The latest commands on the effective range, 0..1, one value for each motor; NaN is unknown.
     pub fn effective_commands(&self, setup: &Setup, commands: &mut [f64]) {
         setup.effective_commands(&self.pulses(), commands);
     }
 }
 
 impl LiveClock {
-    /// The time of a stamp, where it can be believed.
+    /// The time of a stamp, if it is accepted.
     fn check(&mut self, t_s: f64, now_s: f64, jumps: &mut u64) -> Option<f64> {
         let is_alive = |heard_s: f64| now_s - heard_s < CLOCK_SILENT_S;
         if !self.clock.is_next(t_s) && self.heard_s.is_some_and(is_alive) {

@@ -1,4 +1,4 @@
-//! Motor commands from torque and thrust set points, as PX4's control allocation computes them
+//! Computes motor commands from torque and thrust set points, like PX4's control allocation
 //! (<https://docs.px4.io/main/en/concept/control_allocation.html>).
 
 use crate::geometry::rotor_effects;
@@ -6,20 +6,20 @@ use crate::parameters::Parameters;
 
 /// Roll, pitch and yaw torque, and thrust along z (down).
 const AXES: usize = 4;
-/// Parts of a command smaller than this count as 0, before and after scaling.
+/// Contributions to a command smaller than this count as 0, before and after scaling.
 const SMALLEST: f64 = 1e-3;
-/// A pivot smaller than this share of the largest number means that some torque has no effect.
+/// A pivot smaller than this share of the largest number means that some torque cannot be produced.
 const SINGULAR: f64 = 1e-9;
 
-/// What each motor adds to its command for each of the set points.
+/// The contribution of each set point to the command of each motor.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Allocation {
     parts: Vec<[f64; AXES]>,
 }
 
 impl Allocation {
-    /// The allocation of a multirotor with upright rotors that spin one way; `None` for others and where the
-    /// parameters do not describe the rotors.
+    /// The allocation of a multirotor with upright rotors that spin in one direction; `None` for other vehicles, and if
+    /// the parameters do not describe the rotors.
     pub(crate) fn of(parameters: &Parameters) -> Option<Self> {
         let is_zero = |name| parameters.get(name).is_none_or(|value| value == 0.0);
         if !is_zero("CA_AIRFRAME") || !is_zero("CA_R_REV") {
@@ -52,8 +52,8 @@ impl Allocation {
         self.parts.len()
     }
 
-    /// The commands, clipped to 0..1; NaN where a set point is not known. Where one is clipped, PX4 lowers the set points
-    /// instead, and the commands of the other motors are estimates.
+    /// The commands, clipped to 0..1; NaN if a set point is unknown. If a command is clipped, PX4 lowers the set points
+    /// instead, so the commands of the other motors are estimates.
     pub(crate) fn commands(&self, set_points: [f64; AXES]) -> impl Iterator<Item = f64> {
         self.parts.iter().map(move |parts| {
             let products = parts.iter().zip(set_points).map(|(part, set)| part * set);
@@ -62,7 +62,7 @@ impl Allocation {
     }
 }
 
-/// The commands of least squares that have a unit of each effect: `B^T (B B^T)^-1`, a row a motor.
+/// The least-squares commands for a unit of each effect: `B^T (B B^T)^-1`, one row for each motor.
 fn pseudo_inverse(effects: &[[f64; AXES]]) -> Option<Vec<[f64; AXES]>> {
     // Each row is solved for its motor: (B B^T) x = effects of the motor.
     let mut squares = [[0.0; AXES]; AXES];
@@ -79,7 +79,7 @@ fn pseudo_inverse(effects: &[[f64; AXES]]) -> Option<Vec<[f64; AXES]>> {
         .collect()
 }
 
-/// The solution of linear equations, by elimination with the largest pivots; `None` where it is not unique.
+/// The solution of linear equations, by elimination with the largest pivots; `None` if it is not unique.
 fn solve(mut matrix: [[f64; AXES]; AXES], mut right: [f64; AXES]) -> Option<[f64; AXES]> {
     let largest = matrix
         .iter()
@@ -107,8 +107,9 @@ fn solve(mut matrix: [[f64; AXES]; AXES], mut right: [f64; AXES]) -> Option<[f64
     Some(std::array::from_fn(|i| right[i] / matrix[i][i]))
 }
 
-/// Set points are normalised: roll and pitch alike, by the larger of the two, so that the parts of a quadrotor are
-/// 0.71; yaw so that its largest part is 1; thrust so that the mean part is 1.
+/// The scales of the axes. Set points are normalised: roll and pitch together, by the larger of the two, so that the
+/// contributions of a quadrotor are 0.71; yaw so that its largest contribution is 1; thrust so that the mean
+/// contribution is 1.
 fn scales(parts: &[[f64; AXES]]) -> [f64; AXES] {
     let of_axis = |axis: usize| parts.iter().map(move |parts| parts[axis]);
     let turning = |axis: usize| {
@@ -146,7 +147,7 @@ mod tests {
         [-0.15, 0.15, -0.05],
     ];
 
-    /// The parts of a symmetric quadrotor are those of PX4's documentation, whatever its size.
+    /// The contributions for a symmetric quadrotor are those in PX4's documentation, independent of its size.
     #[test]
     fn set_points_of_a_quadrotor_are_shared_among_its_motors() {
         for size in [0.5, 1.0, 4.0] {

@@ -1,4 +1,4 @@
-//! From MAVLink packets to a `Flight`.
+//! Converts MAVLink packets to a `Flight`.
 
 use super::signals::{SPECS, Spec};
 use super::time::VehicleTime;
@@ -14,7 +14,7 @@ use crate::{
     Event, Flight, Format, Intervals, Options, Report, Series, VehicleKind, identity, px4,
 };
 
-/// Telemetry pauses while the link is lost; a time further ahead is damage.
+/// The longest pause of telemetry while the link is lost, in seconds; a time further ahead is damage.
 const LONGEST_PAUSE_S: f64 = 3600.0;
 
 const BATTERY_STATUS: u32 = 147;
@@ -22,19 +22,19 @@ const BATTERY_STATUS: u32 = 147;
 pub(super) struct Collector<'o> {
     options: &'o Options,
     pub(super) report: Report,
-    /// Time of the first packet of the log, microseconds since 1970.
+    /// The time of the first packet of the log, in microseconds since 1970.
     zero_us: Option<u64>,
     latest: Latest,
-    /// What was heard of each system, in the order in which they were first heard.
+    /// The state of each system, in the order of their first packets.
     systems: Vec<(u8, Heard)>,
 }
 
-/// What was heard of a system.
+/// The state of one system.
 #[derive(Default)]
 struct Heard {
     decoder: Decoder,
     time: VehicleTime,
-    /// How far the vehicle's clock was ahead of reception at the first commands.
+    /// The offset of the vehicle's clock from the time of reception at the first commands.
     ahead_s: f64,
     outputs: Outputs,
     has_port_0: bool,
@@ -56,7 +56,7 @@ impl<'o> Collector<'o> {
         }
     }
 
-    /// Takes in a packet.
+    /// Processes a packet.
     pub(super) fn packet(&mut self, stamp_us: u64, packet: &Packet<'_>) {
         let is_full_of_boots = self.systems.iter().any(|(_, heard)| heard.time.is_full());
         if self.report.leaves_out(is_full_of_boots) {
@@ -77,13 +77,13 @@ impl<'o> Collector<'o> {
         }
     }
 
-    /// The flight, once the whole log has been read.
+    /// Returns the flight, after the whole log has been read.
     pub(super) fn finish(self) -> Flight {
         let mut flight = Flight::empty(Format::Tlog);
         flight.report = self.report;
         flight.utc_at_zero_s = self.zero_us.map(|zero_us| zero_us as f64 * 1e-6);
-        // The vehicle is the first system whose heartbeat is that of a vehicle; without any,
-        // the first system that sends anything as an autopilot.
+        // The vehicle is the first system with the heartbeat of a vehicle; without any, the first system that sends as
+        // an autopilot.
         let is_vehicle = |(_, heard): &(u8, Heard)| heard.decoder.mav_type().is_some();
         let mut systems = self.systems;
         let chosen = systems.iter().position(is_vehicle).unwrap_or(0);
@@ -99,8 +99,8 @@ impl<'o> Collector<'o> {
 }
 
 impl Heard {
-    /// Takes in a message of the system. A row that is dropped because times go back is damage, but on the vehicle's
-    /// clock it is a packet that comes late or twice.
+    /// Processes a message of the system. A row that is dropped because times go back counts as damage, but on the
+    /// vehicle's clock it is a late or repeated packet.
     fn message(
         &mut self,
         received_s: f64,
@@ -133,7 +133,7 @@ impl Heard {
         report.row(outputs.pulses_us.len(), dropped);
     }
 
-    /// Brings what came before the first motor commands to the vehicle's clock.
+    /// Shifts the data from before the first motor commands to the vehicle's clock.
     fn shift(&mut self, ahead_s: f64) {
         self.ahead_s = ahead_s;
         self.outputs.shift(ahead_s);
@@ -159,7 +159,8 @@ impl Heard {
         }
     }
 
-    /// Outputs 1 to 8 of a port, and 9 to 16 in version 2; those of port 1 complete the row that port 0 began.
+    /// Stores outputs 1 to 8 of a port, and 9 to 16 in version 2; the outputs of port 1 complete the row that port 0
+    /// began.
     fn servos(&mut self, t_s: f64, outputs: &ServoOutputs) -> bool {
         let port = outputs.port;
         if port > 1 {
@@ -168,7 +169,7 @@ impl Heard {
         self.has_port_0 |= port == 0;
         let first = port == 0 || !self.has_port_0;
         let before = u16::from(port) * OUTPUTS_A_PORT as u16;
-        // An output that is not driven is 0, as are those above 8 of version 1.
+        // An output that is not driven is 0, as are outputs above 8 in version 1.
         let pulses = (1..).zip(outputs.pulses_us).filter(|&(_, us)| us > 0);
         let pulses = pulses.map(|(output, us)| (before + output, f64::from(us)));
         self.outputs.add(t_s, first, pulses)
@@ -261,7 +262,7 @@ impl Heard {
         flight.geometry = geometry::find(flight, &known.declared);
     }
 
-    /// The vehicle by its texts and parameters, and by the type in its heartbeats.
+    /// Determines the vehicle from its texts and parameters, and from the type in its heartbeats.
     fn name_vehicle(&self, flight: &mut Flight) {
         let texts = self.texts.iter().map(|text| text.what.as_str());
         flight.vehicle = ardupilot::vehicle(texts, &self.decoder.parameters);
@@ -278,7 +279,7 @@ impl Heard {
         if self.decoder.mav_type().is_none() {
             return;
         }
-        // What sends the heartbeat of a quadplane may call itself a plane, not the reverse.
+        // A quadplane may send the heartbeat of a plane, but not the reverse.
         if !(vehicle.kind == VehicleKind::Vtol && told.kind == VehicleKind::Plane) {
             vehicle.kind = told.kind;
             vehicle.source = told.source;

@@ -1,6 +1,6 @@
-//! MAVLink telemetry logs (`.tlog`): the microseconds since 1970 (8 bytes, big-endian)
-//! before each packet, versions 1 and 2 mixed. A flight is told on the vehicle's clock, that of its motor commands; where
-//! these carry no time, on that of reception, from the first packet on.
+//! Reads MAVLink telemetry logs (`.tlog`): each packet, of version 1 or 2, is preceded by microseconds since 1970 (8
+//! bytes, big-endian). The flight has the time of the vehicle's clock in its motor commands or, if these carry no time,
+//! the time of reception since the first packet.
 
 mod collect;
 mod signals;
@@ -13,19 +13,19 @@ use crate::input::Input;
 use crate::mavlink::packet::{LONGEST as LONGEST_PACKET, Packet};
 use crate::{Flight, Options};
 
-/// Bytes of a time stamp.
+/// The length of a timestamp in bytes.
 const STAMP: usize = 8;
 const LONGEST: usize = STAMP + LONGEST_PACKET;
-/// Microseconds since 1970 of the years 2000 and 2100.
+/// The range of plausible timestamps, in microseconds since 1970: the years 2000 to 2100.
 const STAMPS_US: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_000;
 
-/// The names and units of the signals that these logs can carry.
+/// The names and units of the signals that these logs can contain.
 pub(crate) fn known_signals() -> impl Iterator<Item = (&'static str, &'static str)> {
     let signals = signals::SPECS.iter().flat_map(|spec| spec.signals);
     signals.map(|(_, name, unit)| (*name, *unit))
 }
 
-/// Whether one of the first bytes starts a packet whose checksum holds.
+/// Whether one of the first bytes starts a packet with a right checksum.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     let start = &start[..start.len().min(16 * LONGEST)];
     (0..start.len()).any(|at| {
@@ -41,9 +41,9 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> io::Result<Fligh
     Ok(collector.finish())
 }
 
-/// Reads the packets of a window and returns how many bytes are done.
+/// Reads the packets of a window and returns the number of processed bytes.
 fn scan(collector: &mut Collector<'_>, window: &[u8], at_end: bool) -> usize {
-    // Except at the end, the window holds a whole packet and the start of the next.
+    // Except at the end, the window contains a whole packet and the start of the next.
     let sure = match at_end {
         true => window.len(),
         false => window.len().saturating_sub(2 * LONGEST),
@@ -64,7 +64,7 @@ fn scan(collector: &mut Collector<'_>, window: &[u8], at_end: bool) -> usize {
                     false => next(rest).min(sure - at),
                 };
                 let report = &mut collector.report;
-                // A packet that is whole but for its checksum was damaged.
+                // A packet that is complete except for its checksum was damaged.
                 let broken =
                     record(rest).is_some_and(|(_, packet)| STAMP + packet.bytes.len() == skip);
                 report.bad_messages += u64::from(broken);
@@ -90,8 +90,8 @@ fn record(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
     Some((u64::from_be_bytes(*stamp), Packet::at(rest)?))
 }
 
-/// The record at the start of `bytes`, if its checksum holds. One of another dialect
-/// cannot be verified: it is accepted if its stamp is a date and a packet follows.
+/// The record at the start of `bytes`, if its checksum is right. The checksum of a packet of another dialect cannot be
+/// verified; it is accepted if its timestamp is plausible and a packet follows.
 fn believed(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
     let (stamp_us, packet) = record(bytes)?;
     let believed = packet.sound.unwrap_or_else(|| {
@@ -104,7 +104,7 @@ fn believed(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
     believed.then_some((stamp_us, packet))
 }
 
-/// Offset of the next record that is certainly one.
+/// The offset of the next record that is certain.
 fn next(bytes: &[u8]) -> usize {
     let starts = |at: &usize| {
         bytes

@@ -1,20 +1,19 @@
-//! Which MAVLink messages hold which signals
-//! (<https://mavlink.io/en/messages/common.html>; fields lie in the order of their width).
+//! Maps MAVLink messages to signals (<https://mavlink.io/en/messages/common.html>; fields are ordered by their width).
 
 use crate::angle::Angle;
 use crate::field::{Kind, NumericField};
 
-/// How a signal is made from the payload of a message.
+/// How a signal is computed from the payload of a message.
 pub(super) enum From {
-    /// A number times a factor; the second number means "not known".
+    /// A number multiplied by a factor; the second number means "unknown".
     Number(NumericField, f64, Option<f64>),
-    /// Length of the vector of these.
+    /// The length of the vector of these fields.
     Length(&'static [NumericField]),
-    /// An angle of the quaternion that starts there.
+    /// An angle of the quaternion that starts at this offset.
     Angle(Angle, usize),
 }
 
-/// Signals of one message: how made, name, unit.
+/// The signals of one message: computation, name, unit.
 pub(super) struct Spec {
     pub(super) id: u32,
     pub(super) message: &'static str,
@@ -35,14 +34,14 @@ const fn degrees(offset: usize) -> From {
     From::Number(at(offset, Kind::F32), DEG, None)
 }
 
-/// RADIO_STATUS of the common dialect and RADIO of SiK radios are alike.
+/// RADIO_STATUS of the common dialect and RADIO of SiK radios have the same fields.
 const RADIO: &[(From, &str, &str)] = &[
     (plain(4, Kind::U8), "radio_rssi", ""),
     (plain(5, Kind::U8), "radio_remote_rssi", ""),
     (plain(7, Kind::U8), "radio_noise", ""),
 ];
 
-/// Where two messages hold the same signal, the first is preferred.
+/// If two messages contain the same signal, the first is preferred.
 pub(super) const SPECS: &[Spec] = &[
     Spec {
         id: 30,
@@ -147,7 +146,7 @@ pub(super) const SPECS: &[Spec] = &[
                 "gps_hdop",
                 "",
             ),
-            // These two are extensions: 0 where the sender does not have them.
+            // These two are extensions: 0 if the sender does not have them.
             (
                 From::Number(at(34, Kind::U32), 1e-3, Some(0.0)),
                 "gps_horizontal_accuracy_m",
@@ -200,7 +199,7 @@ pub(super) const SPECS: &[Spec] = &[
 ];
 
 impl From {
-    /// The value in a payload that was filled up with zeros.
+    /// The value of the signal in a payload that is filled up with zeros.
     pub(super) fn value(&self, payload: &[u8]) -> Option<f64> {
         match self {
             Self::Number(field, factor, unknown) => {

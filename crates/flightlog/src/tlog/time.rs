@@ -1,4 +1,4 @@
-//! The vehicle's clock in a telemetry log, whose own times are those of reception.
+//! The vehicle's clock in a telemetry log, whose own timestamps are times of reception.
 
 use crate::clock::{Checked, Clock, seconds_of};
 use crate::field::Kind;
@@ -6,32 +6,32 @@ use crate::mavlink::decoder::{Payload, ServoOutputs, number};
 
 /// Messages that begin with the milliseconds since boot: ATTITUDE and ATTITUDE_TARGET.
 const BOOT_MS: [u32; 2] = [30, 83];
-/// The time in a message is believed where it differs by at most this from that of the commands before, in s.
+/// The time in a message is accepted if it differs by at most this from the time of the previous commands, in seconds.
 const LATE_S: f64 = 5.0;
 
-/// The clock of one vehicle: that of its motor commands, and between them that of reception.
+/// The clock of one vehicle: the clock of its motor commands, interpolated between them with the time of reception.
 #[derive(Default)]
 pub(super) struct VehicleTime {
     clock: Clock,
-    /// The latest motor commands: when they were received, and their time.
+    /// The latest motor commands: the time of reception, and their own time.
     latest: Option<(f64, f64)>,
-    /// Commands whose time jumps wait for the next ones, which tell whether it is damaged.
+    /// Commands whose time jumps, held until the next ones show whether it is damaged.
     waiting: Option<(f64, ServoOutputs)>,
 }
 
 /// Motor commands and their times.
 #[derive(Default)]
 pub(super) struct Timed {
-    /// Those to take now, in their order.
+    /// The rows to accept now, in order.
     pub(super) rows: [Option<(f64, ServoOutputs)>; 2],
-    /// Whether one was dropped, whose time is damaged.
+    /// Whether a row with a damaged time was dropped.
     pub(super) dropped: bool,
-    /// With the first of all: how far the vehicle's clock is ahead of reception.
+    /// With the first commands: the offset of the vehicle's clock from the time of reception.
     pub(super) ahead_s: Option<f64>,
 }
 
 impl VehicleTime {
-    /// Takes in motor commands that were received at `received_s`.
+    /// Processes motor commands that were received at `received_s`.
     pub(super) fn commands(&mut self, received_s: f64, outputs: ServoOutputs) -> Timed {
         if outputs.time_us == 0 {
             let rows = [Some((self.guess_s(received_s), outputs)), None];
@@ -84,19 +84,19 @@ impl VehicleTime {
         self.clock.is_full()
     }
 
-    /// The start of each boot but the first.
+    /// The start of each boot except the first.
     pub(super) fn boots_s(&self) -> &[f64] {
         self.clock.boots_s()
     }
 
-    /// The time of another message; that of reception while the vehicle's is not known.
+    /// The time of another message; the time of reception while the vehicle's clock is unknown.
     pub(super) fn other(&self, received_s: f64, id: u32, payload: &Payload) -> f64 {
         let guess_s = self.guess_s(received_s);
         let Some((_, commands_s)) = self.latest else {
             return guess_s;
         };
         let own = BOOT_MS.contains(&id).then(|| number(payload, 0, Kind::U32));
-        // The clock goes on over boots, that of the message starts again.
+        // The clock continues across boots, while the clock of the message restarts.
         let own_s = own.flatten().map(|ms| ms * 1e-3 + self.clock.offset_s());
         own_s
             .filter(|own_s| (own_s - commands_s).abs() <= LATE_S)

@@ -1,4 +1,4 @@
-//! From ULog messages to a `Flight`.
+//! Converts ULog messages to a `Flight`.
 
 use super::format::keyed_number;
 use super::outputs::Outputs;
@@ -13,20 +13,21 @@ use crate::parameters::Parameters;
 use crate::signal::preferred;
 use crate::{Commands, Event, Flight, Format, Intervals, Options, Report, Series, identity, px4};
 
-/// A time this far after all times before it is damage, unless the next one agrees.
+/// A time this far after all earlier times is damaged, unless the next one agrees, in seconds.
 const LONGEST_PAUSE_S: f64 = 60.0;
-/// Logged values of an outputs message.
+/// The number of logged values in an outputs message.
 const OUTPUTS: usize = 16;
 /// Set points of the rate controllers.
 const TORQUE: &str = "vehicle_torque_setpoint";
 const THRUST: &str = "vehicle_thrust_setpoint";
 /// Index of the thrust along z.
 const DOWN: usize = 2;
-/// What is assumed where the motor commands are not logged.
+/// The assumption if the motor commands are not logged.
 const COMPUTED: &str = "motor commands computed from torque and thrust set points, estimates where motors are at their limits";
-/// Both are published together; a thrust this much older than the torque is not its own, in s.
+/// Both are published together; a thrust that is older than the torque by more than this, in seconds, does not belong
+/// to it.
 const LATE_THRUST_S: f64 = 0.1;
-/// Announcements of topics that are heeded; a log of PX4 has some hundreds.
+/// The maximum number of topic announcements; a log of PX4 has some hundreds.
 const MOST_ANNOUNCED: usize = 4096;
 
 pub(super) struct Collector<'o> {
@@ -74,12 +75,12 @@ impl<'o> Collector<'o> {
         }
     }
 
-    /// Time at which the log began.
+    /// Notes the time at which the log began.
     pub(super) fn started(&mut self, start_us: u64) {
         self.latest.believe(start_us as f64 * 1e-6);
     }
 
-    /// Takes in a message without its head.
+    /// Processes a message without its head.
     pub(super) fn message(&mut self, letter: u8, body: &[u8]) {
         match letter {
             b'D' => self.data(body),
@@ -138,7 +139,7 @@ impl<'o> Collector<'o> {
         }
     }
 
-    /// `A`: instance, number, name of a topic.
+    /// Processes `A`: instance, number, name of a topic.
     fn announce(&mut self, body: &[u8]) {
         self.announced += 1;
         if self.announced > MOST_ANNOUNCED {
@@ -203,7 +204,7 @@ impl<'o> Collector<'o> {
         Role::Outputs(index, fields)
     }
 
-    /// `D`: number of the topic, then its fields.
+    /// Processes `D`: number of the topic, then its fields.
     fn data(&mut self, body: &[u8]) {
         let Some((&id, body)) = body.split_first_chunk() else {
             return;
@@ -267,7 +268,7 @@ impl<'o> Collector<'o> {
         }
     }
 
-    /// The flight, once the whole log has been read.
+    /// Returns the flight, after the whole log has been read.
     pub(super) fn finish(mut self) -> Flight {
         let mut flight = Flight::empty(Format::ULog);
         let firmware = self.release.map(px4::firmware);
@@ -314,7 +315,7 @@ impl<'o> Collector<'o> {
         flight
     }
 
-    /// Motors, their commands and the range of these.
+    /// Sets the motors, their commands and the range of these.
     fn take_commands(&self, flight: &mut Flight) {
         let count = flight.vehicle.motors;
         let logged = |topic: &'static str| {
@@ -324,7 +325,7 @@ impl<'o> Collector<'o> {
         let topic = "actuator_motors";
         if let Some(outputs) = logged(topic).find(|outputs| outputs.instance == 0) {
             let (motors, range) = px4::actuator_motors(&self.parameters, outputs.in_use() as u16);
-            // A motor that is told to stop is NaN there.
+            // A motor that is commanded to stop is NaN there.
             flight.commands = outputs.commands(0..motors.len(), |value| {
                 if value.is_nan() { 0.0 } else { value.into() }
             });
@@ -332,7 +333,7 @@ impl<'o> Collector<'o> {
             flight.range = Some(range);
             return;
         }
-        // The other instances drive gimbals and the like, or are all zero.
+        // The other instances drive gimbals and similar devices, or are all zero.
         for outputs in logged("actuator_outputs") {
             let instance = outputs.instance;
             let found = px4::actuator_outputs(&self.parameters, instance, count);
@@ -361,7 +362,7 @@ impl<'o> Collector<'o> {
         flight.motors = motors;
     }
 
-    /// The motor commands that follow from torque and thrust set points.
+    /// Computes the motor commands from torque and thrust set points.
     fn computed_commands(&self) -> Option<Commands> {
         let allocation = px4::Allocation::of(&self.parameters)?;
         let (_, torque) = self.series.iter().find(|(topic, _)| *topic == TORQUE)?;

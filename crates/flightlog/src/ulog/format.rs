@@ -1,17 +1,17 @@
-//! ULog is self-describing: definitions say where the fields of a topic are.
+//! ULog is self-describing: definitions determine the positions of the fields of a topic.
 
 use std::collections::HashMap;
 
 use crate::field::{Kind, NumericField};
 
-/// Nested topics go no deeper than this; deeper ones are damage.
+/// The maximum depth of nested topics; deeper ones are damage.
 const DEEPEST: usize = 8;
-/// No message is longer: its length has 16 bits.
+/// The maximum length of a message, which is stored in 16 bits.
 const LONGEST: usize = u16::MAX as usize;
-/// Fields of a topic, those of the topics in it included; PX4's have under 200. Nested definitions could otherwise take
-/// for ever.
+/// The maximum number of fields of a topic, including nested topics; PX4's topics have under 200. It bounds the time
+/// for nested definitions.
 const MOST_FIELDS: usize = 1024;
-/// Bytes of all definitions; PX4's take under a quarter.
+/// The maximum size of all definitions in bytes; PX4's definitions have under a quarter of it.
 const MOST_BYTES: usize = 1_000_000;
 
 /// One field of a topic.
@@ -29,7 +29,7 @@ pub(super) struct Formats {
     bytes: usize,
 }
 
-/// The type of that name.
+/// The number type with this name.
 fn kind_of(name: &str) -> Option<Kind> {
     Some(match name {
         "int8_t" => Kind::I8,
@@ -57,7 +57,7 @@ pub(super) fn keyed_number<'k>(key: &'k str, value: &[u8]) -> Option<(&'k str, f
 }
 
 impl Formats {
-    /// Takes in a definition, `name:type field;type field;...`. The first of a name holds.
+    /// Adds a definition, `name:type field;type field;...`. The first definition of a name is used.
     pub(super) fn define(&mut self, text: &str) -> Result<(), &'static str> {
         const INVALID: &str = "a definition that is not valid";
         let (name, fields) = text.split_once(':').ok_or(INVALID)?;
@@ -78,7 +78,7 @@ impl Formats {
         Ok(())
     }
 
-    /// Bytes of a topic as it is logged: with its padding, but for that at the end.
+    /// The size of a topic as it is logged, in bytes: with its padding, except at the end.
     pub(super) fn logged_size(&self, topic: &str) -> Option<usize> {
         let fields = self.topics.get(topic)?;
         let padding = |field: &&Member| field.name.starts_with("_padding");
@@ -87,7 +87,7 @@ impl Formats {
         self.size_of(fields.get(..fields.len() - end)?, DEEPEST, &mut left)
     }
 
-    /// `left` fields may still be looked at.
+    /// The size of these fields; `left` is the number of fields that may still be visited.
     fn size_of(&self, fields: &[Member], depth: usize, left: &mut usize) -> Option<usize> {
         fields.iter().try_fold(0_usize, |size, field| {
             let one = self.field_size(field, depth, left)?;
@@ -96,7 +96,7 @@ impl Formats {
         })
     }
 
-    /// Bytes of one element of a field.
+    /// The size of one element of a field in bytes.
     fn field_size(&self, field: &Member, depth: usize, left: &mut usize) -> Option<usize> {
         *left = left.checked_sub(1)?;
         if let Some(kind) = kind_of(&field.kind) {
@@ -106,7 +106,7 @@ impl Formats {
         self.size_of(nested, depth.checked_sub(1)?, left)
     }
 
-    /// Where the field called `name`, with its index as in `q[2]`, is in a topic.
+    /// The position of the field `name`, which may have an index as in `q[2]`, in a topic.
     pub(super) fn field(&self, topic: &str, name: &str) -> Option<NumericField> {
         let (name, index) = match name.split_once('[') {
             Some((name, index)) => (name, index.strip_suffix(']')?.parse().ok()?),
@@ -185,7 +185,7 @@ mod tests {
                 .define("huge:float[99999999999999999999] x")
                 .is_err()
         );
-        // Without a bound the size of the last would take a week.
+        // Without a limit, computing the size of the last topic would take a week.
         formats.define("deep0:float[0] x").unwrap();
         for depth in 1..=8 {
             let inner = format!("deep{} x;", depth - 1).repeat(1000);

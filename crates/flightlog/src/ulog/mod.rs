@@ -1,8 +1,8 @@
-//! PX4 ULog files: a head, and messages of a length, a letter and a body
+//! Reads PX4 ULog files: a head, and messages of a length, a letter and a body
 //! (<https://docs.px4.io/main/en/dev_log/ulog_file_format.html>).
 //!
-//! Messages have no checksum, so each is checked against what is known of it: the letter,
-//! the length of its topic, and that another message follows.
+//! Messages have no checksum, so each is checked in other ways: its letter, the length of its topic, and whether
+//! another message follows.
 
 mod collect;
 mod format;
@@ -25,14 +25,13 @@ const LONGEST: usize = HEAD + u16::MAX as usize;
 /// Body of a synchronisation message.
 const SYNC: [u8; 8] = [0x2f, 0x73, 0x13, 0x20, 0x25, 0x0c, 0xbb, 0x12];
 
-/// The names and units of the signals that these logs can carry.
+/// The names and units of the signals that these logs can contain.
 pub(crate) fn known_signals() -> impl Iterator<Item = (&'static str, &'static str)> {
     let signals = signals::SPECS.iter().flat_map(|spec| spec.signals);
     signals.map(|(_, name, unit)| (*name, *unit))
 }
 
-/// Whether a file starts as ULog does; where its head is damaged, whether it holds the
-/// definition of a topic.
+/// Whether a file starts as ULog does; if its head is damaged, whether it contains the definition of a topic.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     const DEFINITION: &[u8] = b":uint64_t timestamp;";
     start.starts_with(&MAGIC)
@@ -53,14 +52,14 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> io::Result<Fligh
 
 struct Scanner<'o> {
     collector: Collector<'o>,
-    /// Bytes before the window.
+    /// The number of bytes before the window.
     at: u64,
-    /// Where data was appended after the log had been closed, in order (crash dumps).
+    /// The offsets at which data was appended after the log had been closed (crash dumps), ascending.
     appended: Vec<u64>,
 }
 
 impl Scanner<'_> {
-    /// Reads the messages of a window and returns how many bytes are done.
+    /// Reads the messages of a window and returns the number of processed bytes.
     fn scan(&mut self, window: &[u8], at_end: bool) -> usize {
         let mut at = 0;
         if self.at == 0 && window.starts_with(&MAGIC) && window.len() >= FILE_HEAD {
@@ -69,7 +68,7 @@ impl Scanner<'_> {
             }
             at = FILE_HEAD;
         }
-        // Except at the end, the window holds a whole message and the head of the next.
+        // Except at the end, the window contains a whole message and the head of the next.
         let sure = match at_end {
             true => window.len(),
             false => window.len().saturating_sub(LONGEST + HEAD),
@@ -83,10 +82,10 @@ impl Scanner<'_> {
         used
     }
 
-    /// Handles what is at the start of `bytes`, at `offset` in the file; returns its length.
-    /// After `room` bytes, damage cannot be told from a message that continues after the window.
+    /// Handles the start of `bytes`, at `offset` in the file; returns the number of bytes handled. After `room` bytes,
+    /// damage cannot be distinguished from a message that continues after the window.
     fn step(&mut self, bytes: &[u8], offset: u64, room: usize) -> usize {
-        // Appended data starts with a message, wherever the message before would have ended.
+        // Appended data starts with a message, even inside the previous message.
         let next = self.appended.iter().find(|&&start| start > offset);
         let limit = next.and_then(|start| usize::try_from(start - offset).ok());
         let within = &bytes[..limit.unwrap_or(bytes.len()).min(bytes.len())];
@@ -118,7 +117,7 @@ impl Scanner<'_> {
         }
     }
 
-    /// Offset of the next message that is certainly not damage.
+    /// The offset of the next message that is certainly not damaged.
     fn next_message(&self, bytes: &[u8]) -> usize {
         (1..bytes.len())
             .find(|&at| self.collector.topics.certain(&bytes[at..]))
@@ -126,7 +125,7 @@ impl Scanner<'_> {
     }
 }
 
-/// The starts of appended data, where the flags say that there is any.
+/// The offsets of appended data, if the flags indicate that there is any.
 fn flagged_starts(body: &[u8], starts: &[u8]) -> Vec<u64> {
     if body.get(8).is_none_or(|flags| flags & 1 == 0) {
         return Vec::new();

@@ -1,9 +1,9 @@
-//! Commands of motors and outputs, as PX4 logs them.
+//! Commands of motors and outputs in logs of PX4.
 
 use crate::Commands;
 use crate::signal::{Order, SetBack};
 
-/// Raw commands of one topic and instance.
+/// The raw commands of one topic and instance.
 pub(super) struct Outputs {
     pub(super) topic: &'static str,
     pub(super) instance: u8,
@@ -30,7 +30,7 @@ impl Outputs {
         self.t_s.is_empty()
     }
 
-    /// Adds a row; `true` when a row was dropped because times go back.
+    /// Adds a row; returns `true` if a row was dropped because times go back.
     pub(super) fn push(&mut self, t_s: f64, values: impl Iterator<Item = f32>) -> bool {
         let order = Order::of(&self.t_s, t_s);
         self.set_back.see(order, t_s, self.t_s.last());
@@ -52,7 +52,7 @@ impl Outputs {
         self.values.chunks_exact(self.width.max(1))
     }
 
-    /// Number of values up to the last that is ever finite.
+    /// The number of values up to the last one that is ever finite.
     pub(super) fn in_use(&self) -> usize {
         let used = |row: &[f32]| row.iter().rposition(|value| value.is_finite());
         self.rows()
@@ -61,7 +61,7 @@ impl Outputs {
             .map_or(0, |last| last + 1)
     }
 
-    /// The smallest and the largest value above 0; infinity and 0 without any.
+    /// The smallest and the largest value above 0; infinity and 0 if there is none.
     pub(super) fn extremes(&self, columns: impl Iterator<Item = usize> + Clone) -> (f64, f64) {
         let values = self
             .rows()

@@ -40,7 +40,7 @@ impl Part {
     }
 }
 
-/// The signals that a topic holds and that are asked for.
+/// The signals that a topic contains and that the options request.
 pub(super) fn parts(
     spec: &Spec,
     find: &impl Fn(&str) -> Option<NumericField>,

@@ -1,18 +1,18 @@
-//! Which ULog topics hold which signals.
+//! Maps ULog topics to signals.
 
 use crate::angle::Angle;
 
-/// How a signal is made from the fields of a topic.
+/// How a signal is computed from the fields of a topic.
 pub(super) enum From {
-    /// A field, times a factor.
+    /// A field, multiplied by a factor.
     Field(&'static str, f64),
-    /// Length of the vector of these.
+    /// The length of the vector of these fields.
     Length(&'static [&'static str]),
     /// An angle of the attitude quaternion in the four elements of this field.
     Angle(Angle, &'static str),
 }
 
-/// Signals of one topic: how made (the first way that the topic has), name, unit.
+/// The signals of one topic: computation (the first one for which the topic has the fields), name, unit.
 pub(super) struct Spec {
     pub(super) topic: &'static str,
     pub(super) signals: &'static [(&'static [From], &'static str, &'static str)],
@@ -67,7 +67,7 @@ const fn outputs(
     ]
 }
 
-/// Where two topics hold the same signal, the first is preferred.
+/// If two topics contain the same signal, the first is preferred.
 pub(super) const SPECS: &[Spec] = &[
     Spec {
         topic: "vehicle_torque_setpoint",

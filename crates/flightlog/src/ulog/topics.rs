@@ -3,16 +3,16 @@
 use super::format::Formats;
 use super::{HEAD, SYNC};
 
-/// The topics of a log by the number that their messages carry.
+/// The topics of a log by the numbers in their messages.
 #[derive(Default)]
 pub(super) struct Topics {
     pub(super) formats: Formats,
-    /// Length of the messages of each number, the number included; 0 when it is unknown.
+    /// The length of the messages of each number, including the number itself; 0 if it is unknown.
     lengths: Vec<Option<u16>>,
 }
 
 impl Topics {
-    /// Topic `name` has the number `id` from now on.
+    /// Assigns the number `id` to the topic `name` from now on.
     pub(super) fn announce(&mut self, id: u16, name: &str) {
         let index = usize::from(id);
         if self.lengths.len() <= index {
@@ -27,8 +27,8 @@ impl Topics {
         }
     }
 
-    /// The message at the start of `bytes` with its head, if it can be one; `None` for
-    /// damage, and for a message that is cut off.
+    /// The message at the start of `bytes` with its head, if it can be one; `None` for damage and for a message that is
+    /// cut off.
     pub(super) fn message<'a>(&self, bytes: &'a [u8]) -> Option<&'a [u8]> {
         let length = self.length(bytes)?;
         let message = bytes.get(..length)?;
@@ -39,7 +39,7 @@ impl Topics {
         None
     }
 
-    /// Whether a message starts here that is (almost) certainly not damage.
+    /// Whether a message starts here that is (almost) certainly not damaged.
     pub(super) fn certain(&self, bytes: &[u8]) -> bool {
         let Some(message) = self.length(bytes).and_then(|length| bytes.get(..length)) else {
             return false;
@@ -48,14 +48,14 @@ impl Topics {
         self.exact(message) && (rest.is_empty() || self.may_start(rest))
     }
 
-    /// Length of what starts here, head included, if its letter and length fit each other.
+    /// The length of the message that starts here, including its head, if its letter and length are consistent.
     fn length(&self, bytes: &[u8]) -> Option<usize> {
         let &[low, high, letter] = bytes.first_chunk()?;
         let length = u16::from_le_bytes([low, high]);
         let fits = match letter {
             b'D' => match self.expected(bytes) {
                 Some(0) => length >= 10,
-                // Firmware before 1.8 logs the padding at the end, too.
+                // Firmware before 1.8 also logs the padding at the end.
                 Some(expected) => (expected..expected.saturating_add(8)).contains(&length),
                 None => false,
             },
@@ -71,20 +71,19 @@ impl Topics {
         fits.then_some(HEAD + usize::from(length))
     }
 
-    /// Length that the topic of a data message has: 0 when its definition is missing,
-    /// `None` when it was not announced.
+    /// The length that the topic of a data message has: 0 if its definition is missing, `None` if it was not announced.
     fn expected(&self, bytes: &[u8]) -> Option<u16> {
         let &[.., low, high] = bytes.first_chunk::<5>()?;
         let id = usize::from(u16::from_le_bytes([low, high]));
         self.lengths.get(id).copied().flatten()
     }
 
-    /// Whether another message may start here, as far as can be seen.
+    /// Whether another message may start here, as far as the available bytes show.
     fn may_start(&self, bytes: &[u8]) -> bool {
         bytes.len() < 5 || self.length(bytes).is_some()
     }
 
-    /// Whether the body also fits the letter.
+    /// Whether the body is also consistent with the letter.
     fn exact(&self, message: &[u8]) -> bool {
         let body = &message[HEAD..];
         match message[2] {
@@ -100,7 +99,7 @@ impl Topics {
     }
 }
 
-/// The key of a body that starts with its length, and what follows it.
+/// The key of a body that starts with the length of the key, and the bytes after it.
 pub(super) fn key(body: &[u8]) -> Option<(&str, &[u8])> {
     let (&length, rest) = body.split_first()?;
     let (key, value) = rest.split_at_checked(length.into())?;
@@ -110,8 +109,8 @@ pub(super) fn key(body: &[u8]) -> Option<(&str, &[u8])> {
     Some((key, value))
 }
 
-/// Bytes of a text that are looked at: damage is searched for a message at every byte, and any may look like the
-/// beginning of a long one.
+/// The number of bytes of a text that are examined. In damaged data every byte may look like the beginning of a long
+/// message.
 const CHECKED: usize = 64;
 
 fn printable(text: &[u8]) -> bool {

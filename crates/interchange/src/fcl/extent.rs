@@ -1,8 +1,8 @@
-//! Where a membership function changes: the range of a variable that names none.
+//! The interval in which a membership function changes, which is the range of a variable without one.
 
 use fuzzy::model::MembershipFunction;
 
-/// Between where a membership function changes; flanks without an end are cut where they are below 0.0002.
+/// The interval in which a membership function changes; unbounded flanks are cut off where they are below 0.0002.
 pub(super) fn extent(function: &MembershipFunction) -> (f64, f64) {
     use MembershipFunction as Of;
     match *function {

@@ -1,6 +1,6 @@
-//! The words of FCL: names, numbers and signs, without comments.
+//! Splits FCL into names, numbers and signs, without comments.
 
-/// The words of a text. Comments run from `//` to the end of the line, and between `/*` and `*/` or `(*` and `*)`.
+/// The words of a text. Comments extend from `//` to the end of the line, and between `/*` and `*/` or `(*` and `*)`.
 pub(super) fn words(text: &str) -> Vec<&str> {
     let mut words = vec![];
     let mut rest = text;
@@ -34,7 +34,7 @@ fn comment(rest: &str) -> Option<usize> {
         .or_else(|| until("(*", "*)"))
 }
 
-/// The length of a number. `1..2` is a number, two points and a number.
+/// The length of a number. `1..2` consists of a number, two points and a number.
 fn number(rest: &str) -> Option<usize> {
     let bytes = rest.as_bytes();
     let digits = |mut at: usize| {

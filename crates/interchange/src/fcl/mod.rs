@@ -1,4 +1,4 @@
-//! FCL, the Fuzzy Control Language of IEC 61131-7, as jFuzzyLogic and fuzzylite write it.
+//! FCL, the Fuzzy Control Language of IEC 61131-7, in the dialects of jFuzzyLogic and fuzzylite.
 
 pub(crate) use read::read;
 pub(crate) use write::write;

@@ -1,4 +1,4 @@
-//! From FCL to a model.
+//! Reads FCL.
 
 use fuzzy::{
     diagnostic::nearest,
@@ -9,7 +9,7 @@ use fuzzy::{
 use super::lex;
 use crate::{Losses, blocks, draft::Draft, fll::handover};
 
-/// `name` is the function block to read; where it is `None`, the file has one.
+/// Reads the function block `name`, or the only one if it is `None`.
 pub(crate) fn read(
     text: &str,
     name: Option<&str>,
@@ -33,22 +33,22 @@ pub(crate) fn read(
     reader.finish()
 }
 
-/// Behind `ACCU :`, where it is written; inside it `None` is `NONE`.
+/// The value of `ACCU :`, if it is present; the inner `None` is `NONE`.
 pub(super) type Accumulation = Option<Option<Aggregation>>;
 
 pub(super) struct Reader<'r, 't> {
     pub(super) draft: Draft<'t>,
     pub(super) words: &'r [&'t str],
     pub(super) next: usize,
-    /// The names behind VAR_OUTPUT.
+    /// The names in VAR_OUTPUT.
     pub(super) outputs: Vec<&'t str>,
-    /// Of each output.
+    /// The accumulation of each output.
     pub(super) accumulations: Vec<Accumulation>,
-    /// Of a rule block, which holds for outputs without one.
+    /// The accumulation of a rule block, for outputs without their own.
     pub(super) common: Accumulation,
-    /// Whether it is fuzzylite's dialect.
+    /// Whether the text is in fuzzylite's dialect.
     pub(super) is_fuzzylite: bool,
-    /// Whether the terms that are read compute values, which `METHOD` says behind them.
+    /// Whether the terms that are read compute values, which depends on the `METHOD` after them.
     pub(super) computes: bool,
     pub(super) blocks: Vec<Block>,
 }
@@ -84,7 +84,7 @@ impl<'r, 't> Reader<'r, 't> {
         Some(word)
     }
 
-    /// The words up to the next `;`, which is stepped over, or up to one of the keywords.
+    /// The words up to the next `;`, which is consumed, or up to one of the keywords.
     pub(super) fn statement(&mut self, keywords: &[&str]) -> &'r [&'t str] {
         let words = self.words;
         let rest = words.get(self.next..).unwrap_or_default();
@@ -96,7 +96,7 @@ impl<'r, 't> Reader<'r, 't> {
         rest.get(..length).unwrap_or_default()
     }
 
-    /// Where something is missing: the next word, or the end of the text.
+    /// The location of something missing: the next word, or the end of the text.
     pub(super) fn here(&self) -> &'t str {
         let text = self.draft.text;
         self.peek()
@@ -118,7 +118,7 @@ impl<'r, 't> Reader<'r, 't> {
         );
     }
 
-    /// Steps to the function block of a name. Of several ones without a name it is the first, with a loss.
+    /// Moves to the function block with a name. Without a name and with several blocks it is the first, with a loss.
     fn choose(&mut self, name: Option<&str>) -> bool {
         let words = self.words.iter().zip(self.words.iter().skip(1)).enumerate();
         let blocks = words.filter(|(_, (word, _))| word.eq_ignore_ascii_case("FUNCTION_BLOCK"));
@@ -208,7 +208,7 @@ impl<'r, 't> Reader<'r, 't> {
             }
         }
         for input in &mut self.draft.model.inputs {
-            // An input that is not fuzzified is there for formulas.
+            // An input that is not fuzzified is used by formulas.
             if input.low.is_nan() {
                 (input.low, input.high) = (0.0, 1.0);
             }
@@ -217,7 +217,7 @@ impl<'r, 't> Reader<'r, 't> {
     }
 }
 
-/// fuzzylite writes no `;` behind a rule.
+/// fuzzylite writes no `;` after a rule.
 fn is_fuzzylite(words: &[&str]) -> bool {
     let mut pairs = words.iter().zip(words.iter().skip(1));
     pairs.any(|(last, word)| word.eq_ignore_ascii_case("END_RULEBLOCK") && *last != ";")

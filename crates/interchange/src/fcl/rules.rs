@@ -1,4 +1,4 @@
-//! Rule blocks of FCL, and how their conclusions are joined.
+//! Reads rule blocks of FCL, and the aggregation of their conclusions.
 
 use fuzzy::{
     format::RuleSpans,
@@ -64,7 +64,7 @@ impl Reader<'_, '_> {
                 return self.skip("RULEBLOCK");
             }
         }
-        // Where one of them is not named, it is the dual of the other.
+        // If one of them is not specified, it is the dual of the other.
         (block.and, block.or) = match (and, or) {
             (None, None) => (Conjunction::Minimum, Disjunction::Maximum),
             (Some(and), None) => (and, dual(and)),
@@ -98,10 +98,10 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The aggregation of an output; `None` where it computes its values, so that each rule is weighed.
+    /// The aggregation of an output; `None` if it computes its values, so that each rule is weighed.
     pub(super) fn aggregation(&mut self, index: usize) -> Option<Aggregation> {
         let written = self.accumulations.get(index).copied().flatten();
-        // Where nothing is written, it is MAX; in fuzzylite's dialect it is NONE.
+        // The default is MAX; in fuzzylite's dialect it is NONE.
         let accumulation = match written.or(self.common) {
             Some(accumulation) => accumulation,
             None => (!self.is_fuzzylite).then_some(Aggregation::Maximum),

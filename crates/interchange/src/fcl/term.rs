@@ -21,14 +21,14 @@ pub(super) fn is_number(term: &Term) -> bool {
     )
 }
 
-/// Whether the words behind `:=` name a shape, and are no points or number.
+/// Whether the words after `:=` name a shape, rather than points or a number.
 pub(super) fn is_named(words: &[&str]) -> bool {
     words
         .first()
         .is_some_and(|first| *first != "(" && number(first).is_none())
 }
 
-/// The term of a name, from the words behind `:=`. In an output with computed values a number is a constant.
+/// Reads a term from the words after `:=`. In an output with computed values a number is a constant.
 pub(super) fn read(
     draft: &mut Draft<'_>,
     variable: &str,
@@ -97,7 +97,7 @@ fn shape<'t>(
         return None;
     }
     let function = match (known, &numbers[..]) {
-        // jFuzzyLogic takes 0 where the difference is negative, and not its size.
+        // jFuzzyLogic uses 0 if the difference is negative, not its absolute value.
         (Shape::SigmoidDifference, [a, b, c, d]) if format == Format::Fcl && (a != c || b > d) => {
             let x = formula::quoted(variable);
             let sigmoid =

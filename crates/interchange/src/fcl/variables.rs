@@ -1,4 +1,4 @@
-//! Variables of FCL and their terms.
+//! Reads variables of FCL and their terms.
 
 use fuzzy::{
     diagnostic::nearest,
@@ -127,12 +127,12 @@ impl<'t> Reader<'_, 't> {
             && !self.is_fuzzylite
             && output.variable.terms.iter().all(term::is_number)
         {
-            // The centre of gravity for singletons: degrees are aggregated before they weigh the places.
+            // The centre of gravity for singletons: degrees are aggregated before they weigh the positions.
             output.defuzzifier = Defuzzifier::Centroid;
         }
         let weighted = words::is_weighted(output.defuzzifier);
         if weighted {
-            // The places of singletons are values here.
+            // The positions of singletons are values here.
             for term in &mut output.variable.terms {
                 if let MembershipFunction::Singleton { at } = term.membership_function {
                     term.membership_function = MembershipFunction::Constant { value: at };
@@ -148,7 +148,7 @@ impl<'t> Reader<'_, 't> {
         self.draft.spans.outputs.push(spans);
     }
 
-    /// `DEFAULT := 0;`, `DEFAULT := NC;`: some files write `=`, and no semicolon.
+    /// `DEFAULT := 0;`, `DEFAULT := NC;`. Some files have `=`, and no semicolon.
     pub(super) fn default(&mut self, output: &mut Output, spans: &mut VariableSpans) {
         if !self.take(":=") && !self.take("=") && !self.take(":") {
             return self.unexpected("`:=`");
@@ -215,7 +215,7 @@ impl<'t> Reader<'_, 't> {
         false
     }
 
-    /// A term as FLL writes it, of the words behind `:=`.
+    /// Reads a term in the syntax of FLL from the words after `:=`.
     pub(super) fn fuzzylite_term(
         &mut self,
         variable: &Variable,
@@ -225,7 +225,7 @@ impl<'t> Reader<'_, 't> {
         let (first, last) = (words.first()?, words.last()?);
         let span = self.draft.span(first).start..self.draft.span(last).end;
         let written = self.draft.text.get(span)?;
-        // An output with computed values reads the inputs, a degree its own variable.
+        // In an output with computed values it reads the inputs; a degree reads its own variable.
         let inputs = self.draft.model.inputs.iter();
         let inputs: Vec<String> = inputs.map(|input| input.name.clone()).collect();
         let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
@@ -233,7 +233,7 @@ impl<'t> Reader<'_, 't> {
         fll::term::of_shape(&mut self.draft, name, written, &inputs, own)
     }
 
-    /// The range of a variable that names none: from the first to the last place where a term changes.
+    /// Sets the range of a variable without one: from the first to the last point at which a term changes.
     pub(super) fn universe(
         &mut self,
         variable: &mut Variable,

@@ -1,4 +1,4 @@
-//! From a model to FCL: points and numbers as IEC 61131-7 has them, curves as jFuzzyLogic names them.
+//! Writes FCL: points and numbers as in IEC 61131-7, curves with the names of jFuzzyLogic.
 
 use fuzzy::{
     Findings, Model,
@@ -131,7 +131,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     paper.finish()
 }
 
-/// The output with a range around its numbers: `COGS` is a centroid, for which a number outside the range does not exist.
+/// The output with a range around its numbers. `COGS` is a centroid, which ignores numbers outside the range.
 fn widened(output: &Output) -> Variable {
     let mut variable = output.variable.clone();
     for term in &output.variable.terms {
@@ -144,7 +144,7 @@ fn widened(output: &Output) -> Variable {
     variable
 }
 
-/// The range and the terms; where an output `computes` values, a constant is one of them, elsewhere a degree.
+/// Writes the range and the terms. If an output `computes` values, a constant is a value, otherwise a degree.
 fn terms(paper: &mut Paper, variable: &Variable, computes: bool) {
     paper.line(format!(
         "  RANGE := ({} .. {});",
@@ -228,7 +228,7 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable, computes: bool) ->
     }
 }
 
-/// Tells that a term is a function.
+/// Reports that a term is a function.
 fn function(paper: &mut Paper, term: &Term, variable: &Variable) {
     let name = named(term, variable);
     let message = format!("the term {name} is a function, which IEC 61131-7 has not");
@@ -254,7 +254,7 @@ fn linear(coefficients: &[(String, f64)], constant: f64) -> String {
     text
 }
 
-/// The points without a second one at the same place and height, as the shoulder of a triangle has.
+/// The points without repetitions at the same position and height, which the shoulder of a triangle has.
 fn edges(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut points = points.to_vec();
     points.dedup();

@@ -1,4 +1,5 @@
-//! FIS, MATLAB's Fuzzy Inference System: sections `[System]`, `[Input1]`, `[Output1]`, `[Rules]` of lines `Key=value`.
+//! FIS, MATLAB's Fuzzy Inference System: sections `[System]`, `[Input1]`, `[Output1]`, `[Rules]` with lines
+//! `Key=value`.
 
 pub(crate) use read::read;
 pub(crate) use write::write;

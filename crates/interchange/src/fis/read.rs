@@ -1,4 +1,4 @@
-//! From FIS to a model.
+//! Reads FIS.
 
 use fuzzy::{
     format::{Document, TermSpans, VariableSpans},
@@ -12,13 +12,13 @@ use crate::{
     shapes, words,
 };
 
-/// `[Name]` and its lines.
+/// A section: `[Name]` and its lines.
 pub(super) struct Section<'t> {
     name: &'t str,
     entries: Vec<Entry<'t>>,
 }
 
-/// `Key=value`; a line without `=` is all value.
+/// `Key=value`; a line without `=` is a value without a key.
 struct Entry<'t> {
     key: &'t str,
     value: &'t str,
@@ -30,7 +30,7 @@ impl<'t> Section<'t> {
         self.entries.iter().find(is_key).map(|entry| entry.value)
     }
 
-    /// The number behind a name: 2 of `Input2`.
+    /// The number after a name: 2 for `Input2`.
     fn index(&self, word: &str) -> Option<usize> {
         let (start, number) = self.name.split_at_checked(word.len())?;
         start
@@ -89,7 +89,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
             break;
         }
         if let Some((variable, spans)) = variable(&mut draft, section, &names, weighted) {
-            // fuzzylite writes Tsukamoto's kind in this way.
+            // fuzzylite writes Tsukamoto outputs in this way.
             let defuzzifier = match variable.terms.iter().any(shapes::is_computed) {
                 false if defuzzifier == Defuzzifier::WeightedAverage => Defuzzifier::Tsukamoto,
                 _ => defuzzifier,
@@ -104,7 +104,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let outputs = draft.model.outputs.len();
     count(&mut draft, system, "NumInputs", names.len());
     count(&mut draft, system, "NumOutputs", outputs);
-    // Rules name terms by number, so the variables must all be there.
+    // Rules refer to terms by number, so all variables must exist.
     if !draft.has_errors() {
         let section = sections
             .iter()
@@ -180,12 +180,12 @@ fn without_comment(line: &str) -> &str {
     line
 }
 
-/// Whether the system is Sugeno's; `None` with an error where it is of another kind.
+/// Whether the system is of Sugeno's kind; `None` with an error if it is of an unsupported kind.
 fn kind(draft: &mut Draft<'_>, system: &Section<'_>) -> Option<bool> {
     let word = system.get("Type").unwrap_or("mamdani");
     match unquoted(word).to_ascii_lowercase().as_str() {
         "mamdani" => Some(false),
-        // fuzzylite writes `tsukamoto`, where the terms of outputs are monotone sets.
+        // fuzzylite writes `tsukamoto` if the terms of outputs are monotone sets.
         "sugeno" | "tsukamoto" => Some(true),
         other if other.contains("type2") => {
             let message = format!("`{other}` has type-2 fuzzy sets, which a rule set cannot hold");
@@ -210,7 +210,7 @@ fn operators(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) {
         draft.model.operators.or = or;
     }
     if weighted {
-        // MATLAB multiplies and sums in Sugeno systems, whatever these keys say.
+        // MATLAB always multiplies and sums in Sugeno systems, whatever the keys contain.
         if let Some(word) = system
             .get("AggMethod")
             .filter(|word| unquoted(word) != "sum")
@@ -309,7 +309,7 @@ fn variable(
     Some((variable, spans))
 }
 
-/// A name that no other term of the variable has. Rules of FIS know terms by number, so names may be alike.
+/// A name that no other term of the variable has. Rules of FIS refer to terms by number, so names may be equal.
 fn distinct(draft: &mut Draft<'_>, variable: &Variable, name: String, spans: &TermSpans) -> String {
     let taken = |name: &str| variable.terms.iter().any(|term| term.name == name);
     if !taken(&name) {
@@ -330,14 +330,14 @@ fn distinct(draft: &mut Draft<'_>, variable: &Variable, name: String, spans: &Te
     free
 }
 
-/// The words between brackets, divided by blanks or commas.
+/// The words between brackets, separated by blanks or commas.
 pub(super) fn bracketed(text: &str) -> Vec<&str> {
     let inner = text.trim().trim_start_matches('[').trim_end_matches(']');
     let words = inner.split(|c: char| c.is_whitespace() || c == ',' || c == ';');
     words.filter(|word| !word.is_empty()).collect()
 }
 
-/// A number, or a calculation with numbers and `pi` alone, such as `-pi/4`: MATLAB evaluates what it reads.
+/// A number, or an expression of numbers and `pi`, such as `-pi/4`, which MATLAB evaluates.
 pub(super) fn number(draft: &mut Draft<'_>, word: &str) -> Option<f64> {
     let is_arithmetic = |c: char| c.is_ascii_digit() || ".eEpi+-*/()".contains(c);
     if draft::number(word).is_none()
@@ -353,7 +353,7 @@ pub(super) fn number(draft: &mut Draft<'_>, word: &str) -> Option<f64> {
     draft.number(word)
 }
 
-/// Warns where a section has another number of parts than its key announces: a file that was cut off lacks some.
+/// Warns if a section has another number of parts than its key announces, as in a file that was cut off.
 fn count(draft: &mut Draft<'_>, section: &Section<'_>, key: &str, found: usize) {
     let Some(written) = section.get(key) else {
         return;

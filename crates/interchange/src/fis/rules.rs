@@ -1,5 +1,5 @@
-//! Rules of FIS: `1 -2, 3 (0.5) : 1`: a term's number for each input, a comma, one for each output, the weight, and 1 for AND
-//! or 2 for OR. A negative number is NOT, 0 leaves the variable out.
+//! Reads rules of FIS, such as `1 -2, 3 (0.5) : 1`: the number of a term for each input, a comma, one for each output,
+//! the weight, and 1 for AND or 2 for OR. A negative number means NOT, 0 omits the variable.
 
 use fuzzy::{
     format::RuleSpans,
@@ -132,13 +132,13 @@ fn parts(line: &str) -> Option<Parts<'_>> {
     })
 }
 
-/// What a number in a rule names.
+/// The term and hedges that a number in a rule refers to.
 struct Named {
     variable: Name,
     term: Name,
-    /// `NOT` and those of Octave.
+    /// `NOT` and hedges of Octave.
     hedges: Vec<Hedge>,
-    /// The hedged degree is multiplied by the degree of the term.
+    /// Whether the hedged degree is multiplied by the degree of the term.
     once_more: bool,
 }
 
@@ -164,7 +164,8 @@ impl Named {
     }
 }
 
-/// What a number in a rule names: of `-2.3` the second term, hedged with NOT and Octave's `extremely`; `None` of 0.
+/// The term and hedges that a number in a rule refers to: `-2.3` is the second term with NOT and Octave's `extremely`;
+/// `None` for 0.
 fn proposition(
     draft: &mut Draft<'_>,
     word: &str,
@@ -214,8 +215,8 @@ fn proposition(
     }))
 }
 
-/// The hedges of Octave's toolkit, the digits behind the point, in hundredths. Its `extremely` is a cube: the square times the degree,
-/// which a product of conditions gives.
+/// The hedges of Octave's toolkit, given by the digits after the decimal point, in hundredths. Its `extremely` is a
+/// cube: the square times the degree, which is expressed as a product of conditions.
 fn octave(
     draft: &mut Draft<'_>,
     word: &str,

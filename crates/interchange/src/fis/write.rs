@@ -1,4 +1,4 @@
-//! From a model to FIS, as MATLAB reads it.
+//! Writes FIS for MATLAB.
 
 use fuzzy::{
     Findings, Model,
@@ -13,7 +13,7 @@ use crate::{
     shapes, words,
 };
 
-/// Quotes end a name, and `:` follows one.
+/// Quotes end a name, and `:` follows a name.
 const NAMES: Allowed = Allowed {
     is_letter: |c| words::is_printable(c) && !matches!(c, '\'' | '"' | ':'),
     is_first: words::is_printable,
@@ -175,7 +175,8 @@ fn shape(
         let message = format!("the term {name} has the height {}", term.height);
         paper.loss("height", message, "all terms of FIS are 1 high");
     }
-    // What MATLAB lacks is written with a shape that is equal within the range. Octave takes no flank without a width.
+    // A shape that MATLAB lacks is replaced by one that is equal within the range. Octave does not accept flanks of
+    // width 0.
     let width = variable.high - variable.low;
     let written = match term.membership_function {
         Of::LeftShoulder { top, foot } => {

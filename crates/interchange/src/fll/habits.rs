@@ -1,4 +1,4 @@
-//! What fuzzylite does without a word in the file, whatever the format.
+//! Implicit rules of fuzzylite, which apply to all formats.
 
 use fuzzy::{
     format::{TermSpans, VariableSpans},
@@ -7,7 +7,7 @@ use fuzzy::{
 
 use crate::{draft::Draft, shapes};
 
-/// A weighted average over fuzzy sets is Tsukamoto's: fuzzylite tells the kind from the terms.
+/// A weighted average over fuzzy sets is Tsukamoto's: fuzzylite derives the kind from the terms.
 pub(crate) fn tsukamoto(output: &mut Output) {
     if output.defuzzifier == Defuzzifier::WeightedAverage
         && !output.variable.terms.iter().any(shapes::is_computed)
@@ -16,7 +16,7 @@ pub(crate) fn tsukamoto(output: &mut Output) {
     }
 }
 
-/// Adds a term to a variable, unless it has one of that name: rules find the first one.
+/// Adds a term to a variable, unless it has one with that name: rules refer to the first one.
 pub(crate) fn add(
     draft: &mut Draft<'_>,
     (variable, spans): (&mut Variable, &mut VariableSpans),

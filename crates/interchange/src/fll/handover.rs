@@ -1,5 +1,5 @@
-//! Conditions about outputs. In fuzzylite such a condition is as true as the rules before it that conclude the term are: the
-//! degrees are handed over, not the value. So the condition becomes the conditions of those rules.
+//! Conditions on outputs. In fuzzylite, the degree of such a condition is that of the earlier rules that conclude the
+//! term; degrees are passed on, not the value. So the condition is replaced by the conditions of those rules.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use fuzzy::{
 
 use crate::draft::Draft;
 
-/// Propositions that conditions about outputs become in all: a rule may repeat what the rules before it repeat.
+/// The maximum number of propositions that replace conditions on outputs: a rule may repeat what earlier rules repeat.
 const MOST_PROPOSITIONS: usize = 100_000;
 
 pub(crate) fn replace(draft: &mut Draft<'_>) {
@@ -110,13 +110,13 @@ struct Handover<'m> {
     concluding: &'m Concluding,
     outputs: &'m BTreeSet<String>,
     rule: usize,
-    /// How many more propositions there may be.
+    /// The number of propositions that may still be added.
     room: usize,
     problems: Vec<String>,
 }
 
 impl Handover<'_> {
-    /// Replaces the propositions about outputs; `None` where there is no more room.
+    /// Replaces the propositions about outputs; `None` if there would be too many.
     fn resolve(&mut self, condition: &mut Condition) -> Option<()> {
         match condition {
             Condition::Not(inner) => self.resolve(inner),
@@ -134,7 +134,7 @@ impl Handover<'_> {
         }
     }
 
-    /// What concludes the term of a proposition about an output; `None` where there is no more room.
+    /// The condition that replaces a proposition about an output; `None` if there would be too many propositions.
     fn concluded(&mut self, proposition: &Proposition, term: &str) -> Option<Condition> {
         let (model, name) = (self.model, &proposition.variable.text);
         let key = (name.clone(), term.to_owned());
@@ -202,7 +202,7 @@ impl Handover<'_> {
     }
 }
 
-/// The operators of a rule, and which rules of its block fire.
+/// The operators of a rule, and the activation method of its block.
 fn operators(model: &Model, rule: &Rule) -> (Operators, Activation) {
     let block = model.blocks.get(rule.block);
     (

@@ -1,4 +1,4 @@
-//! FLL, the FuzzyLite Language: sections of lines `key: value`.
+//! FLL, the FuzzyLite Language: sections with lines `key: value`.
 
 pub(crate) use read::read;
 pub(crate) use write::write;

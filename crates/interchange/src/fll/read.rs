@@ -1,4 +1,4 @@
-//! From FLL to a model.
+//! Reads FLL.
 
 use fuzzy::{
     diagnostic::nearest,
@@ -16,7 +16,7 @@ use crate::{
 /// A section and its lines.
 struct Section<'t> {
     kind: Kind,
-    /// The name behind the section's word.
+    /// The name after the word of the section.
     name: &'t str,
     entries: Vec<Entry<'t>>,
 }
@@ -47,7 +47,7 @@ impl Kind {
         })
     }
 
-    /// The keys of a section; those of fuzzylite 5 stand last.
+    /// The keys of a section; those of fuzzylite 5 are last.
     fn keys(self) -> &'static [&'static str] {
         match self {
             Kind::Engine => &["description"],
@@ -107,7 +107,8 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         if !draft.has_room(count, MOST_VARIABLES, "inputs", section.name) {
             break;
         }
-        // Values outside the range count as the nearest inside, whatever it says; it must be readable all the same.
+        // Values outside the range always count as the nearest value inside, whatever the flag; it must still be
+        // readable.
         flag(&mut draft, section, "lock-range");
         if let Some((variable, spans)) = variable(&mut draft, section, &inputs) {
             draft.model.inputs.push(variable);
@@ -134,7 +135,7 @@ fn description(section: &Section<'_>) -> Option<String> {
         .map(str::to_owned)
 }
 
-/// The sections of a text. Lines before the first one, and lines that are no `key: value`, are errors.
+/// The sections of a text. Lines before the first one, and lines that are not `key: value`, are errors.
 fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
     let mut sections: Vec<Section<'t>> = vec![];
     for line in draft.text.lines() {
@@ -179,7 +180,7 @@ fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
     sections
 }
 
-/// Whether a section counts: those that are not enabled do not.
+/// Whether a section is enabled.
 fn is_enabled(draft: &mut Draft<'_>, section: &Section<'_>) -> bool {
     flag(draft, section, "enabled").unwrap_or(true)
 }
@@ -232,7 +233,7 @@ fn variable(
     let ends = (draft.number(low)?, draft.number(high)?);
     let (low, high) = draft.range(range, ends, computed);
     let mut variable = Variable::new(section.name, low, high);
-    // Computed values read the inputs, a degree its own variable.
+    // Computed values read the inputs; a degree reads its own variable.
     let own = (!computed).then_some(section.name);
     variable.description = description(section);
     for written in section.all("term") {
@@ -266,7 +267,7 @@ fn output(draft: &mut Draft<'_>, section: &Section<'_>, inputs: &[&str]) {
             _ => None,
         });
     }
-    // Fuzzy sets have their values inside the range anyway.
+    // Values of fuzzy sets are inside the range anyway.
     let is_locked = flag(draft, section, "lock-range") == Some(true);
     output.clamp = words::is_weighted(output.defuzzifier) && is_locked;
     draft.model.outputs.push(output);
@@ -305,7 +306,7 @@ fn defuzzifier(draft: &mut Draft<'_>, written: &str, output: &mut Output) {
     }
 }
 
-/// An operator of a word in a section, and whether it is there.
+/// The operator in a section, if it is present.
 fn operator<T: Copy>(
     draft: &mut Draft<'_>,
     section: &Section<'_>,
@@ -333,7 +334,7 @@ fn blocks(draft: &mut Draft<'_>, sections: &[&Section<'_>]) {
         block.and = and.unwrap_or_default();
         let or = operator(draft, section, "disjunction", words::DISJUNCTIONS);
         block.or = or.unwrap_or_default();
-        // In fuzzylite 5 the activation was what the implication is now.
+        // In fuzzylite 5, `activation` had the meaning of the implication.
         let old = section
             .get("activation")
             .filter(|word| words::value(words::CONJUNCTIONS, Format::Fll, word).is_some());

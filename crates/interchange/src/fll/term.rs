@@ -1,4 +1,4 @@
-//! Terms of FLL: `NAME Shape PARAMETER...`, with a height behind the parameters.
+//! Reads terms of FLL: `NAME Shape PARAMETER...`, with a height after the parameters.
 
 use fuzzy::{
     diagnostic::nearest,
@@ -8,7 +8,7 @@ use fuzzy::{
 
 use crate::{Format, draft::Draft, formula, shapes};
 
-/// Shapes whose number of parameters is not fixed.
+/// Shapes with a variable number of parameters.
 const OTHERS: [&str; 5] = ["Discrete", "Constant", "Linear", "Function", "Binary"];
 
 /// `NAME Shape PARAMETER...`
@@ -29,7 +29,7 @@ pub(super) fn read(
     }
 }
 
-/// The term of a name, from `Shape PARAMETER...`. `own` is the variable that a formula calls `x`, where the term is a fuzzy set.
+/// Reads a term from `Shape PARAMETER...`. `own` is the variable that a formula calls `x`, if the term is a fuzzy set.
 pub(crate) fn of_shape(
     draft: &mut Draft<'_>,
     name: &str,
@@ -107,7 +107,7 @@ pub(crate) fn of_shape(
     ))
 }
 
-/// `x y x y ...`, and a height where a number is left over.
+/// `x y x y ...`, with a height if the number of values is odd.
 fn points(numbers: &[f64]) -> (MembershipFunction, usize) {
     let pairs = numbers.chunks_exact(2).map(|pair| (pair[0], pair[1]));
     let points: Vec<(f64, f64)> = pairs.collect();
@@ -115,7 +115,8 @@ fn points(numbers: &[f64]) -> (MembershipFunction, usize) {
     (MembershipFunction::Piecewise { points }, used)
 }
 
-/// A step up at a place, or down where the direction is less than the place, such as `-inf`; `part` names the shape in the text.
+/// A step up at a position, or down if the direction is less than the position, such as `-inf`; `part` is the shape in
+/// the text.
 fn binary(draft: &mut Draft<'_>, numbers: &[f64], part: &str) -> Option<MembershipFunction> {
     let at = numbers.first().copied().unwrap_or(f64::NAN);
     let direction = numbers.get(1).copied().unwrap_or(f64::NAN);

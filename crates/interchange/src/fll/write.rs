@@ -1,4 +1,4 @@
-//! From a model to FLL, as fuzzylite 7 writes it.
+//! Writes FLL for fuzzylite 7.
 
 use fuzzy::{
     Findings, Model,
@@ -35,7 +35,7 @@ const NAMES: Allowed = Allowed {
     ],
 };
 
-/// The samples that stand for an exact integral.
+/// The number of samples that approximates an exact integral.
 const SAMPLES: usize = 1000;
 
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
@@ -46,7 +46,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     for input in &model.inputs {
         paper.line(format!("InputVariable: {}", input.name));
         variable(&mut paper, input);
-        // A rule set takes values outside the range as the nearest inside.
+        // A rule set clamps values outside the range.
         paper.line("  lock-range: true");
         for term in &input.terms {
             self::term(&mut paper, term, &model, Some(&input.name));
@@ -67,7 +67,7 @@ fn description(paper: &mut Paper, text: Option<&str>) {
     }
 }
 
-/// A text on one line, without the sign that begins a comment.
+/// A text on one line, without the sign that starts a comment.
 fn uncommented(text: &str) -> String {
     one_line(&text.replace('#', " "))
 }

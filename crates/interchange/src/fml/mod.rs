@@ -1,4 +1,4 @@
-//! FML, the Fuzzy Markup Language of IEEE 1855, as JFML writes it, and its older form without a namespace.
+//! FML, the Fuzzy Markup Language of IEEE 1855, as written by JFML, and its older form without a namespace.
 
 pub(crate) use read::read;
 pub(crate) use write::write;

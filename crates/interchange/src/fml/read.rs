@@ -1,4 +1,4 @@
-//! From FML to a model.
+//! Reads FML.
 
 use fuzzy::{
     diagnostic::nearest,
@@ -19,7 +19,7 @@ use crate::{
 /// The namespace of the standard's schema.
 pub(super) const NAMESPACE: &str = "http://www.ieee1855.org";
 
-/// FML's hedges that mean what a rule set's do.
+/// FML's hedges with the same meaning as those of a rule set.
 pub(super) const HEDGES: [(&str, Hedge); 6] = [
     ("not", Hedge::Not),
     ("very", Hedge::Very),
@@ -51,7 +51,8 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let root = document.root_element();
     draft.model.name = attribute(root, "name").unwrap_or("unnamed").to_owned();
     let mut reader = Reader {
-        // In the older form `left` and `right` say where the slope is, in the standard where the degree is 1.
+        // In the older form `left` and `right` are the side of the slope, in the standard the side on which the degree
+        // is 1.
         right_is_high: root.tag_name().namespace() == Some(NAMESPACE),
         aggregations: vec![],
         blocks: vec![],
@@ -68,24 +69,24 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     reader.draft.finish()
 }
 
-/// Attributes of an element: each is compared with those before it.
+/// The maximum number of attributes of an element, because each is compared with the others.
 const MOST_ATTRIBUTES: usize = 1000;
 
-/// Declarations of namespaces: each element that has one copies those of the elements around it.
+/// The maximum number of namespace declarations, because each element with one copies those of the elements around it.
 const MOST_NAMESPACES: usize = 100;
 
-/// Elements in each other.
+/// The maximum depth of nested elements.
 const DEEPEST_ELEMENTS: usize = 256;
 
-/// The start of the first element at which a document is larger than these bounds, the message and the help. Looks at the text
-/// alone, before the XML library takes it apart.
+/// The position of the first element at which a document exceeds these limits, with the message and the help. It
+/// examines the text before the XML library parses it.
 fn too_large(text: &str) -> Option<(&str, String, &'static str)> {
     let mut reader = quick_xml::Reader::from_str(text);
     reader.config_mut().check_end_names = false;
     let (mut namespaces, mut depth) = (0, 0_usize);
     loop {
         let start = usize::try_from(reader.buffer_position()).ok()?;
-        // What is not XML is an error of the parser behind this.
+        // Invalid XML is reported by the parser afterwards.
         let (element, is_open) = match reader.read_event().ok()? {
             Event::Start(element) => (element, true),
             Event::Empty(element) => (element, false),
@@ -132,19 +133,19 @@ fn too_large(text: &str) -> Option<(&str, String, &'static str)> {
 struct Reader<'t> {
     draft: Draft<'t>,
     right_is_high: bool,
-    /// Of each output.
+    /// The aggregation of each output.
     aggregations: Vec<Option<Aggregation>>,
     blocks: Vec<Block>,
 }
 
-/// An attribute; case does not count.
+/// The value of an attribute; case is ignored.
 pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     node.attributes()
         .find(|attribute| attribute.name().eq_ignore_ascii_case(name))
         .map(|attribute| attribute.value())
 }
 
-/// The opening tag of an element, as it stands in the text.
+/// The opening tag of an element in the text.
 pub(super) fn tag<'t>(text: &'t str, node: Node<'_, '_>) -> &'t str {
     let element = text.get(node.range()).unwrap_or_default();
     element
@@ -153,7 +154,7 @@ pub(super) fn tag<'t>(text: &'t str, node: Node<'_, '_>) -> &'t str {
         .unwrap_or(element)
 }
 
-/// The elements below a node of one of some names.
+/// The child elements with one of some names.
 pub(super) fn children<'a, 'i>(
     node: Node<'a, 'i>,
     names: &'static [&'static str],
@@ -164,7 +165,7 @@ pub(super) fn children<'a, 'i>(
     })
 }
 
-/// The text of the first element of a name.
+/// The text of the first element with a name.
 fn text_of<'a>(node: Node<'a, '_>, name: &'static str) -> Option<&'a str> {
     node.children()
         .find(|child| child.tag_name().name().eq_ignore_ascii_case(name))
@@ -203,7 +204,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The number in an attribute; `None` where it has none, or with an error where it is no number.
+    /// The number in an attribute; `None` if there is none, or with an error if it is not a number.
     fn number(&mut self, node: Node<'_, '_>, name: &str) -> Option<f64> {
         let written = attribute(node, name)?;
         let number = crate::draft::number(written.trim());
@@ -281,7 +282,7 @@ impl Reader<'_> {
         self.draft.spans.outputs.push(spans);
     }
 
-    /// An output whose terms are monotone sets.
+    /// Reads an output whose terms are monotone sets.
     fn tsukamoto(&mut self, node: Node<'_, '_>) {
         let Some((variable, spans)) = self.variable(node) else {
             return;
@@ -300,7 +301,7 @@ impl Reader<'_> {
         self.draft.spans.outputs.push(spans);
     }
 
-    /// A Takagi-Sugeno output: its terms have a constant, then a coefficient for each input.
+    /// Reads a Takagi-Sugeno output: its terms have a constant, then a coefficient for each input.
     fn tsk(&mut self, node: Node<'_, '_>) {
         let part = tag(self.draft.text, node);
         let count = self.draft.model.outputs.len();
@@ -343,7 +344,7 @@ impl Reader<'_> {
             .word(Format::Fml, known, &format!("`{key}`"), (word, part))
     }
 
-    /// The operators of a rule base or a rule; those of the base where a rule names none.
+    /// The operators of a rule base or a rule; defaults are those of the base.
     fn operators(&mut self, node: Node<'_, '_>, base: &Block) -> Block {
         let and = self.word(node, "andMethod", words::CONJUNCTIONS);
         let or = self.word(node, "orMethod", words::DISJUNCTIONS);
@@ -414,7 +415,7 @@ impl Reader<'_> {
                 self.draft
                     .loss("else", part, message, "write a rule of its own");
             }
-            // The older form has no `then` around its clauses.
+            // The older form has no `then` element around its clauses.
             let then = children(consequent, &["then", "tskThen"])
                 .next()
                 .unwrap_or(consequent);

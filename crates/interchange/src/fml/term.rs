@@ -1,4 +1,4 @@
-//! Terms of FML: `<fuzzyTerm name="low"><triangularShape param1="0" param2="1" param3="2"/></fuzzyTerm>`.
+//! Reads terms of FML: `<fuzzyTerm name="low"><triangularShape param1="0" param2="1" param3="2"/></fuzzyTerm>`.
 
 use fuzzy::{
     diagnostic::nearest,
@@ -117,7 +117,7 @@ fn function(
             right: d,
         },
         "gaussianShape" => To::Gaussian { mean: a, sd: b },
-        // 1 on one side of the mean: a plateau up to the end of the range.
+        // 1 on one side of the mean: a plateau to the end of the range.
         "leftGaussianShape" | "rightGaussianShape" => To::Gaussian2 {
             left_mean: if rising { a } else { low.min(a) },
             left_sd: b,
@@ -128,7 +128,7 @@ fn function(
         "leftLinearShape" | "rightLinearShape" => To::LeftShoulder { top: a, foot: b },
         "rectangularShape" => To::Rectangle { left: a, right: b },
         "singletonShape" => To::Singleton { at: a },
-        // From `a` up to 1 at `b`, and down as wide.
+        // Rises from `a` to 1 at `b`, and falls over the same width.
         "piShape" => To::PiShape {
             left: a,
             left_top: b,
@@ -170,7 +170,7 @@ fn points(draft: &mut Draft<'_>, shape: Node<'_, '_>) -> Option<MembershipFuncti
     Some(MembershipFunction::Piecewise { points })
 }
 
-/// A Takagi-Sugeno term: the constant, then a coefficient for each input.
+/// Reads a Takagi-Sugeno term: the constant, then a coefficient for each input.
 pub(super) fn tsk(
     draft: &mut Draft<'_>,
     node: Node<'_, '_>,

@@ -1,4 +1,4 @@
-//! From a model to FML, as IEEE 1855's schema has it.
+//! Writes FML according to the schema of IEEE 1855.
 
 use fuzzy::{
     Findings, Model,
@@ -166,7 +166,7 @@ fn variable_element(name: &'static str, variable: &Variable, kind: &str) -> Elem
         .with("type", kind)
 }
 
-/// `names` are those of the element and of its terms, and the type.
+/// Writes a variable; `names` are the names of the element and of its terms, and the type.
 fn variable(paper: &mut Paper, variable: &Variable, names: [&'static str; 3]) -> Element {
     let mut element = variable_element(names[0], variable, names[2]);
     for term in &variable.terms {
@@ -231,7 +231,7 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
     element
 }
 
-/// A Takagi-Sugeno output: the constant of each term, then a coefficient for each input.
+/// Writes a Takagi-Sugeno output: the constant of each term, then a coefficient for each input.
 fn tsk(paper: &mut Paper, output: &Output, model: &Model) -> Element {
     let variable = &output.variable;
     let mut element = variable_element("tskVariable", variable, "output").with("combination", "WA");

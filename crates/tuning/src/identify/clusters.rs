@@ -1,16 +1,17 @@
-//! Subtractive clustering (Chiu 1994): places with many rows around them, in the space of some inputs and the output.
+//! Subtractive clustering (Chiu 1994): finds points with many rows around them, in the space of some inputs and the
+//! output.
 
 use fastrand::Rng;
 
 use crate::data::{Data, range};
 
-/// The rows of which a potential is computed; of more, so many at random.
+/// The maximum number of rows for which a potential is computed; if there are more, a random sample is used.
 const MOST_ROWS: usize = 600;
 
-/// How far around a center others are discouraged, in radii.
+/// The distance around a center within which the potential of other points is reduced, in radii.
 const SQUASH: f64 = 1.25;
 
-/// A potential above this share of the first one makes a center, one below the other share ends the search.
+/// A point with a potential above this share of the first one is a center; the search ends below the second share.
 const ACCEPT: f64 = 0.5;
 const REJECT: f64 = 0.15;
 
@@ -18,14 +19,14 @@ const REJECT: f64 = 0.15;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Clusters {
     pub(super) inputs: Vec<usize>,
-    /// Of each input the standard deviation of the gaussians around the centers.
+    /// For each input the standard deviation of the gaussians around the centers.
     pub(super) deviations: Vec<f64>,
-    /// A value of each input, for each cluster.
+    /// For each cluster a value of each input.
     pub(super) centers: Vec<Vec<f64>>,
 }
 
 impl Clusters {
-    /// The clusters of rows, at most so many. The radius is a share of the range of each column.
+    /// Finds at most `most` clusters of rows. The radius is a share of the range of each column.
     pub(super) fn find(data: &Data, inputs: &[usize], radius: f64, most: usize) -> Clusters {
         let columns: Vec<&[f64]> = inputs
             .iter()
@@ -73,7 +74,7 @@ impl Clusters {
     }
 }
 
-/// The points that are centers, the one with the highest potential first.
+/// The indices of the points that are centers, highest potential first.
 fn centers(points: &[Vec<f64>], radius: f64, most: usize) -> Vec<usize> {
     let square =
         |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum() };

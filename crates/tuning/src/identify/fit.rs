@@ -1,4 +1,4 @@
-//! The consequents of a structure by least squares, and their error on rows that were left out.
+//! Fits the consequents of a structure by least squares, and computes their cross-validation error.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -10,10 +10,10 @@ use crate::{
 
 use super::{Consequents, structure::Structure};
 
-/// Pulls consequents that few rows speak of to the mean; relative to the largest curvature.
+/// The ridge, relative to the largest curvature. It pulls consequents that are supported by few rows to the mean.
 pub(super) const RIDGE: f64 = 1e-3;
 
-/// The sums that least squares needs, over some rows.
+/// The sums for least squares, over some rows.
 #[derive(Clone)]
 struct Sums {
     squares: DMatrix<f64>,
@@ -32,7 +32,7 @@ impl Sums {
         }
     }
 
-    /// Takes a row: what each number is multiplied with, and the truth less the mean.
+    /// Adds a row: the factor of each number, and the truth minus the mean.
     fn add(&mut self, factors: &[(usize, f64)], truth: f64, weight: f64) {
         for (p, a) in factors {
             self.products[*p] += weight * a * truth;
@@ -53,7 +53,7 @@ impl Sums {
         }
     }
 
-    /// The sum of squared errors of numbers.
+    /// The sum of squared errors for given numbers.
     fn error(&self, numbers: &DVector<f64>) -> f64 {
         let error = self.truths - 2.0 * numbers.dot(&self.products)
             + numbers.dot(&(&self.squares * numbers));
@@ -61,7 +61,7 @@ impl Sums {
     }
 }
 
-/// Makes the range of an input -1 to 1, so that a ridge means the same for all.
+/// Scales the range of an input to [-1, 1], so that a ridge has the same effect on all inputs.
 struct Scale {
     input: usize,
     middle: f64,
@@ -74,18 +74,18 @@ impl Scale {
     }
 }
 
-/// What least squares finds the consequents of.
+/// The settings of a least-squares fit of consequents.
 pub(super) struct Fit<'a> {
     pub(super) structure: &'a Structure,
     pub(super) consequents: Consequents,
-    /// The rules that exist.
+    /// Whether each rule exists.
     pub(super) kept: &'a [bool],
     /// See [`RIDGE`].
     pub(super) ridge: f64,
 }
 
 impl Fit<'_> {
-    /// The numbers of a rule: a coefficient for each input, and a constant.
+    /// The number of coefficients of a rule: one for each input, and a constant.
     fn numbers_a_rule(&self) -> usize {
         match self.consequents {
             Consequents::Constants => 1,
@@ -93,7 +93,7 @@ impl Fit<'_> {
         }
     }
 
-    /// Sums over the rows of each part.
+    /// The sums over the rows of each fold.
     fn sums(&self, data: &Data, parts: usize, part: impl Fn(usize) -> usize) -> Vec<Sums> {
         let scales = self.scales(data);
         let a_rule = self.numbers_a_rule();
@@ -146,7 +146,7 @@ impl Fit<'_> {
             .collect()
     }
 
-    /// Of each input, as lines take it.
+    /// The scale of each input, for linear consequents.
     fn scales(&self, data: &Data) -> Vec<Scale> {
         let of = |input: usize| {
             let (low, high) = range(&data.inputs[input]);
@@ -159,7 +159,7 @@ impl Fit<'_> {
         self.structure.inputs().into_iter().map(of).collect()
     }
 
-    /// The root mean square of the error where each part is predicted from the others.
+    /// The cross-validation error: root mean square, with each fold predicted from the others.
     pub(super) fn left_out(&self, data: &Data, folds: &Folds) -> f64 {
         let sums = self.sums(data, folds.count, |row| folds.of(data, row));
         let mut all = Sums::new(self.structure.rules() * self.numbers_a_rule());

@@ -1,5 +1,5 @@
-//! Inputs, partitions and rules from rows of data, where none are known: structure identification (Takagi and Sugeno 1985;
-//! Sugeno and Yasukawa 1993).
+//! Structure identification: finds inputs, partitions and rules from rows of data (Takagi and Sugeno 1985; Sugeno and
+//! Yasukawa 1993).
 
 mod clusters;
 mod fit;
@@ -22,54 +22,55 @@ use structure::{Axis, Structure};
 pub use model::MOST_TERMS;
 pub use validation::{Judged, judge};
 
-/// What a rule concludes.
+/// The kind of consequents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Consequents {
-    /// A number.
+    /// Constants.
     #[default]
     Constants,
-    /// A line over the inputs.
+    /// Linear functions of the inputs.
     Lines,
 }
 
-/// What rules ask of the inputs.
+/// The kind of antecedents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Antecedents {
-    /// Partitions: a rule for each combination of terms.
+    /// Combinations of the terms of partitions, one rule for each.
     #[default]
     Partitions,
-    /// Clusters, found by subtractive clustering (Chiu 1994): a rule for each.
+    /// Clusters, found by subtractive clustering (Chiu 1994), one rule for each.
     Clusters,
 }
 
-/// What is looked for.
+/// Settings of [`identify`].
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Identification {
-    /// What rules ask of the inputs.
+    /// The kind of antecedents.
     pub antecedents: Antecedents,
-    /// What rules conclude.
+    /// The kind of consequents.
     pub consequents: Consequents,
-    /// The inputs to use, by their names; empty: those that help.
+    /// The names of the inputs to use; if empty, inputs are selected.
     pub inputs: Vec<String>,
-    /// The most inputs, where those that help are looked for.
+    /// The maximum number of inputs, if they are selected.
     pub max_inputs: usize,
-    /// The most terms of an input, from 2 to [`MOST_TERMS`].
+    /// The maximum number of terms of an input, from 2 to [`MOST_TERMS`].
     pub max_terms: usize,
-    /// The most rules.
+    /// The maximum number of rules.
     pub max_rules: usize,
-    /// By what share of it a step must make the error on rows left out smaller.
+    /// The minimum relative reduction of the cross-validation error by a step.
     pub min_gain: f64,
-    /// The fewest rows that must fire a rule more strongly than any other, or there is no such rule.
+    /// The minimum number of rows in which a rule fires more strongly than any other; rules with fewer rows are
+    /// omitted.
     pub least_support: usize,
-    /// Into how many parts the rows or groups are divided to choose a step.
+    /// The number of folds for choosing a step.
     pub folds: u32,
-    /// For these parts.
+    /// The random seed for the folds.
     pub seed: u64,
 }
 
 impl Default for Identification {
-    /// Partitions and constants; at most 4 inputs, 5 terms each and 25 rules; a step gains 2 %; 5 parts.
+    /// Partitions and constants; at most 4 inputs, 5 terms each and 25 rules; a step gains at least 2 %; 5 folds.
     fn default() -> Self {
         Identification {
             antecedents: Antecedents::Partitions,
@@ -86,40 +87,41 @@ impl Default for Identification {
     }
 }
 
-/// A model from data.
+/// A model identified from data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identified {
-    /// The model: a Takagi-Sugeno output, the product as conjunction.
+    /// The model: a Takagi-Sugeno output, with the product as conjunction.
     pub model: Model,
-    /// The columns that the inputs of the model are, by their index.
+    /// For each input of the model, the index of its column.
     pub columns: Vec<usize>,
     /// The steps of the search.
     pub steps: Vec<Step>,
-    /// The combinations of terms without enough rows, which have no rule.
+    /// The number of term combinations without enough rows, which have no rule.
     pub without_rows: usize,
 }
 
-/// A step of the search.
+/// One step of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// The input that is new, or has more terms than before.
+    /// The input that was added or received another term.
     pub input: String,
-    /// How many terms it has now; of clusters, how many there are.
+    /// Its number of terms; for clusters, the number of clusters.
     pub terms: usize,
-    /// The root mean square of the error on rows left out, in the unit of the output.
+    /// The cross-validation error (root mean square), in the unit of the output.
     pub left_out: f64,
 }
 
-/// By what share of the error of the mean a step must make the error smaller, too: what is that small is of no interest.
+/// A step must also reduce the error by this share of the error of the mean: smaller reductions are irrelevant.
 const LEAST_GAIN_OF_ALL: f64 = 1e-3;
 
 /// The radii that are tried, as shares of the ranges.
 const RADII: [f64; 4] = [0.3, 0.5, 0.7, 1.0];
 
-/// Columns that may be inputs: each step of the search tries all of them.
+/// The maximum number of candidate columns, because each step of the search tries all of them.
 const MOST_COLUMNS: usize = 500;
 
-/// Refuses tables with more columns than [`identify`] takes, so that a program can ask before it reads their rows.
+/// Rejects tables with more columns than [`identify`] accepts, so that a program can check this before it reads the
+/// rows.
 ///
 /// # Errors
 /// [`TuneError::TooManyColumns`].
@@ -133,15 +135,16 @@ pub fn check_columns(columns: usize) -> Result<(), TuneError> {
     }
 }
 
-/// Finds inputs, partitions or clusters, and rules, for columns of data and the truths. The search goes forward: each step takes
-/// the input that is new, or the term that is new, with the smallest error on rows left out, as long as it helps enough. Peaks
-/// are at quantiles, rounded; consequents are solved for by least squares with a ridge. [`crate::tune`] moves both from there.
+/// Finds inputs, partitions or clusters, and rules for columns of data and their true outputs. It is a forward search:
+/// each step adds the input or the term with the smallest cross-validation error, as long as the error decreases
+/// enough. Peaks are at rounded quantiles; consequents are computed by least squares with a ridge. [`crate::tune`] can
+/// improve both afterwards.
 ///
-/// The error of a step is of rows that its consequents do not know; the steps themselves were chosen by it. [`judge`] tells
-/// what the whole search is worth.
+/// The error of a step is computed on rows that were not used for its consequents, but the steps were chosen by it, so
+/// it is optimistic. [`judge`] cross-validates the whole search.
 ///
 /// # Errors
-/// The rows cannot be used, a name is unknown, or no input helps.
+/// If the rows cannot be used, if a name is unknown, or if no input reduces the error.
 ///
 /// # Example: which of three columns matter
 /// ```
@@ -212,15 +215,15 @@ pub fn identify(
 
 struct Search<'a> {
     data: &'a Data,
-    /// The values of each input, from the least.
+    /// The values of each input, ascending.
     sorted: Vec<Vec<f64>>,
     settings: &'a Identification,
     folds: Folds,
-    /// The inputs to use, where they were given.
+    /// The inputs to use, if they are given.
     wanted: &'a [usize],
 }
 
-/// The input that a step changed, its terms, and the error after it.
+/// A step: the changed input, its number of terms, and the error after it.
 type Taken = (usize, usize, f64);
 
 impl Search<'_> {
@@ -241,7 +244,7 @@ impl Search<'_> {
             let Some((input, terms, left_out, structure)) = next else {
                 break;
             };
-            // Inputs that were asked for are taken whatever they gain.
+            // Inputs that the user requested are added whatever their gain.
             let is_asked_for =
                 structure.inputs().len() > best.inputs().len() && !self.wanted.is_empty();
             let least = least_of_all.max(self.settings.min_gain * error);
@@ -264,7 +267,7 @@ impl Search<'_> {
         fit.left_out(self.data, &self.folds)
     }
 
-    /// What a structure may become in a step: the input that changed, how many terms it has, and the structure.
+    /// The candidates for a step: the changed input, its number of terms, and the structure.
     fn grown(&self, from: &Structure) -> Vec<(usize, usize, Structure)> {
         let used = from.inputs();
         let is_open = |input: &usize| {
@@ -294,7 +297,7 @@ impl Search<'_> {
         found.collect()
     }
 
-    /// A new input with two or three terms, or another term of one that is in use.
+    /// Adds an input with two or three terms, or another term to an input in use.
     fn grids(&self, from: &Structure, fresh: &[usize]) -> Vec<(usize, usize, Structure)> {
         let Structure::Grid(axes) = from else {
             return Vec::new();
@@ -327,7 +330,7 @@ impl Search<'_> {
         grown
     }
 
-    /// Peaks at quantiles from 5 to 95 %; `None` where they are not far enough apart.
+    /// Peaks at quantiles from 5 to 95 %; `None` if they are not far enough apart.
     fn axis(&self, input: usize, terms: usize) -> Option<Axis> {
         let values = &self.sorted[input];
         let (low, high) = (values.first()?, values.last()?);

@@ -1,4 +1,4 @@
-//! A structure with its consequents as a model.
+//! Converts a structure with its consequents to a model.
 
 use fuzzy::{
     Model,
@@ -17,7 +17,7 @@ use super::{
     structure::{Axis, Structure},
 };
 
-/// The names of so many terms, from 2 on.
+/// The names of terms, by their number, from 2 on.
 const NAMES: [&[&str]; 4] = [
     &["low", "high"],
     &["low", "medium", "high"],
@@ -25,16 +25,16 @@ const NAMES: [&[&str]; 4] = [
     &["very_low", "low", "medium", "high", "very_high"],
 ];
 
-/// The most terms of an input, for which there are names.
+/// The largest number of terms for which there are names.
 pub const MOST_TERMS: usize = NAMES.len() + 1;
 
-/// Rounds to a power of ten, at most a twentieth of the range.
+/// Rounds to a power of ten that is at most a twentieth of the range.
 pub(super) fn round(value: f64, range: f64, how: fn(f64) -> f64) -> f64 {
     let exponent = (range / 20.0).log10().floor() as i32;
     decimal(how(value / 10_f64.powi(exponent)), exponent).unwrap_or(value)
 }
 
-/// A variable around the values of a column.
+/// A variable whose range covers the values of a column.
 fn variable(name: &str, column: &[f64]) -> Variable {
     let (low, high) = range(column);
     let [low, high] = [(low, f64::floor as fn(f64) -> f64), (high, f64::ceil)]
@@ -70,7 +70,7 @@ pub(super) fn model(
     for rule in rules {
         consequents.push((rule, consequent(&input_names, &numbers[rule], (low, high))));
     }
-    // Rules of one number share its term; numbers rise.
+    // Rules with equal constants share a term; terms are sorted.
     let place = |function: &MembershipFunction| match function {
         MembershipFunction::Constant { value } => *value,
         _ => 0.0,
@@ -115,7 +115,7 @@ pub(super) fn model(
     }
 }
 
-/// The rules that enough rows fire more strongly than any other.
+/// Whether each rule fires more strongly than any other in enough rows.
 fn kept(data: &Data, settings: &Identification, structure: &Structure) -> Vec<bool> {
     let mut support = vec![0; structure.rules()];
     let mut strengths = Vec::new();
@@ -167,7 +167,8 @@ fn condition(structure: &Structure, inputs: &[Variable], rule: usize) -> Conditi
     conjunction.unwrap_or_else(|| Condition::And(Vec::new()))
 }
 
-/// The numbers of a rule. A constant is rounded, and not beyond the truths: there are no rows that say so.
+/// The consequent of a rule. A constant is rounded, and stays within the range of the truths, because no rows support
+/// values outside.
 fn consequent(inputs: &[&str], numbers: &[f64], (low, high): (f64, f64)) -> MembershipFunction {
     match numbers.split_last() {
         Some((constant, slopes)) if !slopes.is_empty() => MembershipFunction::Linear {

@@ -1,27 +1,27 @@
-//! Structures: what the rules of a Takagi-Sugeno model ask of the inputs.
+//! Structures: the antecedents of a Takagi-Sugeno model.
 
 use crate::identify::clusters::Clusters;
 
 /// The antecedents of a model.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Structure {
-    /// A rule for each combination of the terms of partitions.
+    /// One rule for each combination of the terms of partitions.
     Grid(Vec<Axis>),
-    /// A rule for each cluster.
+    /// One rule for each cluster.
     Clusters(Clusters),
 }
 
-/// An input that is partitioned.
+/// A partitioned input.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Axis {
     /// The index of the input.
     pub(super) input: usize,
-    /// The peaks of its terms, from left to right.
+    /// The peaks of its terms, ascending.
     pub(super) peaks: Vec<f64>,
 }
 
 impl Axis {
-    /// The two terms that a value may belong to, with their degrees.
+    /// The two terms that a value may belong to, with its degrees.
     fn degrees(&self, x: f64) -> [(usize, f64); 2] {
         let right = self.peaks.partition_point(|peak| *peak < x);
         let last = self.peaks.len() - 1;
@@ -51,7 +51,7 @@ impl Structure {
         }
     }
 
-    /// The firing strengths above 0 at a place.
+    /// Computes the firing strengths above 0 at a point.
     pub(super) fn strengths(&self, x: &dyn Fn(usize) -> f64, into: &mut Vec<(usize, f64)>) {
         into.clear();
         match self {
@@ -76,7 +76,7 @@ impl Structure {
         }
     }
 
-    /// The term of each axis that a rule of a grid names.
+    /// The index of the term on each axis that a rule of a grid has.
     pub(super) fn terms(axes: &[Axis], mut rule: usize) -> Vec<usize> {
         let mut terms: Vec<usize> = Vec::with_capacity(axes.len());
         for axis in axes.iter().rev() {

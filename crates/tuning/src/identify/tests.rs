@@ -4,7 +4,7 @@ use fuzzy::Engine;
 
 use super::*;
 
-/// Rows of three columns at random, of which the third has nothing to do with the output.
+/// Rows of three random columns; the output does not depend on the third.
 fn rows(count: usize, truth: fn(f64, f64) -> f64) -> (Vec<String>, Data) {
     let mut random = fastrand::Rng::with_seed(11);
     let mut data = Data {
@@ -160,7 +160,7 @@ fn what_was_left_out_is_predicted_better_than_by_a_line_where_the_truth_bends() 
     assert_eq!(stopped.unwrap(), None);
 }
 
-/// The line of the comparison, by the formula for one input.
+/// Compares with linear regression, by the formula for one input.
 #[test]
 fn a_straight_truth_is_no_better_predicted_than_by_a_line() {
     let (names, data) = rows(400, |x, y| 2.0 * x - y + 1.0);
@@ -173,7 +173,7 @@ fn a_straight_truth_is_no_better_predicted_than_by_a_line() {
         &mut |_| ControlFlow::Continue(()),
     );
     let judged = judged.unwrap().unwrap();
-    // Of uniform noise of a width of 0.1.
+    // The standard deviation of uniform noise with a width of 0.1.
     assert!(
         (judged.linear.value - 0.1 / 12_f64.sqrt()).abs() < 0.002,
         "{judged:?}"

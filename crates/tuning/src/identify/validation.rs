@@ -1,4 +1,4 @@
-//! What identification is worth on rows that were left out of all of it.
+//! Cross-validation of the whole identification.
 
 use std::ops::ControlFlow;
 
@@ -18,27 +18,27 @@ use super::{
     structure::{Axis, Structure},
 };
 
-/// Root mean squares of errors on rows left out, in the unit of the output.
+/// Cross-validation errors (root mean squares), in the unit of the output.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// Into how many parts the rows were divided.
+    /// The number of folds.
     pub folds: usize,
-    /// Of the mean of the other rows.
+    /// The error of predicting the mean of the other rows.
     pub mean: Interval,
-    /// Of a line over all inputs, by least squares.
+    /// The error of a linear regression on all inputs.
     pub linear: Interval,
-    /// Of the models identified on the other parts.
+    /// The error of the models identified on the other folds.
     pub identified: Interval,
-    /// The last divided by that of the line.
+    /// The error of the identified models divided by the error of the linear regression.
     pub ratio: Interval,
-    /// What the identified models predicted for rows left out of each class, if the truths are classes.
+    /// The predictions of the identified models for left-out rows of each class, if the truths are classes.
     pub confusion: Option<Confusion>,
-    /// The rows for which no rule fires; the mean of the other rows stands for them.
+    /// The number of rows for which no rule fires; the mean of the other rows is used for them.
     pub without_value: usize,
 }
 
-/// Identifies a model without a part of the rows and predicts that part, for each part in turn. The structure is searched for anew
-/// each time. `watch` is called with each part, counted from 0; with `Break` there is no result.
+/// For each fold in turn, identifies a model on the other rows and predicts the fold. The structure is searched for
+/// each time. `watch` is called with the index of each fold; on `Break` there is no result.
 ///
 /// # Errors
 /// As [`identify`].
@@ -52,7 +52,7 @@ pub fn judge(
 ) -> Result<Option<Judged>, TuneError> {
     data.check_columns(names.len(), crate::Loss::Squared)?;
     let data = &*data.weighted();
-    // Other parts than those that steps are chosen by.
+    // Other folds than those for choosing steps.
     let folds = Folds::new(data, folds, settings.seed.wrapping_add(1));
     let mut predictions = [const { Vec::new() }; 3].map(|_: Vec<f64>| vec![f64::NAN; data.len()]);
     let mut without_value = 0;
@@ -114,7 +114,7 @@ pub fn judge(
     }))
 }
 
-/// Predictions of rows by the line through others: one rule that always fires.
+/// Predicts rows by the linear regression on other rows, as one rule that always fires.
 fn line(known: &Data, rows: &Data) -> Vec<f64> {
     let varies = |input: &usize| {
         let (low, high) = range(&known.inputs[*input]);

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A term of every shape that hangs on an anchor, and a partition.
+/// A term of every shape with an anchor, and a partition.
 fn model() -> Model {
     fuzzy::yaml::parse(
         "
@@ -79,7 +79,8 @@ fn what_is_named_moves_and_what_is_fixed_stays() {
         ..Settings::default()
     };
     let parameters = Parameters::new(&model(), &settings).unwrap();
-    // heat.cold touches the end of the range and heat.hot is fixed: one peak is left. Of food.d the mean and the deviation.
+    // heat.cold touches the end of the range and heat.hot is fixed, so one peak can change. For food.d, the mean and
+    // the deviation.
     assert_eq!(parameters.free(), 3);
     let moved = crate::numbers::moved(&model(), &parameters.model(&[1.0; 3]));
     let mut named: Vec<String> = moved

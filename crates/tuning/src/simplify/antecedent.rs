@@ -1,4 +1,4 @@
-//! Antecedents as what they say of each variable, and sets of terms as conditions.
+//! Antecedents as conditions on single variables, and sets of terms as conditions.
 
 use std::collections::BTreeSet;
 
@@ -8,16 +8,16 @@ use fuzzy::{
     rule::{Condition, Hedge, Name, Proposition},
 };
 
-/// What an antecedent says of one variable.
+/// The condition of an antecedent on one variable.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Part {
     pub(crate) variable: String,
     pub(crate) condition: Condition,
-    /// The terms that it names or leaves, by their index; `None` where it has hedges other than NOT.
+    /// The indices of the terms that satisfy it; `None` if it has hedges other than NOT.
     pub(crate) terms: Option<BTreeSet<usize>>,
 }
 
-/// The parts of an antecedent, one a variable, which AND joins. `None` where it is no such conjunction.
+/// The parts of an antecedent, one for each variable, that are joined by AND. `None` if it is not such a conjunction.
 pub(crate) fn parts(model: &Model, condition: &Condition) -> Option<Vec<Part>> {
     let mut found: Vec<(String, Vec<Condition>)> = Vec::new();
     for condition in conjuncts(condition) {
@@ -52,7 +52,7 @@ pub(crate) fn variable<'m>(model: &'m Model, name: &str) -> Option<&'m Variable>
     variables.find(|variable| variable.name == name)
 }
 
-/// Parts as an antecedent. Without any it holds everywhere: `variable IS any`.
+/// Joins parts to an antecedent. Without parts it is always true: `variable IS any`.
 pub(crate) fn condition(parts: &[Part], variable: &str) -> Condition {
     let mut conditions: Vec<Condition> = parts
         .iter()
@@ -66,7 +66,7 @@ pub(crate) fn condition(parts: &[Part], variable: &str) -> Condition {
     }
 }
 
-/// The ways to say that a variable has one of some terms, the shortest first; `None` says nothing of it.
+/// Conditions which require that a variable has one of some terms, the shortest first; `None` stands for no condition.
 pub(crate) fn one_of(variable: &Variable, terms: &BTreeSet<usize>) -> Vec<Option<Condition>> {
     let is = |index: usize, hedges: &[Hedge]| {
         let term = variable.terms.get(index)?;
@@ -95,7 +95,7 @@ pub(crate) fn one_of(variable: &Variable, terms: &BTreeSet<usize>) -> Vec<Option
     ways
 }
 
-/// How many propositions a condition has.
+/// The number of propositions in a condition.
 pub(crate) fn size(condition: &Condition) -> usize {
     let mut count = 0;
     condition.visit(&mut |_| count += 1);
@@ -110,7 +110,7 @@ fn is(variable: &str, hedges: &[Hedge], term: Option<&str>) -> Condition {
     })
 }
 
-/// What AND joins, however it is nested.
+/// The conditions that are joined by AND, at any depth of nesting.
 fn conjuncts(condition: &Condition) -> Vec<&Condition> {
     match condition {
         Condition::And(parts) => parts.iter().flat_map(conjuncts).collect(),

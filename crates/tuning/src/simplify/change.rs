@@ -1,4 +1,4 @@
-//! Changes that make a rule set shorter, if they change nothing.
+//! Candidates for changes that make a rule set shorter.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,32 +10,32 @@ use fuzzy::{
 
 use super::antecedent::{Part, condition, one_of, parts, size, variable};
 
-/// A rule, and the rules of the original that it stands for, by their indices.
+/// A rule, and the indices of the original rules that it replaces.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Standing {
     pub(crate) rule: Rule,
     pub(crate) of: Vec<usize>,
 }
 
-/// The rules, each in its place; `None` where there was one.
+/// The rules at their positions; `None` if a rule was removed.
 pub(crate) type Places = Vec<Option<Standing>>;
 
-/// Rules that others take the place of.
+/// A replacement of rules by other rules.
 #[derive(Debug, Clone)]
 pub(crate) struct Change {
-    /// The places that become empty first.
+    /// The positions that are emptied first.
     pub(crate) empty: Vec<usize>,
     pub(crate) fill: Vec<(usize, Standing)>,
-    /// How many propositions fewer there are.
+    /// The reduction of the number of propositions.
     pub(crate) saved: usize,
-    /// Whether no rule names an input any more.
+    /// Whether an input is no longer named by any rule.
     pub(crate) has_fewer_inputs: bool,
 }
 
-/// Of groups of more rules than this, only neighbours are merged, not all subsets.
+/// The size of a group of rules above which only neighbours are merged, not all subsets.
 const MOST_FOR_ALL_SUBSETS: usize = 6;
 
-/// The changes that make rules shorter, those that save most first. Where something may change, `loose`, also those that merge
+/// The changes that make rules shorter, largest reduction first. With `loose`, if outputs may change, also merges of
 /// rules with different consequents and weights.
 pub(crate) fn changes(model: &Model, places: &Places, loose: bool) -> Vec<Change> {
     let found = Finder {
@@ -63,31 +63,31 @@ pub(crate) fn changes(model: &Model, places: &Places, loose: bool) -> Vec<Change
     changes
 }
 
-/// How many propositions a rule has, consequents included.
+/// The number of propositions in a rule, including consequents.
 pub(crate) fn rule_size(rule: &rule::Rule) -> usize {
     size(&rule.condition) + rule.consequents.len()
 }
 
 struct Finder<'a> {
     model: &'a Model,
-    /// Place, rule, and its parts where it is a conjunction of such.
+    /// The position and the rule, and its parts if it is a conjunction of such.
     rules: Vec<(usize, &'a Standing, Option<Vec<Part>>)>,
 }
 
-/// A rule of a group of which the members differ in one variable.
+/// A rule of a group whose members differ in one variable.
 struct Member<'a> {
     place: usize,
     standing: &'a Standing,
     others: Vec<Part>,
-    /// Where the part of the variable stands.
+    /// The index of the part for that variable.
     at: usize,
     terms: BTreeSet<usize>,
 }
 
 impl Finder<'_> {
-    /// Rules and parts of rules that may be without effect.
+    /// Adds the removal of rules and of parts of rules, which may have no effect.
     fn drops(&self, changes: &mut Vec<Change>) {
-        // Of two that are alike, the first stays.
+        // Of two equal rules, the first is kept.
         for (place, standing, parts) in self.rules.iter().rev() {
             changes.push(Change {
                 empty: vec![*place],
@@ -113,9 +113,10 @@ impl Finder<'_> {
         }
     }
 
-    /// All rules without a variable. Of those that are then alike the one with most support stands for all.
+    /// Adds the removal of a variable from all rules. Of rules that are equal afterwards, the one with the largest
+    /// support replaces the others.
     fn without_variable(&self, name: &str, changes: &mut Vec<Change>) {
-        /// Place, rule, and its parts without the variable.
+        /// The position and the rule, and its parts without the variable.
         type Group<'a> = Vec<(usize, &'a Standing, Vec<Part>)>;
         let mut groups: BTreeMap<String, Group<'_>> = BTreeMap::new();
         let mut names_it = false;
@@ -181,13 +182,13 @@ impl Finder<'_> {
         changes.push(change);
     }
 
-    /// Rules that differ in what they say of one variable, merged into one.
+    /// Adds the merging of rules that differ only in their condition on one variable.
     fn merges(&self, name: &str, loose: bool, changes: &mut Vec<Change>) {
         let Some(variable) = variable(self.model, name) else {
             return;
         };
         let all: BTreeSet<usize> = (0..variable.terms.len()).collect();
-        // By what they say of the other variables.
+        // Grouped by their conditions on the other variables.
         let mut groups: BTreeMap<String, Vec<Member<'_>>> = BTreeMap::new();
         for (place, standing, parts) in &self.rules {
             let Some(parts) = parts else { continue };
@@ -264,7 +265,7 @@ fn merge(members: &[&Member<'_>], variable: &Variable, changes: &mut Vec<Change>
     }
 }
 
-/// The weights that a merged rule may have.
+/// The candidate weights of a merged rule.
 fn weights(standing: &[&Standing]) -> Vec<f64> {
     let weights = || standing.iter().map(|standing| standing.rule.rule.weight);
     let largest = weights().fold(0.0, f64::max);
@@ -279,7 +280,7 @@ fn weights(standing: &[&Standing]) -> Vec<f64> {
     found
 }
 
-/// One rule for several. What it was learned from is added up; notes stand side by side.
+/// Merges several rules into one. Their support is added; their notes are joined.
 fn merged(
     standing: &[&Standing],
     condition: rule::Condition,
@@ -323,7 +324,7 @@ fn merged(
     }
 }
 
-/// Parts in an order that does not depend on that of the author.
+/// The text of parts, in an order that is independent of the author's.
 fn text(parts: &[Part]) -> String {
     let mut texts: Vec<String> = parts
         .iter()
@@ -343,7 +344,7 @@ fn consequents(standing: &Standing) -> String {
     texts.collect::<Vec<String>>().join(" AND ")
 }
 
-/// The subsets of at least two of so many members that are in order.
+/// The subsets of at least two of `count` ordered members.
 fn subsets(count: usize) -> Vec<Vec<usize>> {
     if count <= MOST_FOR_ALL_SUBSETS {
         let bits = 0_u32..1 << count;

@@ -1,4 +1,4 @@
-//! Whether a rule set says the same as the one it comes from.
+//! Compares the outputs of a rule set with those of the original.
 
 use std::ops::Range;
 
@@ -10,25 +10,25 @@ use fuzzy::{
 
 use super::{Difference, SimplifyError};
 
-/// So many points are evaluated at once, and as many tell most candidates apart.
+/// The number of points that are evaluated at once; these are enough to reject most candidates.
 const CHUNK: usize = 4096;
 
-/// The points at which candidates failed that are tried first.
+/// The number of points that are tried first, because candidates failed there.
 const MOST_HARD: usize = 64;
 
-/// Points, and what the original says there.
+/// Points, and the outputs of the original there.
 pub(crate) struct Judge {
-    /// The names of the inputs, a column each.
+    /// The names of the inputs, one for each column.
     names: Vec<String>,
     columns: Vec<Vec<f64>>,
-    /// Row by row, an outcome for each output.
+    /// Row by row, the outcome of each output.
     outcomes: Vec<Outcome>,
     outputs: Vec<String>,
-    /// By how much each output may differ and still be equal.
+    /// The difference up to which each output counts as equal.
     equal: Vec<f64>,
-    /// By how much each output may differ.
+    /// The tolerance of each output.
     tolerances: Vec<f64>,
-    /// Rows at which candidates failed.
+    /// The rows at which candidates failed.
     hard: Vec<usize>,
 }
 
@@ -65,21 +65,21 @@ impl Judge {
         self.columns.first().map_or(0, Vec::len)
     }
 
-    /// Whether a model is equal at all points.
+    /// Whether the outputs of a model are equal at all points.
     pub(crate) fn is_equal(&mut self, model: &Model) -> bool {
         let equal = self.equal.clone();
         self.compare(model, &equal, self.len()).is_some()
     }
 
-    /// The largest difference on the first points, as a share of the tolerance; `None` where it is larger than that.
+    /// The largest difference at the first points, as a share of the tolerance; `None` if it exceeds the tolerance.
     pub(crate) fn glance(&mut self, model: &Model) -> Option<f64> {
         let tolerances = self.tolerances.clone();
         let difference = self.compare(model, &tolerances, CHUNK)?;
         Some(difference.map_or(0.0, |(share, _)| share))
     }
 
-    /// The largest difference on all points, with its place, `None` inside where there is none at all; `None` where it is
-    /// larger than the tolerance, or a rule fires at a point of only one of the two.
+    /// The largest difference at all points and its location; the inner `None` means that there is no difference. The
+    /// outer `None` means that it exceeds the tolerance, or that rules fire at a point in only one of the two.
     pub(crate) fn examine(&mut self, model: &Model) -> Option<Option<Difference>> {
         let tolerances = self.tolerances.clone();
         let difference = self.compare(model, &tolerances, self.len())?;
@@ -155,8 +155,8 @@ impl Judge {
         self.outcomes.get(row * self.outputs.len() + output)
     }
 
-    /// Keeps the largest difference: its share of the tolerance, row, output, and value. The row is the error where the
-    /// outcomes there are not the same.
+    /// Updates the largest difference: its share of the tolerance, row, output, and value. The error is a row at which
+    /// the kinds of outcomes differ.
     fn worst(
         &self,
         rows: impl Iterator<Item = usize>,

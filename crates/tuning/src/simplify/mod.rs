@@ -1,7 +1,7 @@
-//! Rule sets that say the same with fewer rules, shorter ones and fewer inputs.
+//! Simplifies rule sets: fewer and shorter rules and fewer inputs, with the same outputs.
 //!
-//! Whether two rule sets say the same is not derived: it is seen by evaluating both at many points. So it holds for every
-//! operator, and no further than to these points.
+//! Equality of outputs is not derived but tested, by evaluating both rule sets at many points. So it works with every
+//! operator, but is guaranteed only at these points.
 
 mod antecedent;
 mod change;
@@ -22,39 +22,39 @@ use judge::Judge;
 /// Values that differ by at most this share of the output's range are equal.
 pub const EQUAL: f64 = 1e-12;
 
-/// The most rules of a rule set that is simplified: the time grows with more than the square of their number.
+/// The maximum number of rules of a rule set to simplify: the time grows faster than the square of their number.
 pub const MOST_RULES: usize = 1_000;
 
-/// When a rule set says the same as another one.
+/// Settings of [`simplify()`].
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct SimplifySettings {
-    /// By how much an output may differ, in its unit; `None`: by [`EQUAL`].
+    /// The largest allowed difference of an output, in its unit; `None` is [`EQUAL`].
     pub tolerance: Option<f64>,
-    /// Compare at the rows alone. Between them the outputs may then be anything.
+    /// Whether to compare at the rows only. Elsewhere the outputs may then differ arbitrarily.
     pub rows_only: bool,
-    /// For the points at random.
+    /// The random seed for the points.
     pub seed: u64,
 }
 
-/// A model that was simplified.
+/// A simplified model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simplified {
     /// The model.
     pub model: Model,
-    /// For each of its rules the rules that it stands for, by their indices in the original.
+    /// For each of its rules the indices of the original rules that it replaces.
     pub rules: Vec<Vec<usize>>,
-    /// The rules that had no effect, by their indices in the original.
+    /// The indices of the original rules that had no effect.
     pub dropped: Vec<usize>,
-    /// The inputs that no rule needs.
+    /// The names of the inputs that no rule needs.
     pub inputs: Vec<String>,
-    /// The points at which both were compared, rows included.
+    /// The number of points at which both were compared, including rows.
     pub points: usize,
-    /// The largest difference there; `None` where there is none.
+    /// The largest difference at these points; `None` if there is none.
     pub difference: Option<Difference>,
 }
 
-/// By how much an output differs at a point.
+/// The difference of an output at a point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
     /// The output.
@@ -63,30 +63,30 @@ pub struct Difference {
     pub before: f64,
     /// Its value in the simplified model.
     pub after: f64,
-    /// The inputs, in the order of the original.
+    /// The values of the inputs, in the order of the original.
     pub inputs: Vec<f64>,
 }
 
-/// Why a model cannot be simplified.
+/// The reason why a model cannot be simplified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimplifyError {
-    /// The tolerance is below 0 or no number.
+    /// The tolerance is negative or not a number.
     #[error("the tolerance {tolerance} is not a number from 0")]
     Tolerance {
-        /// What it is.
+        /// The tolerance.
         tolerance: f64,
     },
     /// [`SimplifySettings::rows_only`] without rows.
     #[error("there are no rows")]
     NoRows,
-    /// There is not a column of one length for each input.
+    /// There is not exactly one column for each input, or the columns have different lengths.
     #[error("there must be a column for each input of the model, all of one length")]
     Columns,
-    /// More rules than [`MOST_RULES`].
+    /// There are more than [`MOST_RULES`] rules.
     #[error("the rule set has {rules} rules; at most {MOST_RULES} are simplified")]
     TooManyRules {
-        /// How many.
+        /// The number of rules.
         rules: usize,
     },
     /// The model cannot be used.
@@ -97,16 +97,17 @@ pub enum SimplifyError {
     Evaluate(#[from] EvaluateError),
 }
 
-/// Makes a model shorter and keeps what it says: drops rules and inputs without effect, and merges rules that differ in the
-/// terms of one input into one with `NOT`, with `OR`, or without that input.
+/// Makes a model shorter while keeping its outputs: removes rules and inputs without effect, and merges rules that
+/// differ in the terms of one input into one rule with `NOT`, with `OR`, or without that input.
 ///
-/// Both models are compared at the rows, given as a column for each input, and at many points: all combinations of the values
-/// at which terms bend and the middles between them (50,000 drawn where there are more), and others at random, among them some
-/// where each rule fires. A change is kept where no output differs by more than the tolerance at any of them, and the same
-/// outputs have a value from rules. Where no rule has an OR, the disjunction becomes the one that makes most rules short.
+/// Both models are compared at the rows, given as one column for each input, and at many points: all combinations of
+/// the corners of terms and the middles between them (a sample of 50,000 if there are more), and random points,
+/// including some at which each rule fires. A change is kept if no output differs by more than the tolerance at any of
+/// them, and if rules fire for the same outputs. If no rule contains an OR, the disjunction is changed to the one that
+/// shortens most rules.
 ///
 /// # Errors
-/// The settings or the rows cannot be used, or the model does not compile.
+/// If the settings or the rows cannot be used, or if the model does not compile.
 ///
 /// # Example: two rules that differ in one term
 /// ```
@@ -148,7 +149,7 @@ pub fn simplify(
             rules: model.rules.len(),
         });
     }
-    // That it can be used is known before points are looked for.
+    // Detects an invalid model before points are generated.
     Engine::new(model)?;
     let count = rows.first().map_or(0, Vec::len);
     let fits = rows.len() == model.inputs.len() && rows.iter().all(|column| column.len() == count);
@@ -176,7 +177,7 @@ pub fn simplify(
         })
     };
     let mut places: Places = rules.map(standing).collect();
-    // What became shorter may be made shorter still by another disjunction.
+    // After a reduction, another disjunction may reduce the rules further.
     loop {
         let before = total_size(&places);
         let mut best = (before, short.operators.or, places.clone());
@@ -220,7 +221,7 @@ pub fn simplify(
     })
 }
 
-/// The disjunctions to try: others than the author's only where no rule has an OR whose meaning would change.
+/// The disjunctions to try: other than the author's only if no rule contains an OR whose meaning would change.
 fn disjunctions(model: &Model) -> Vec<Disjunction> {
     let own = model.operators.or;
     let mut found = vec![own];
@@ -240,15 +241,16 @@ fn has_or(condition: &Condition) -> bool {
     }
 }
 
-/// How many propositions all rules have.
+/// The number of propositions in all rules.
 fn total_size(places: &Places) -> usize {
     let rules = places.iter().flatten();
     rules.map(|standing| rule_size(&standing.rule.rule)).sum()
 }
 
-/// Makes the changes that change nothing, the largest first.
+/// Applies the changes that do not change any output, largest reduction first.
 fn without_difference(model: &Model, judge: &mut Judge, places: &mut Places) {
-    // What failed fails again, as long as all changes change nothing; the last time everything is tried once more.
+    // A change that failed fails again, as long as no change affects the outputs; in the last pass all are tried once
+    // more.
     let mut failed: HashSet<String> = HashSet::new();
     loop {
         let is_complete = failed.is_empty();
@@ -274,8 +276,8 @@ fn without_difference(model: &Model, judge: &mut Judge, places: &mut Places) {
     }
 }
 
-/// Makes changes that leave fewer rules or inputs as long as one stays within the tolerance, each time the one with the least
-/// difference for what it saves.
+/// Applies changes that reduce rules or inputs as long as one stays within the tolerance; each time, the one with the
+/// smallest difference for its reduction.
 fn within_tolerance(model: &Model, judge: &mut Judge, places: &mut Places) {
     let mut failed: HashSet<String> = HashSet::new();
     loop {
@@ -309,7 +311,7 @@ fn within_tolerance(model: &Model, judge: &mut Judge, places: &mut Places) {
     }
 }
 
-/// Drops the inputs that no rule names.
+/// Removes the inputs that no rule names.
 fn drop_inputs(model: &mut Model, judge: &mut Judge) -> Vec<String> {
     let mut named = BTreeSet::new();
     for rule in &model.rules {
@@ -356,7 +358,7 @@ fn with_rules(model: &Model, places: &Places) -> Model {
     }
 }
 
-/// The rules that a change takes and those that it gives.
+/// A key for the rules that a change removes and adds.
 fn key(change: &Change, places: &Places) -> String {
     let taken = change
         .empty

@@ -8,17 +8,17 @@ use fuzzy::{
 
 use super::antecedent::parts;
 
-/// The most points of the grid. Where it has more, so many of it are drawn.
+/// The maximum number of grid points; if the grid has more, a sample of this size is drawn.
 pub(crate) const MOST_ON_THE_GRID: usize = 50_000;
 
-/// Points between those of the grid.
+/// The number of points between those of the grid.
 pub(crate) const BETWEEN: usize = 40_000;
 
-/// Points at which a rule fires, for each rule.
+/// The number of points for each rule at which it fires.
 pub(crate) const FOR_EACH_RULE: usize = 50;
 
-/// A column for each input: every value at which a term of it bends and the middles between these, in all combinations;
-/// points at random between these values; and points at which each rule fires. They are in random order.
+/// The points, as one column for each input: all combinations of the corners of its terms and the middles between them;
+/// random points between these values; and points at which each rule fires. They are in random order.
 pub(crate) fn points(model: &Model, seed: u64) -> Vec<Vec<f64>> {
     let mut random = fastrand::Rng::with_seed(seed);
     let bends: Vec<Vec<f64>> = model.inputs.iter().map(bends).collect();
@@ -64,11 +64,11 @@ pub(crate) fn points(model: &Model, seed: u64) -> Vec<Vec<f64>> {
     (0..model.inputs.len()).map(column).collect()
 }
 
-/// The values in the range at which a term bends, and the ends of the range, ascending.
+/// The corners of the terms within the range, and the ends of the range, ascending.
 fn bends(input: &Variable) -> Vec<f64> {
     let of_term = |term: &Term| match term.membership_function.corners() {
         Some(corners) => corners.iter().map(|(x, _)| *x).collect::<Vec<f64>>(),
-        // Of curved shapes: where they are highest and how wide.
+        // For curved shapes: their highest points and their widths.
         None => {
             let parameters = term.membership_function.parameters();
             let numbers = parameters.iter().map(|(.., value)| *value);
@@ -108,7 +108,8 @@ fn combination(levels: &[Vec<f64>], mut index: usize) -> Vec<f64> {
     levels.iter().map(one).collect()
 }
 
-/// A value between two neighbours, all pairs equally likely: where terms are narrow there are as many as where they are wide.
+/// A random value between two neighbours. All pairs are equally likely, so narrow terms get as many points as wide
+/// ones.
 fn between(bends: &[f64], random: &mut fastrand::Rng) -> f64 {
     let left = random.usize(..bends.len().saturating_sub(1).max(1));
     match bends.get(left..left + 2) {
@@ -117,8 +118,8 @@ fn between(bends: &[f64], random: &mut fastrand::Rng) -> f64 {
     }
 }
 
-/// For each input the pieces between bends in which a term has a degree that the antecedent names; all of them where it names
-/// none.
+/// For each input, the intervals between corners in which a term of the antecedent has a degree above 0; all intervals
+/// if the antecedent does not name the input.
 fn firing(model: &Model, condition: &Condition, bends: &[Vec<f64>]) -> Vec<Vec<[f64; 2]>> {
     let parts = parts(model, condition).unwrap_or_default();
     let of_input = |(input, bends): (&Variable, &Vec<f64>)| {

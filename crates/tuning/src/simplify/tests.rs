@@ -23,7 +23,7 @@ fn rules(model: &Model) -> Vec<String> {
     rules.map(|rule| rule.rule.to_string()).collect()
 }
 
-/// Two inputs of three terms; the consequents row by row, `-` where there is no rule.
+/// Two inputs of three terms; the consequents row by row, `-` for no rule.
 fn table(operators: &str, consequents: &str) -> Model {
     let names = ["low", "middle", "high"];
     let mut text = format!(
@@ -51,7 +51,8 @@ rules:
 
 const SUMS: &str = "and: product, implication: product, aggregation: sum";
 
-/// The risk of a multirotor by how unsteady its motors are now and lately, its load and its limits: learned, 28 rules.
+/// The risk of a multirotor from the present and recent unsteadiness of its motors, its load and its limits: learned,
+/// 28 rules.
 fn risk() -> Model {
     let mut text = String::from(
         "
@@ -282,8 +283,8 @@ fn wrong_settings_and_models_are_errors() {
     assert!(matches!(none, Err(SimplifyError::Compile(_))), "{none:?}");
 }
 
-/// A model of up to three inputs: a table of rules with few consequents, some of them missing, doubled, weighted or of another
-/// form.
+/// A model of up to three inputs: a table of rules with few consequents, some of them missing, duplicated, weighted or
+/// of another form.
 fn random_model(seed: u64) -> Model {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut one_of = |words: &[&'static str]| *random.choice(words).unwrap();
@@ -361,7 +362,7 @@ fn random_model(seed: u64) -> Model {
     parse(&text)
 }
 
-/// Holds both against each other at points that were not the search's, and where an input is unknown.
+/// Compares both at points other than those of the search, and with unknown inputs.
 fn agree(before: &Model, after: &Model, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed ^ 0x5eed);
     let engines = [Engine::new(before).unwrap(), Engine::new(after).unwrap()];
@@ -421,7 +422,7 @@ fn most_random_models_become_shorter() {
     assert!(after * 4 < before * 3, "{before} {after}");
 }
 
-/// A rule that matters in a small part of the inputs only is kept.
+/// A rule that matters only in a small part of the input space is kept.
 #[test]
 fn a_rule_that_rarely_matters_is_kept() {
     let seed = 5_125_509_504_377_779_155;

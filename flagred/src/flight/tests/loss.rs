@@ -42,7 +42,8 @@ fn in_trouble(
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Whatever motors are unknown, all the time or again and again, a flight that fails is never GOOD for it.
+    /// Whichever motors are unknown, all the time or repeatedly, a flight that fails is never rated GOOD because of
+    /// that.
     #[test]
     fn no_unknown_motor_makes_a_failed_flight_good(
         unknown in prop::array::uniform4(any::<bool>()),
@@ -69,7 +70,8 @@ proptest! {
         prop_assert_ne!(hidden.verdict, Verdict::Known(Level::Good));
     }
 
-    /// Trouble that comes only while a motor is unknown, for moments at a time, is not hidden by what is known in between.
+    /// Trouble that occurs only while a motor is unknown, for moments at a time, is not hidden by the known time in
+    /// between.
     #[test]
     fn moments_without_a_motor_hide_no_trouble(
         motor in 0..4usize,
@@ -87,7 +89,7 @@ proptest! {
         });
         let is_of_motor = matches!(hidden.verdict, Verdict::NotAvailable(Reason::MotorUnknown { .. }));
         prop_assert!(is_of_motor, "{:?}", hidden.verdict);
-        // Once, for less than a sixteenth of the time: the rest is enough for a verdict.
+        // Once, for less than a sixteenth of the time: enough is known for a verdict.
         let calm = in_trouble(&estimator, &QUAD_X, HOVER, |t_s, motors| {
             if (20.0..20.0 + once_s).contains(&t_s) {
                 motors[motor] = f64::NAN;
@@ -138,9 +140,9 @@ fn samples_that_are_ignored_for_their_times_are_a_reason_for_no_verdict() {
     let ignored = "200 samples in the air were ignored: their times are unknown or go back";
     assert_eq!(around(|_| f64::NAN), ignored);
     assert_eq!(around(|i| 19.0 + f64::from(i % 20) * 0.04), ignored);
-    // Two samples at one time.
+    // Two samples at the same time.
     assert_eq!(around(|_| 19.96), "GOOD");
-    // Too far back for the rest of a flight: another one.
+    // Too far back to be the rest of the same flight: a new flight.
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
     for i in 0..1000 {
         let t_s = f64::from(if i < 500 { i } else { i - 250 }) * 0.04;

@@ -1,4 +1,4 @@
-//! What a pilot reads of findings.
+//! The words of findings for the pilot.
 
 use alloc::format;
 
@@ -122,7 +122,7 @@ fn no_number_is_left_out() {
     }
 }
 
-/// Names of an author may be anything.
+/// The names that an author chooses may be anything.
 #[test]
 fn an_input_without_words_is_described_by_name_and_description() {
     let battery = shipped::flagred_battery();

@@ -21,7 +21,7 @@ fn a_gap_between_two_knots_takes_from_both() {
     };
     assert_eq!(filled(GapMethod::Nearest)[1], 0.0);
     assert_eq!(filled(GapMethod::Nearest)[3], 100.0);
-    // Of two that are equally near the higher one.
+    // Of two equally near knots, the higher one counts.
     assert_eq!(filled(GapMethod::Nearest)[2], 100.0);
     // 100 (1/0.75^2) / (1/0.25^2 + 1/0.75^2) = 10
     approx::assert_abs_diff_eq!(filled(GapMethod::INVERSE_DISTANCE)[1], 10.0, epsilon = 1e-9);
@@ -78,8 +78,8 @@ rules: [IF {condition} THEN y IS low]
     assert!(read("x0 IS low").is_some());
 }
 
-/// The table of the paper's ten rules at the knots, its corner left out, and what fills it: computed apart from this
-/// program (numpy), from the same definitions.
+/// The table of the paper's ten rules at the knots, without its corner, and the filled values: computed independently
+/// with numpy from the same definitions.
 #[test]
 fn the_papers_corner_is_as_computed_elsewhere() {
     let model = crate::shipped::flagred_paper_rules();

@@ -1,4 +1,4 @@
-//! What a pilot reads where an input raised the risk: the key `findings` of a profile.
+//! Reads the key `findings` of a profile: the words for the pilot, by the input that raised the risk.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -10,10 +10,11 @@ use fuzzy::{
 use super::Found;
 use crate::profile::{CauseWords, ProfileInput};
 
-/// The longest brief in bytes: with the level and the elevated risk before it, it fits into a text of 50 characters.
+/// The maximum length of a brief in bytes. With the level and the elevated risk before it, it fits into a message of 50
+/// characters.
 const LONGEST_BRIEF: usize = 20;
 
-/// What a text may hold in braces.
+/// The placeholders that a text may contain in braces.
 const PLACEHOLDERS: [&str; 2] = ["percent", "value"];
 
 pub(super) fn findings(
@@ -26,7 +27,7 @@ pub(super) fn findings(
         .and_then(|node| node.entries("`findings`", "input", found));
     let mut all = Vec::new();
     for entry in entries.unwrap_or_default() {
-        // An input with a mistake has been told, and is not missing on top.
+        // If the inputs have errors, an input may be missing only because of them.
         if found.is_empty() && !inputs.iter().any(|input| input.name == entry.key) {
             let message = format!("the profile has no input `{}`", entry.key);
             let names: Vec<&str> = inputs.iter().map(|input| input.name.as_str()).collect();

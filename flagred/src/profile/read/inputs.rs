@@ -1,4 +1,4 @@
-//! The inputs of a profile: a statistic over time, of a signal or of a statistic over its motors.
+//! Reads the inputs of a profile: statistics over time, of a signal or of a statistic over its motors.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -31,7 +31,7 @@ const RATIO: [&str; 2] = ["per", "at_least"];
 
 type OfNumber = fn(f64) -> Statistic;
 
-/// The statistics with a number, `{share_below: 0.1, of: SIGNAL}`.
+/// The statistics with a parameter, `{share_below: 0.1, of: SIGNAL}`.
 const WITH_NUMBER: [(&str, OfNumber); 3] = [
     ("share_below", Statistic::ShareBelow),
     ("share_above", Statistic::ShareAbove),
@@ -78,7 +78,7 @@ fn input(
         .filter(|k| fields.get(k).is_some())
         .collect();
     let [key] = given.as_slice() else {
-        // An unknown key has been told; what it was meant to be is not missing on top.
+        // An unknown key has already been reported; the missing key is not reported in addition.
         if found.len() == before {
             let message = format!("{what} takes one statistic, not {}", given.len());
             found.push(
@@ -222,7 +222,7 @@ fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Op
     None
 }
 
-/// The name of a signal, which is neither a number nor a computation.
+/// Reads the name of a signal, which is neither a number nor a computation.
 fn signal_name<'n>(node: &'n Node, what: &str, found: &mut Found) -> Option<&'n str> {
     let name = node.words(what, found)?.text.as_str();
     let message = if name.parse::<f64>().is_ok() {
@@ -240,7 +240,7 @@ fn signal_name<'n>(node: &'n Node, what: &str, found: &mut Found) -> Option<&'n 
     None
 }
 
-/// Signals made of two others.
+/// The signals that combine two others.
 const PAIRS: [&str; 3] = ["difference", "ratio", "product"];
 
 /// `motor_margin`, `{min: motor_margin}`, `{motor: 3, of: motor_margin}` or `{difference: [yaw_des_deg, yaw_deg]}`.

@@ -1,4 +1,4 @@
-//! How often errors followed a risk: the key `reliability` of a profile.
+//! Reads the key `reliability` of a profile: how often large attitude errors followed a risk.
 
 use alloc::{format, vec::Vec};
 

@@ -1,4 +1,4 @@
-//! The verdict of a profile: when a level is raised and lowered, and the limits of notices.
+//! Reads the key `verdict` of a profile: when levels are raised and cleared, and the limits of notices.
 
 use alloc::format;
 
@@ -121,7 +121,7 @@ fn threshold(fields: &Fields, what: &str, found: &mut Found) -> Threshold {
     }
 }
 
-/// A limit of a notice: `{above: 0.04, after_s: 10}`.
+/// Reads the limit of a notice: `{above: 0.04, after_s: 10}`.
 fn limit(fields: &Fields, key: &str, side: &str, found: &mut Found) -> Option<Limit> {
     let what = format!("`{key}`");
     let fields = fields.get(key)?.fields(&what, &[side, "after_s"], found)?;
