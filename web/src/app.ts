@@ -1,31 +1,31 @@
-/** What a room gets from the page around it. */
+/** The interface between a room and the page around it. */
 
 import type { Engine } from './engine';
 
-/** The file on disk that the page edits, where `flagred studio FILE` serves it. */
+/** The file on disk that the page edits, if it is served by `flagred studio FILE`. */
 export interface BackingFile {
   name: string;
   readOnly: boolean;
-  /** Its text now. */
+  /** Reads its current text. */
   read(): Promise<string>;
-  /** Writes it over a text that was read or written before, if that is what is still there. */
+  /** Writes it if the file still contains `over`, a text that was read or written before. */
   write(text: string, over: string): Promise<void>;
 }
 
 export interface App {
-  /** The room's own worker. */
+  /** The worker of the room. */
   engine: Engine;
-  /** What the address says of the room. */
+  /** Returns the parameters of the room in the address. */
   parameters(): URLSearchParams;
-  /** Says it in the address. */
+  /** Sets the parameters of the room in the address. */
   navigate(parameters: URLSearchParams): void;
-  /** Tells the user something, aloud too. */
+  /** Shows a message to the user, and announces it to screen readers. */
   say(words: string): void;
   file: BackingFile | undefined;
 }
 
-/** A room that was opened stays; it is hidden while another is shown. */
+/** An opened room; it is only hidden while another is shown. */
 export interface Room {
-  /** The address changed, or the room is shown again. */
+  /** Called when the address changes, or when the room is shown again. */
   shown?(parameters: URLSearchParams): void;
 }

@@ -1,16 +1,19 @@
-/** What a worker is asked and answers. */
+/** The messages between the page and its workers. */
 
 import type * as flight from './flight/calls';
 import type * as rules from './rules/calls';
 
-/** All functions that can be called; each runs in a worker, and gets first a function that tells how far it is. */
+/**
+ * All functions that can be called. Each runs in a worker, and receives a function for reporting progress as its first
+ * argument.
+ */
 export type Calls = typeof flight & typeof rules;
 export type Name = keyof Calls;
 export type Tell = (progress: number) => void;
 export type Arguments<K extends Name> = Parameters<Calls[K]> extends [Tell, ...infer A] ? A : never;
 export type Answer<K extends Name> = Awaited<ReturnType<Calls[K]>>;
 
-/** The first message: which room the worker is for, and its module. */
+/** The first message: the room of the worker, and its module. */
 export interface Begin {
   room: 'flight' | 'rules';
   module: WebAssembly.Module;

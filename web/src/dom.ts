@@ -1,9 +1,12 @@
-/** Elements and text. What a log or a rule set says is only ever text. */
+/** Creates elements and text. Content of logs and rule sets is only inserted as text. */
 
 export type Child = Node | string | number | null | undefined | false;
 type Value = string | number | boolean | null | undefined | ((event: never) => void);
 
-/** An element. A function is a listener of the event that its name says (`onclick`), `true` an attribute without a value. */
+/**
+ * Creates an element. A function is a listener of the event in its name (`onclick`), `true` an attribute without a
+ * value.
+ */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   attributes: Record<string, Value> = {},
@@ -19,7 +22,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** Adds nodes, and text as text. */
+/** Adds nodes; strings are added as text. */
 export function add(parent: Node, ...children: Child[]): void {
   for (const child of children) {
     if (child === null || child === undefined || child === false) continue;
@@ -27,15 +30,15 @@ export function add(parent: Node, ...children: Child[]): void {
   }
 }
 
-/** Puts these nodes in the place of what an element holds. */
+/** Replaces the content of an element by these nodes. */
 export function fill(parent: Element, ...children: Child[]): void {
   parent.replaceChildren();
   add(parent, ...children);
 }
 
 /**
- * Markup that flagred itself wrote, in which every text is escaped. The policy allows no style attributes in markup; they are
- * set one by one instead.
+ * Parses markup written by flagred itself, in which all text is escaped. The policy allows no style attributes in
+ * markup; they are set one by one instead.
  */
 export function fragment(markup: string): DocumentFragment {
   const parsed = new DOMParser().parseFromString(
@@ -51,7 +54,7 @@ export function fragment(markup: string): DocumentFragment {
   return made;
 }
 
-/** A picture in SVG, which keeps its own styles to itself. */
+/** Creates an image from an SVG picture, which keeps its own styles. */
 export function picture(svg: string, description: string): HTMLImageElement {
   const url = URL.createObjectURL(new Blob([svg], { type: 'image/svg+xml' }));
   const image = h('img', { alt: description, src: url });
@@ -59,7 +62,7 @@ export function picture(svg: string, description: string): HTMLImageElement {
   return image;
 }
 
-/** Offers a file to keep. */
+/** Downloads a file. */
 export function download(name: string, content: BlobPart, type: string): void {
   const url = URL.createObjectURL(new Blob([content], { type }));
   h('a', { href: url, download: name }).click();

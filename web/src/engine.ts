@@ -2,24 +2,24 @@
 
 import type { Answer, Arguments, Begin, Name, Reply } from './calls';
 
-/** A defect of flagred ended the worker; a new one is there, without what the old one held. */
+/** A bug of flagred ended the worker. A new one replaces it, without the state of the old one. */
 export class Trapped extends Error {
   override name = 'Trapped';
 }
 
-/** The call was given up. */
+/** The call was cancelled. */
 export class Cancelled extends Error {
   override name = 'Cancelled';
 }
 
 export interface Engine {
-  /** Runs a call in the worker; calls are answered in turn. */
+  /** Runs a call in the worker; calls are answered in order. */
   call<K extends Name>(call: K, ...args: Arguments<K>): Promise<Answer<K>>;
-  /** As `call`, and hears how far it is, from 0 to 1. */
+  /** As `call`, and reports progress from 0 to 1. */
   follow<K extends Name>(progress: (share: number) => void, call: K, ...args: Arguments<K>): Promise<Answer<K>>;
-  /** Gives up whatever runs, and begins with an empty worker. */
+  /** Cancels all calls, and continues with a new worker. */
   restart(): void;
-  /** Called when a new worker took the place of one that held something. */
+  /** Called when a new worker replaced one that had a state. */
   onRestart?: () => void;
 }
 
@@ -29,7 +29,7 @@ interface Waiting {
   progress?: (share: number) => void;
 }
 
-/** An engine of its own: `create` makes a worker, `first` is what it is given first. */
+/** Creates an engine: `create` creates a worker, `first` is its first message. */
 export function engine(create: () => Worker, first: Promise<Begin>): Engine {
   const waiting = new Map<number, Waiting>();
   let next = 0;
@@ -38,7 +38,7 @@ export function engine(create: () => Worker, first: Promise<Begin>): Engine {
   function begin(): Worker {
     const made = create();
     made.onmessage = ({ data }: MessageEvent<Reply>) => answer(data);
-    // The next one would fail too: it is made when something is asked again, and not before.
+    // The next one would fail too, so it is created only with the next call.
     made.onerror = (event) => drop(new Trapped(event.message || 'the worker did not start'));
     return made;
   }
@@ -47,7 +47,7 @@ export function engine(create: () => Worker, first: Promise<Begin>): Engine {
 
   async function send(id: number, call: string, args: unknown[]): Promise<void> {
     const given = await first;
-    // It may have been given up meanwhile.
+    // It may have been cancelled meanwhile.
     if (!waiting.has(id)) return;
     worker ??= begin();
     if (begun !== worker) {

@@ -1,22 +1,22 @@
-/** The file that `flagred studio FILE` lends to the page. */
+/** The file that `flagred studio FILE` serves to the page. */
 
 import type { BackingFile } from './app';
 import { isOneFile } from './parts';
 
 const ADDRESS = 'api/file';
 
-/** The file, where the page is served with one. */
+/** Returns the file, if the page is served with one. */
 export async function backingFile(): Promise<BackingFile | undefined> {
   if (!isOneFile || !location.protocol.startsWith('http')) return undefined;
   const first = await fetch(ADDRESS, { cache: 'no-store' });
-  // 204 where there is none.
+  // The status is 204 if there is none.
   if (first.status !== 200) return undefined;
-  // What was there last, and the tag that the server knows it by.
+  // The last known text, and the tag that the server uses for it.
   let known = '';
   let tag = '';
-  // An editor ends lines by \n alone; the file keeps its own ends.
+  // The editor ends lines with \n only; the line ends of the file are preserved.
   let end = '\n';
-  // One after the other, so that no answer is older than what was written.
+  // One after another, so that no answer is older than what was written.
   let last: Promise<unknown> = Promise.resolve();
   const inTurn = <T>(run: () => Promise<T>): Promise<T> => {
     const next = last.then(run, run);
@@ -25,7 +25,7 @@ export async function backingFile(): Promise<BackingFile | undefined> {
   };
 
   async function take(answer: Response): Promise<string> {
-    // What is known is there still.
+    // The known text is still current.
     if (answer.status === 304) return known;
     const text = await answer.text();
     if (!answer.ok) throw new Error(text);

@@ -1,9 +1,12 @@
-/** Requests that come faster than their answers: one runs, and of those that wait only the latest runs next. */
+/**
+ * Handles requests that are made faster than they are answered: one runs, and of the waiting ones only the latest runs
+ * next.
+ */
 
 export interface Latest<A extends unknown[]> {
-  /** Ends with the run that does it: those that wait all hear of the latest. */
+  /** Resolves when a run for this or a later request has ended. */
   (...args: A): Promise<void>;
-  /** Ends when nothing runs and nothing waits. */
+  /** Resolves when nothing runs and nothing waits. */
   settled(): Promise<void>;
 }
 

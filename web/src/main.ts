@@ -1,4 +1,4 @@
-/** The page: two rooms behind one address. `#/flight?...` and `#/rules?...` are what can be linked to. */
+/** The page: two rooms with one address. `#/flight?...` and `#/rules?...` can be linked to. */
 
 import './page.css';
 import './flight/flight.css';
@@ -18,10 +18,10 @@ type Name = keyof typeof rooms;
 const main = document.querySelector('main')!;
 const said = document.getElementById('said')!;
 const opened = new Map<Name, { root: HTMLElement; room: Promise<Room> }>();
-/** What each room last said in the address, so that it is there again when one comes back. */
+/** The last address of each room, which is restored when the user returns to it. */
 const addresses = new Map<Name, string>();
 
-/** How long something said stays in view. */
+/** How long a message is shown. */
 const SAID_MS = 8_000;
 let saying: ReturnType<typeof setTimeout> | undefined;
 
@@ -56,7 +56,7 @@ async function open(name: Name, root: HTMLElement, file: BackingFile | undefined
   return (await rooms[name]()).open(root, app);
 }
 
-/** The links to the rooms lead to where one was in them. */
+/** Sets the links to the rooms to their last addresses. */
 function link(): void {
   const shown = place()?.name;
   for (const anchor of document.querySelectorAll('nav a')) {
@@ -84,7 +84,7 @@ async function show(file: BackingFile | undefined): Promise<void> {
   if (!isNew) room.shown?.(there.parameters);
 }
 
-/** Whatever goes wrong is told; a silent page is worse than a broken one. */
+/** Reports any error: a silent page is worse than a broken one. */
 function broken(error: unknown): void {
   clearTimeout(saying);
   said.textContent = `The page has a defect: ${error instanceof Error ? error.message : String(error)}`;

@@ -1,12 +1,12 @@
-/** The service worker: the page works without a network once it was loaded. */
+/** The service worker: once loaded, the page works without a network. */
 
 declare const self: ServiceWorkerGlobalScope;
-/** Written by the build: the files of the page, and what tells this build from others. */
+/** Set by the build: the files of the page, and an identifier of the build. */
 declare const FILES: string[];
 declare const BUILD: string;
 
 self.addEventListener('install', (event) => {
-  // What the browser keeps of another build is asked for again.
+  // Files that the browser cached from another build are requested again.
   const files = FILES.map((file) => new Request(file, { cache: 'no-cache' }));
   event.waitUntil(caches.open(BUILD).then((cache) => cache.addAll(files)).then(() => self.skipWaiting()));
 });

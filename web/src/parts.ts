@@ -1,11 +1,11 @@
-/** Where the worker and the module come from: files beside the page, or the page itself where it is one file. */
+/** The sources of the worker and the module: files next to the page, or the page itself if it is a single file. */
 
 const embedded = (id: string) => document.getElementById(id)?.textContent ?? undefined;
 
-/** Whether the page is one file that needs nothing beside it. */
+/** Whether the page is a single self-contained file. */
 export const isOneFile = embedded('worker.js') !== undefined;
 
-/** Makes a worker. */
+/** Creates a worker. */
 export function worker(): Worker {
   const script = embedded('worker.js');
   if (script === undefined) return new Worker('worker.js', { type: 'module' });
@@ -13,7 +13,7 @@ export function worker(): Worker {
   return new Worker(url);
 }
 
-/** The compiled module of a room. */
+/** Returns the compiled module of a room. */
 export async function module(room: 'flight' | 'rules'): Promise<WebAssembly.Module> {
   const name = `${room}.wasm`;
   const packed = embedded(name);

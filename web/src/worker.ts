@@ -1,4 +1,4 @@
-/** Runs flagred beside the page, which stays free to move. The first message is the compiled module of a room. */
+/** Runs flagred in a worker, so that the page stays responsive. The first message is the compiled module of a room. */
 
 import { Panic, startFlight, startRules } from 'flagred';
 import type { Begin, Reply, Request, Tell } from './calls';
@@ -31,7 +31,7 @@ self.onmessage = async ({ data }: MessageEvent<Begin | Request>) => {
   }
 };
 
-/** The arrays of an answer, which are handed over instead of copied. */
+/** The arrays of an answer, which are transferred instead of copied. */
 function columns(answer: unknown): Transferable[] {
   const values = typeof answer === 'object' && answer !== null ? [answer, ...Object.values(answer)] : [];
   const buffers = values.flatMap((value) => (ArrayBuffer.isView(value) ? [value.buffer as ArrayBuffer] : []));

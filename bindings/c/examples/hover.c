@@ -7,13 +7,13 @@
 
 #include PROFILE
 
-/* 50 times a second. */
+/* The time between samples in seconds: 50 Hz. */
 #define STEP_S 0.02
 
 /* The memory of the monitor. */
 static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(4)];
 
-/* The commands in us: calm, or neighbouring motors in turns at their limits. */
+/* The commands in us: calm, or neighbouring motors alternately at their limits. */
 static void commands_at(int step, double commands[4]) {
     int gust = step > 1500 && (step / 40) % 2 == 0;
     for (int motor = 0; motor < 4; motor++) {

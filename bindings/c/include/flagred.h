@@ -36,120 +36,120 @@ typedef enum flagred_status {
     FLAGRED_NO_MOTORS = 4,      /* the profile reads a motor that the vehicle does not have */
     FLAGRED_MEMORY_SIZE = 5,    /* less memory than flagred_memory_size returns, or not aligned to 16 bytes */
     FLAGRED_BAD_LIMITS = 6,     /* the lower limit of a motor is not below its upper limit */
-    FLAGRED_BAD_GEOMETRY = 7,   /* the geometry does not tell roll, pitch, yaw and thrust of all motors apart */
-    FLAGRED_WRONG_COUNT = 8     /* not one value for each input, not one outcome for each output, or too many commands */
+    FLAGRED_BAD_GEOMETRY = 7,   /* the geometry does not separate roll, pitch, yaw and thrust */
+    FLAGRED_WRONG_COUNT = 8     /* wrong number of inputs or outcomes, or too many commands */
 } flagred_status;
 
 typedef enum flagred_level {
     FLAGRED_LEVEL_NONE = -1,    /* on the ground, or unknown for a long time; as a change: no change */
     FLAGRED_GOOD = 0,
-    FLAGRED_INFO = 1,           /* of a finding only: worth knowing, and no danger */
+    FLAGRED_INFO = 1,           /* only of a finding: worth knowing but not dangerous */
     FLAGRED_WARN = 2,
     FLAGRED_FAIL = 3
 } flagred_level;
 
-/* The quantity that a threshold is on. */
+/* The quantity that a threshold applies to. */
 typedef enum flagred_measure {
     FLAGRED_RISK = 0,
     FLAGRED_ELEVATED_RISK = 1,
     FLAGRED_COMMAND_NOISE = 2,  /* the noise of the motor commands, in % of their range */
-    FLAGRED_RESERVE = 3,        /* what the mean command leaves below the upper limit, in % of the range */
-    FLAGRED_IMBALANCE = 4,      /* how far motors are from their own part of the thrust earlier in the flight, in % */
-    FLAGRED_PAIR_IMBALANCE = 5, /* how far a motor is from the one opposite, in % */
-    FLAGRED_WEAK_MOTOR = 6,     /* how far one motor alone is above its own part of the thrust earlier in the flight, in % */
+    FLAGRED_RESERVE = 3,        /* the reserve of the mean command to the upper limit, in % of the range */
+    FLAGRED_IMBALANCE = 4,      /* the deviation of motors from their part of the thrust earlier in the flight, in % */
+    FLAGRED_PAIR_IMBALANCE = 5, /* the difference between a motor and the opposite one, in % */
+    FLAGRED_WEAK_MOTOR = 6,     /* how far one motor alone exceeds its part of the thrust earlier in the flight, in % */
     FLAGRED_IDLE_IN_AIR = 7     /* the risk of motors that idle in the air, which is 100 % */
 } flagred_measure;
 
-/* Why a risk is unknown. */
+/* The reason why a risk is unknown. */
 typedef enum flagred_unknown {
     FLAGRED_KNOWN = 0,
     FLAGRED_ON_GROUND = 1,
-    FLAGRED_OUT_OF_ORDER = 2,   /* the time stamp is not after the previous one; the sample is ignored */
+    FLAGRED_OUT_OF_ORDER = 2,   /* the timestamp is not after the previous one; the sample is ignored */
     FLAGRED_WARMING_UP = 3,     /* the window of an input is not full enough yet */
     FLAGRED_TOO_FEW_SAMPLES = 4,
     FLAGRED_NO_VALUE = 5,       /* the signal of an input is unknown */
     FLAGRED_NO_RULE = 6,        /* no rule covers the inputs, and nothing fills the gap */
     FLAGRED_NO_COMMAND = 7,     /* the command of a motor is unknown */
-    FLAGRED_COMMAND_OUTSIDE = 8 /* the command of a motor is far outside 0 to 1, and there are no limits: another unit */
+    FLAGRED_COMMAND_OUTSIDE = 8 /* a command is far outside 0 to 1 although there are no limits: it has another unit */
 } flagred_unknown;
 
-/* The commands of a motor's least and most thrust, in the unit of its commands. On an ArduPilot vehicle, in us:
- * MOT_PWM_MIN + MOT_SPIN_MIN * (MOT_PWM_MAX - MOT_PWM_MIN), and the same with MOT_SPIN_MAX. */
+/* The commands for a motor's minimum and maximum thrust, in the unit of its commands. On an ArduPilot vehicle, in
+ * us: MOT_PWM_MIN + MOT_SPIN_MIN * (MOT_PWM_MAX - MOT_PWM_MIN), and the same with MOT_SPIN_MAX. */
 typedef struct flagred_limits {
     double low;
     double high;
 } flagred_limits;
 
-/* The factors of a motor in the mixer. The largest of each axis is 1; an axis that no motor acts on has zeros. */
+/* The factors of a motor in the mixer. The largest of each axis is 1; they are 0 for an axis that no motor acts on. */
 typedef struct flagred_factors {
-    double roll;                /* positive where more thrust rolls the vehicle to the right: a motor on the left */
-    double pitch;               /* positive where it raises the nose: a motor in front */
-    double yaw;                 /* positive where it turns the nose to the right: a counter-clockwise propeller */
+    double roll;                /* positive if more thrust rolls the vehicle to the right: a motor on the left */
+    double pitch;               /* positive if it raises the nose: a motor in front */
+    double yaw;                 /* positive if it turns the nose to the right: a counter-clockwise propeller */
 } flagred_factors;
 
 /* A sample of a flight. */
 typedef struct flagred_sample {
     double t_s;                 /* seconds; must increase */
-    const double *commands;     /* the command of each motor, in the unit of its limits; NAN where unknown */
-    size_t motors;              /* the number of commands; missing ones are unknown, and so is the risk then; more than
+    const double *commands;     /* the command of each motor, in the unit of its limits; NAN if unknown */
+    size_t motors;              /* the number of commands; missing ones, and the risk, are then unknown; more than
                                    the monitor has motors are FLAGRED_WRONG_COUNT */
-    const double *signals;      /* the signals of the profile, in its order; NAN where unknown; may be NULL */
+    const double *signals;      /* the signals of the profile, in its order; NAN if unknown; may be NULL */
     size_t signal_count;
-    int32_t in_air;             /* what the land detector reports: 0 on the ground, 1 in the air; -1 not known: motors that
-                                   idle mean on the ground. Reported in the air, motors that idle for 3 s are a fall */
+    int32_t in_air;             /* the report of the land detector: 0 on the ground, 1 in the air; -1 unknown: motors that
+                                   idle mean on the ground. If reported in the air, motors that idle for 3 s are a fall */
 } flagred_sample;
 
 /* The number of findings that can end at one time: of the risk, the noise, the reserve and the balance. */
 #define FLAGRED_ENDED 4
 
-/* The cause of a level, or information. */
+/* A finding about the risk, or a notice. */
 typedef struct flagred_finding {
-    double from_s;              /* when the threshold was first reached */
-    double raised_s;            /* when the level was raised */
-    double failed_s;            /* when it became FLAGRED_FAIL; NAN where it did not */
-    double to_s;                /* when the threshold was last reached */
+    double from_s;              /* the time at which the threshold was first reached */
+    double raised_s;            /* the time at which the level was raised */
+    double failed_s;            /* the time at which it was raised to FLAGRED_FAIL; NAN if it was not */
+    double to_s;                /* the time at which the threshold was last reached */
     double threshold_pct;
-    double peak_pct;            /* the worst value of the measure: of the reserve the least, else the largest */
-    double mean_margin;         /* of the motor; NAN where no motor is known */
+    double peak_pct;            /* the worst value of the measure: the smallest for the reserve, otherwise the largest */
+    double mean_margin;         /* of the motor; NAN if no motor is known */
     double least_margin;
-    double cause_value;         /* of the input that raised the risk, when the level was raised; NAN where unknown */
-    int32_t level;              /* flagred_level; FLAGRED_LEVEL_NONE where there is no finding */
-    int32_t measure;            /* flagred_measure: what reached the threshold */
-    int32_t motor;              /* the index of the motor that is the cause: near a limit, or out of balance; else -1 */
-    int32_t or_motor;           /* the other motor that it may be as well, where the commands do not tell which; else -1 */
+    double cause_value;         /* the value of the input that raised the risk, when the level was raised; NAN if unknown */
+    int32_t level;              /* flagred_level; FLAGRED_LEVEL_NONE if there is no finding */
+    int32_t measure;            /* flagred_measure: the quantity that reached the threshold */
+    int32_t motor;              /* the index of the motor that is the cause: near a limit, or out of balance; otherwise -1 */
+    int32_t or_motor;           /* a second motor that may be the cause, if the commands do not show which; otherwise -1 */
     int32_t at_high_limit;      /* 0: nearer to the lower limit; 1: to the upper limit. Out of balance: below, above */
-    int32_t cause;              /* what raised the risk, as an index of flagred_NAME_causes in the exported profile; -1 where no
-                                   rule did: then its words are in flagred_NAME_notices, by measure */
+    int32_t cause;              /* the cause of the risk, as an index of flagred_NAME_causes in the exported profile; -1 if no
+                                   rule raised it: its words are then in flagred_NAME_notices, by measure */
     int32_t cause_rule;         /* the index of the rule; -1 */
     int32_t cause_input;        /* the index of the input of the profile; -1 */
 } flagred_finding;
 
-/* What a pilot reads of a finding, in an exported profile. What stands in braces is to be filled in: {value} is cause_value,
-   {percent} 100 times that, {peak} peak_pct, {threshold} threshold_pct, {motor} "motor 3" (motor + 1), {side} "below" or
-   "above" (at_high_limit). */
+/* The words of a finding for the pilot, in an exported profile. Placeholders in braces are to be replaced: {value}
+   by cause_value, {percent} by 100 times that, {peak} by peak_pct, {threshold} by threshold_pct, {motor} by "motor
+   3" (motor + 1), {side} by "below" or "above" (at_high_limit). */
 typedef struct flagred_words {
     const char *code;           /* for programs: small letters, digits and _ */
-    const char *brief;          /* a few words, for texts of 50 characters */
+    const char *brief;          /* a few words, for messages limited to 50 characters */
     const char *text;           /* what happened, and what it means */
     const char *advice;         /* what to do */
 } flagred_words;
 
-/* What is known after a sample. */
+/* The result of a monitor after a sample. */
 typedef struct flagred_update {
     double t_s;
-    double risk_pct;            /* NAN where unknown */
-    double elevated_risk_pct;   /* NAN where unknown */
-    double coverage;            /* the largest firing strength of a rule, 0 to 1; NAN where the risk is unknown */
-    double filled_from;         /* the distance to the nearest covered point, where the risk is interpolated; else NAN */
+    double risk_pct;            /* NAN if unknown */
+    double elevated_risk_pct;   /* NAN if unknown */
+    double coverage;            /* the largest firing strength of a rule, 0 to 1; NAN if the risk is unknown */
+    double filled_from;         /* the distance to the nearest covered point if the risk is interpolated; otherwise NAN */
     flagred_finding ended[FLAGRED_ENDED]; /* the findings that ended with this sample */
     int32_t dominant_rule;      /* the index of the rule with the largest firing strength; -1 where none fired */
     int32_t clamped;            /* 1 where an input was outside its range and was clamped to it */
-    int32_t level;              /* flagred_level; where the risk is unknown an alarm that stands, or FLAGRED_LEVEL_NONE: never
+    int32_t level;              /* flagred_level; if the risk is unknown, an ongoing alarm or FLAGRED_LEVEL_NONE, never
                                    FLAGRED_GOOD */
-    int32_t change;             /* flagred_level: the new level, where this sample changed it */
+    int32_t change;             /* flagred_level: the new level if this sample changed it */
     int32_t unknown;            /* flagred_unknown */
-    int32_t unknown_input;      /* the index of the unknown input of the profile; else -1 */
-    int32_t unknown_motor;      /* the index of the motor whose command is unknown; else -1 */
+    int32_t unknown_input;      /* the index of the unknown input of the profile; otherwise -1 */
+    int32_t unknown_motor;      /* the index of the motor whose command is unknown; otherwise -1 */
 } flagred_update;
 
 typedef struct flagred_rules flagred_rules;
@@ -162,38 +162,38 @@ const char *flagred_version(void);
 /* The text of a status. */
 const char *flagred_status_text(int32_t status);
 
-/* The size of a monitor's memory in bytes; 0 for an invalid plan. FLAGRED_MEMORY of an exported profile is at least as
- * large on every processor. A program with several profiles uses FLAGRED_PLAN_NAME_MEMORY of each. */
+/* The size of a monitor's memory in bytes; 0 for an invalid plan. FLAGRED_MEMORY of an exported profile is at least
+ * as large on every processor. A program with several profiles uses FLAGRED_PLAN_NAME_MEMORY of each. */
 size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 
-/* Makes a monitor of a new flight in `memory`; there is nothing to free. `plan` and `memory` must outlive it. `limits`,
- * one for each motor, are copied, and commands are clamped to them; a command that lies outside by more than ten times
- * the width of the range, such as 65535, is unknown. If `limits` is NULL, commands are from 0 to 1: commands
- * from -0.5 to 1.5 are clamped to this range, and others are unknown. While a motor is unknown, so is the risk. A profile that
- * reads no motor needs none: then `motors` may be 0, and the commands of samples be NULL. */
+/* Creates a monitor of a new flight in `memory`; there is nothing to free. `plan` and `memory` must outlive it.
+ * `limits`, one for each motor, are copied, and commands are clamped to them. A command that is outside by more than
+ * ten times the width of the range, such as 65535, is unknown. If `limits` is NULL, commands are from 0 to 1:
+ * commands from -0.5 to 1.5 are clamped to this range, and others are unknown. While a motor is unknown, so is the
+ * risk. A profile that reads no motors needs none: `motors` may then be 0, and the commands of samples may be NULL. */
 int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_limits *limits, void *memory, size_t size,
                       flagred_monitor **monitor);
 
-/* Gives each motor its factors, in the order of the commands, so that turning the nose is told from what pushes the vehicle
- * around. Call it before the first sample. Without it, yaw counts as any other motion. */
+/* Sets the factors of each motor, in the order of the commands, so that yaw commands are separated from the rest.
+ * Call it before the first sample. Without it, yaw counts like any other motion. */
 int32_t flagred_set_geometry(flagred_monitor *monitor, const flagred_factors *factors, size_t motors);
 
-/* Takes the next sample and writes the update. */
+/* Processes the next sample and writes the update. */
 int32_t flagred_push(flagred_monitor *monitor, const flagred_sample *sample, flagred_update *update);
 
-/* The open finding of the current level; its level is FLAGRED_LEVEL_NONE while the level is good. */
+/* Writes the open finding of the current level; its level is FLAGRED_LEVEL_NONE while the level is good. */
 int32_t flagred_open_finding(const flagred_monitor *monitor, flagred_finding *finding);
 
 /* Ends the flight and writes the open findings. The next sample begins a new flight. */
 int32_t flagred_finish(flagred_monitor *monitor, flagred_finding ended[FLAGRED_ENDED]);
 
-/* The risk at values of the profile's inputs, in its order, independent of the flight. Writes risk_pct, coverage,
- * filled_from, dominant_rule and clamped. */
+/* Computes the risk at values of the profile's inputs, in its order, independent of the flight. Writes risk_pct,
+ * coverage, filled_from, dominant_rule and clamped. */
 int32_t flagred_evaluate(flagred_monitor *monitor, const double *inputs, size_t count, flagred_update *update);
 
 /* ---- Evaluating a rule set ----------------------------------------------------------------------------------------
  *
- * For any rule set, without a profile and a flight: outputs from inputs, bit for bit those of the command `flagred eval`.
+ * Evaluates any rule set without a profile or a flight. The outputs are bit for bit those of the command `flagred eval`.
  *
  *     #include "fan.h"                                         // flagred export --c fan.yaml
  *     static _Alignas(16) unsigned char memory[FLAGRED_FAN_MEMORY];
@@ -202,7 +202,7 @@ int32_t flagred_evaluate(flagred_monitor *monitor, const double *inputs, size_t 
  *     flagred_rules_evaluate(fan, (double[]){27.5}, 1, &speed, 1);     // as often as wanted
  */
 
-/* What the value of an outcome is. */
+/* The kind of value of an outcome. */
 typedef enum flagred_state {
     FLAGRED_DEFINED = 0,
     FLAGRED_DEFAULT = 1,        /* no rule fired; the value is the default value of the output */
@@ -212,7 +212,7 @@ typedef enum flagred_state {
 
 /* The outcome of an output. */
 typedef struct flagred_outcome {
-    double value;               /* NAN where there is none */
+    double value;               /* NAN if there is none */
     double coverage;            /* the largest firing strength of a rule, 0 to 1 */
     int32_t state;              /* flagred_state */
     int32_t dominant_rule;      /* the index of the rule with the largest firing strength; -1 where none fired */
@@ -225,11 +225,11 @@ typedef struct flagred_evaluator flagred_evaluator;
  * large on every processor. */
 size_t flagred_rules_memory_size(const flagred_rules *rules);
 
-/* Makes an evaluator in `memory`; there is nothing to free. `rules` and `memory` must outlive it. */
+/* Creates an evaluator in `memory`; there is nothing to free. `rules` and `memory` must outlive it. */
 int32_t flagred_rules_start(const flagred_rules *rules, void *memory, size_t size, flagred_evaluator **evaluator);
 
-/* Evaluates one value for each input into one outcome for each output, in the order of the rule set. The outcomes depend on
- * nothing but the inputs. */
+/* Evaluates the rules: one value for each input gives one outcome for each output, in the order of the rule set. The
+ * outcomes depend only on the inputs. */
 int32_t flagred_rules_evaluate(flagred_evaluator *evaluator, const double *inputs, size_t input_count,
                                flagred_outcome *outcomes, size_t output_count);
 
@@ -363,12 +363,12 @@ typedef struct flagred_channel {
     uint32_t observed, indices[2], motors, threshold, in_bins, exponential;
 } flagred_channel;
 
-/* Which input a rule is about. */
+/* The input that a proposition of a rule is about. */
 typedef struct flagred_proposition {
     uint32_t rule, input, literal;
 } flagred_proposition;
 
-/* A part of the rules that is evaluated at once, where outputs read others, and where it ends in each array. */
+/* Rules that are evaluated together, if outputs read other outputs, and the end of the stage in each array. */
 typedef struct flagred_stage {
     uint32_t conjunctions, actions_a_cell, first_action, sums;
     struct {
@@ -384,7 +384,7 @@ typedef struct flagred_stage {
 
 typedef struct flagred_source {
     double number, at_least;
-    double if_missing; /* until its signals are known for the first time; NAN: none */
+    double if_missing; /* the value until its signals are known for the first time; NAN: none */
     uint32_t channel, statistic;
     uint32_t per; /* a source; UINT32_MAX: none */
 } flagred_source;
@@ -455,7 +455,7 @@ struct flagred_rules {
     FLAGRED_ARRAY(flagred_flank, flanks);
     FLAGRED_ARRAY(flagred_knot, knots);
     FLAGRED_ARRAY(flagred_stage, stages);
-    FLAGRED_ARRAY(uint32_t, places);            /* of each stage: the outputs that it reads, its outputs, its rules */
+    FLAGRED_ARRAY(uint32_t, places);            /* for each stage: the outputs that it reads, its outputs, its rules */
 };
 
 struct flagred_plan {
@@ -466,8 +466,8 @@ struct flagred_plan {
     FLAGRED_ARRAY(uint32_t, order);             /* UINT32_MAX: an input that the risk does not depend on */
     FLAGRED_ARRAY(flagred_channel, channels);
     FLAGRED_ARRAY(flagred_source, sources);
-    FLAGRED_ARRAY(double, coordinates);         /* of the knots that fill gaps, input by input; empty without filling */
-    FLAGRED_ARRAY(uint32_t, first_coordinates); /* the index of each input's first coordinate, and the end of the last's */
+    FLAGRED_ARRAY(double, coordinates);         /* coordinates of the knots that fill gaps, input by input; empty without filling */
+    FLAGRED_ARRAY(uint32_t, first_coordinates); /* the index of the first coordinate of each input, then the end of the last */
     FLAGRED_ARRAY(double, values);
     FLAGRED_ARRAY(double, distances);
     FLAGRED_ARRAY(flagred_proposition, propositions);

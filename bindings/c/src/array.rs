@@ -1,8 +1,8 @@
-//! Arrays of the caller.
+//! Arrays that the caller passes.
 
 use crate::status::Status;
 
-/// An array of C and its length.
+/// A C array and its length.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub(crate) struct Array<T> {
@@ -14,7 +14,7 @@ impl<T> Array<T> {
     /// The array as a slice.
     ///
     /// # Safety
-    /// It is null or has `count` items, and does not change while the slice is used.
+    /// The pointer must be null or have `count` items, which must not change while the slice is used.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn read<'a>(&self) -> Result<&'a [T], Status> {
         if self.count == 0 {
@@ -23,12 +23,12 @@ impl<T> Array<T> {
         if self.items.is_null() || !self.items.is_aligned() {
             return Err(Status::NullPointer);
         }
-        // No object is larger: the count is damaged.
+        // No object can be larger: the count is damaged.
         let bytes = self.count.checked_mul(size_of::<T>());
         if bytes.is_none_or(|bytes| bytes > isize::MAX as usize) {
             return Err(Status::DamagedPlan);
         }
-        // SAFETY: neither null nor unaligned, of a possible size, and the caller's promise.
+        // SAFETY: neither null nor unaligned, of a possible size, and valid by the caller's promise.
         Ok(unsafe { core::slice::from_raw_parts(self.items, self.count) })
     }
 }

@@ -1,4 +1,4 @@
-//! Evaluating a rule set that has no profile.
+//! The C interface for evaluating a rule set without a profile.
 
 use flagred::board::{
     self, Evaluator, RuleMemory,
@@ -30,7 +30,7 @@ impl Outcome {
             coverage: outcome.coverage,
             state: match outcome.state {
                 State::Defined(_) => 0,
-                // `Previous` is of sequences of evaluations, which this is not.
+                // `Previous` occurs only in sequences of evaluations.
                 State::Default(_) | State::Previous(_) => 1,
                 State::NoRuleFired => 2,
                 State::InputNotFinite => 3,
@@ -44,7 +44,7 @@ impl Outcome {
 /// The size of an evaluator's memory in bytes; 0 for invalid rules.
 ///
 /// # Safety
-/// `rules` is null or points to rules whose arrays have the lengths they say.
+/// `rules` must be null or point to rules whose arrays have the stated lengths.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub(crate) unsafe extern "C" fn flagred_rules_memory_size(rules: *const Rules) -> usize {
@@ -54,11 +54,12 @@ pub(crate) unsafe extern "C" fn flagred_rules_memory_size(rules: *const Rules) -
     rules.map_or(0, |rules| rules.bytes())
 }
 
-/// Makes an evaluator of a rule set.
+/// Creates an evaluator of a rule set.
 ///
 /// # Safety
-/// `rules` is null or points to rules whose arrays have the lengths they say; `memory` is null or has `size` bytes that nothing
-/// else uses; `evaluator` is null or writable. The rules and the memory outlive the evaluator.
+/// `rules` must be null or point to rules whose arrays have the stated lengths; `memory` must be null or have `size`
+/// bytes that nothing else uses; `evaluator` must be null or writable. The rules and the memory must outlive the
+/// evaluator.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub(crate) unsafe extern "C" fn flagred_rules_start(
@@ -114,8 +115,8 @@ unsafe fn start(
 /// Evaluates one value for each input into one outcome for each output.
 ///
 /// # Safety
-/// `evaluator` is null or from [`flagred_rules_start`]; `inputs` is null or has `input_count` items; `outcomes` is null or has
-/// room for `output_count` items.
+/// `evaluator` must be null or from [`flagred_rules_start`]; `inputs` must be null or have `input_count` items;
+/// `outcomes` must be null or have room for `output_count` items.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub(crate) unsafe extern "C" fn flagred_rules_evaluate(

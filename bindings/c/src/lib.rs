@@ -1,6 +1,6 @@
 //! The C interface of [`flagred::board`]. `include/flagred.h` documents the functions.
 //!
-//! It converts between pointers and references: the only `unsafe` code of the workspace.
+//! It converts between pointers and references, which needs `unsafe` code.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 mod array;
@@ -53,13 +53,13 @@ pub struct CSample {
 #[derive(Debug)]
 pub struct CMonitor {
     monitor: Monitor<'static>,
-    /// One for each motor; empty where commands are from 0 to 1.
+    /// The limits of each motor; empty if commands are from 0 to 1.
     limits: &'static [Range],
     /// The effective command of each motor in the current sample.
     effective: &'static mut [f64],
 }
 
-/// The version of this library.
+/// The version of this library, such as "0.1.0".
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "a name that C can call")]
 pub extern "C" fn flagred_version() -> *const c_char {
@@ -81,24 +81,24 @@ pub extern "C" fn flagred_status_text(status: i32) -> *const c_char {
 /// The size of a monitor's memory in bytes; 0 for an invalid plan.
 ///
 /// # Safety
-/// `plan` is null or points to a plan whose arrays have the lengths it says.
+/// `plan` must be null or point to a plan whose arrays have the stated lengths.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_memory_size(plan: *const Plan, motors: usize) -> usize {
     // SAFETY: the caller's promise.
     let plan = unsafe { plan.as_ref() };
     let plan = plan.ok_or(Status::NullPointer);
-    // SAFETY: the caller's promise on the plan's arrays, which are used in this call only.
+    // SAFETY: the caller's promise about the plan's arrays, which are used in this call only.
     let sizes = plan.and_then(|plan| unsafe { plan.bytes(motors) });
     sizes.unwrap_or(0)
 }
 
-/// Makes a monitor of a new flight.
+/// Creates a monitor of a new flight.
 ///
 /// # Safety
-/// `plan` is null or points to a plan whose arrays have the lengths it says; `limits` is null or has one item for each motor;
-/// `memory` is null or has `size` bytes that nothing else uses; `monitor` is null or writable. The plan and the memory outlive
-/// the monitor.
+/// `plan` must be null or point to a plan whose arrays have the stated lengths; `limits` must be null or have one item
+/// for each motor; `memory` must be null or have `size` bytes that nothing else uses; `monitor` must be null or
+/// writable. The plan and the memory must outlive the monitor.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_start(
@@ -137,11 +137,11 @@ unsafe fn start(
     let plan: &'static Plan = unsafe { plan.as_ref() }.ok_or(Status::NullPointer)?;
     // SAFETY: the caller's promise: nothing else uses the memory, and it outlives the monitor.
     let mut block = unsafe { Block::new(memory, size) }?;
-    // SAFETY: the caller's promise on the plan's arrays, which are used in this call only.
+    // SAFETY: the caller's promise about the plan's arrays, which are used in this call only.
     if size < unsafe { plan.bytes(motors) }? {
         return Err(Status::MemorySize);
     }
-    // SAFETY: the caller's promise on the plan's arrays.
+    // SAFETY: the caller's promise about the plan's arrays.
     let plan = unsafe { plan.read(&mut block) }?;
     let plan: &'static flagred::board::Plan<'static> = block.place(plan)?;
     plan.check().map_err(|_| Status::DamagedPlan)?;
@@ -178,10 +178,10 @@ unsafe fn start(
     block.place(monitor).map(core::ptr::from_mut)
 }
 
-/// Gives each motor its factors.
+/// Sets the factors of each motor.
 ///
 /// # Safety
-/// `monitor` is null or from [`flagred_start`]; `factors` is null or has `motors` items.
+/// `monitor` must be null or from [`flagred_start`]; `factors` must be null or have `motors` items.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_set_geometry(
@@ -202,11 +202,11 @@ pub unsafe extern "C" fn flagred_set_geometry(
     set.map_or(Status::BadGeometry, |()| Status::Ok) as i32
 }
 
-/// Takes the next sample and writes the update.
+/// Processes the next sample and writes the update.
 ///
 /// # Safety
-/// `monitor` is null or from [`flagred_start`]; `sample` is null or points to a sample whose arrays have the lengths it says;
-/// `update` is null or writable.
+/// `monitor` must be null or from [`flagred_start`]; `sample` must be null or point to a sample whose arrays have the
+/// stated lengths; `update` must be null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_push(
@@ -219,7 +219,7 @@ pub unsafe extern "C" fn flagred_push(
     let (Some(monitor), Some(sample), false) = (monitor, sample, update.is_null()) else {
         return Status::NullPointer as i32;
     };
-    // SAFETY: the caller's promise on the sample's arrays, which are used in this call only.
+    // SAFETY: the caller's promise about the sample's arrays, which are used in this call only.
     let arrays = unsafe { (sample.commands.read(), sample.signals.read()) };
     let (Ok(commands), Ok(signals)) = arrays else {
         return Status::NullPointer as i32;
@@ -246,10 +246,10 @@ pub unsafe extern "C" fn flagred_push(
     Status::Ok as i32
 }
 
-/// The open finding of the current level.
+/// Writes the open finding of the current level.
 ///
 /// # Safety
-/// `monitor` is null or from [`flagred_start`]; `finding` is null or writable.
+/// `monitor` must be null or from [`flagred_start`]; `finding` must be null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_open_finding(
@@ -269,7 +269,7 @@ pub unsafe extern "C" fn flagred_open_finding(
 /// Ends the flight and writes the open findings.
 ///
 /// # Safety
-/// `monitor` is null or from [`flagred_start`]; `ended` is null or writable.
+/// `monitor` must be null or from [`flagred_start`]; `ended` must be null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_finish(
@@ -286,10 +286,11 @@ pub unsafe extern "C" fn flagred_finish(
     Status::Ok as i32
 }
 
-/// The risk at values of the profile's inputs, independent of the flight.
+/// Computes the risk at values of the profile's inputs, independent of the flight.
 ///
 /// # Safety
-/// `monitor` is null or from [`flagred_start`]; `inputs` is null or has `count` items; `update` is null or writable.
+/// `monitor` must be null or from [`flagred_start`]; `inputs` must be null or have `count` items; `update` must be null
+/// or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_evaluate(
@@ -313,7 +314,7 @@ pub unsafe extern "C" fn flagred_evaluate(
     Status::Ok as i32
 }
 
-/// A panic is a bug of this library. The processor stops in place.
+/// Stops the processor after a panic, which is a bug of this library.
 #[cfg(not(feature = "std"))]
 #[panic_handler]
 fn stop(_: &core::panic::PanicInfo<'_>) -> ! {

@@ -1,4 +1,4 @@
-//! Divides the caller's memory.
+//! Divides the memory that the caller provides.
 
 use core::mem::{align_of, size_of};
 
@@ -15,7 +15,7 @@ pub(crate) struct Block {
 
 impl Block {
     /// # Safety
-    /// `memory` is null or points to `size` bytes that nothing else uses while the values placed there are used.
+    /// `memory` must be null or point to `size` bytes that nothing else uses while the values placed there are used.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn new(memory: *mut u8, size: usize) -> Result<Block, Status> {
         if memory.is_null() {
@@ -30,7 +30,7 @@ impl Block {
         })
     }
 
-    /// Places one value.
+    /// Stores one value in the memory.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) fn place<T>(&mut self, value: T) -> Result<&'static mut T, Status> {
         let pointer = self.reserve::<T>(1)?;
@@ -41,7 +41,7 @@ impl Block {
         }
     }
 
-    /// Places copies of a value.
+    /// Stores copies of a value in the memory.
     pub(crate) fn fill<T: Copy>(
         &mut self,
         count: usize,
@@ -50,7 +50,7 @@ impl Block {
         self.repeat(count, |_| Ok(value))
     }
 
-    /// Places values.
+    /// Stores values in the memory.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) fn repeat<T>(
         &mut self,

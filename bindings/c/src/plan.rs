@@ -1,4 +1,4 @@
-//! The exported plan in C.
+//! The exported plan as C data.
 
 use flagred::{
     accumulator::AccumulatorSettings,
@@ -40,7 +40,7 @@ struct CSource {
     per: u32,
 }
 
-/// A source that there is not.
+/// The index of a missing source.
 const NONE: u32 = u32::MAX;
 
 #[derive(Debug, Clone, Copy)]
@@ -111,7 +111,7 @@ impl Plan {
     /// The size of a monitor's memory.
     ///
     /// # Safety
-    /// The arrays have the lengths they say.
+    /// The arrays must have the stated lengths.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn bytes(&self, motors: usize) -> Result<usize, Status> {
         // SAFETY: the caller's promise.
@@ -131,7 +131,7 @@ impl Plan {
     /// The plan, with its channels and inputs converted into the block.
     ///
     /// # Safety
-    /// The arrays have the lengths they say, and do not change.
+    /// The arrays must have the stated lengths, and must not change.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn read(&self, block: &mut Block) -> Result<board::Plan<'static>, Status> {
         // SAFETY: the caller's promise.
@@ -145,7 +145,7 @@ impl Plan {
     }
 
     /// # Safety
-    /// The arrays have the lengths they say, and do not change.
+    /// The arrays must have the stated lengths, and must not change.
     #[allow(unsafe_code, reason = "foreign memory")]
     unsafe fn whole<'a>(
         &self,
@@ -209,7 +209,7 @@ impl CSource {
     }
 }
 
-/// A limit; NaN is none.
+/// A limit; NaN means that there is none.
 fn known(limit: f64) -> Option<f64> {
     (!limit.is_nan()).then_some(limit)
 }

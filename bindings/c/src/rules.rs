@@ -1,4 +1,4 @@
-//! The exported rule set in C.
+//! The exported rule set as C data.
 
 use flagred::board::{
     self,
@@ -12,7 +12,7 @@ use flagred::board::{
 
 use crate::{array::Array, status::Status};
 
-/// The version of the data that this library reads.
+/// The version of the exported data that this library supports.
 pub(crate) const FORMAT: u32 = 10;
 
 macro_rules! define {
@@ -37,13 +37,13 @@ macro_rules! define {
 
         impl Rules {
             /// # Safety
-            /// The arrays have the lengths they say, and do not change.
+            /// The arrays must have the stated lengths, and must not change.
             #[allow(unsafe_code, reason = "foreign memory")]
             pub(crate) unsafe fn read<'a>(&self) -> Result<board::Rules<'a>, Status> {
                 if self.format != FORMAT {
                     return Err(Status::OtherFormat);
                 }
-                // SAFETY: the caller's promise, for all arrays.
+                // SAFETY: the caller's promise about all arrays.
                 unsafe {
                     Ok(board::Rules {
                         table: Table {
@@ -61,7 +61,8 @@ macro_rules! define {
             }
         }
     };
-    // An enumeration, whose codes are verified before they become a reference. Of all other items every bit pattern is valid.
+    // Hedges are enumerations, whose codes are verified before they become a reference. For all other items every bit
+    // pattern is valid.
     (@item Hedge) => { u32 };
     (@item $item:ident) => { $item };
     (@read Hedge $array:expr) => { hedges($array.read()?)? };
@@ -81,7 +82,7 @@ impl Rules {
     }
 }
 
-/// Hedges from their codes, where all codes are valid.
+/// Converts codes to hedges, if all codes are valid.
 #[allow(unsafe_code, reason = "foreign memory")]
 fn hedges(codes: &[u32]) -> Result<&[Hedge], Status> {
     if codes.iter().any(|code| *code as usize >= Hedge::ALL.len()) {

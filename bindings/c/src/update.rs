@@ -1,4 +1,4 @@
-//! Updates and findings in C.
+//! Updates and findings as C data.
 
 use flagred::{
     margin::Side,

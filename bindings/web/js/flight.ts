@@ -1,4 +1,4 @@
-/** Flight logs: read, assessed, explained, compared. */
+/** Reads, assesses, explains and compares flight logs. */
 
 import type { FlightDocument, Moment, Threshold, VerdictSettings } from './documents.js';
 import { beside, type Source } from './load.js';
@@ -22,18 +22,18 @@ export type {
 
 const guarded = guard(wasm.panicMessage);
 
-/** Loads the module for flight logs, from beside this file or from elsewhere. Calls after the first do nothing. */
+/** Loads the module for flight logs, from the file next to this one or from `source`. Later calls do nothing. */
 export async function startFlight(source?: Source): Promise<void> {
   await wasm.default({ module_or_path: source ?? (await beside('flight')) });
 }
 
-/** Only workers have it. */
+/** Available only in workers. */
 declare const FileReaderSync: new () => { readAsArrayBuffer(blob: Blob): ArrayBuffer };
 
-/** Gives `length` bytes of a log from `offset` on, fewer before its end, none at its end. */
+/** Returns `length` bytes of a log from `offset` on; fewer near its end, none at its end. */
 export type Read = (offset: number, length: number) => Uint8Array;
 
-/** Other thresholds and times; what is left out stays as it is. */
+/** Changed thresholds and times; omitted ones keep their values. */
 export interface VerdictChanges {
   warn?: LevelChanges;
   fail?: LevelChanges;
@@ -48,10 +48,10 @@ export interface LevelChanges {
   until?: Partial<Threshold>;
 }
 
-/** What is said of a flight, without its steps. `docs/json.md` describes it. */
+/** The assessment of a flight without its steps. `docs/json.md` describes it. */
 export type Brief = Omit<FlightDocument, 'steps'>;
 
-/** A stretch of time on the log's clock, in seconds; of a comparison, since each flight began. */
+/** A stretch of time on the log's clock, in seconds; for a comparison, since the start of each flight. */
 export interface Stretch {
   start_s: number;
   end_s: number;
@@ -72,25 +72,25 @@ export const PARTS = [
 ] as const;
 export type Part = (typeof PARTS)[number];
 
-/** The style sheet of {@link Assessment.part} and {@link Comparison.part}. */
+/** Returns the style sheet of {@link Assessment.part} and {@link Comparison.part}. */
 export const reportStyle = (): string => guarded(() => wasm.reportStyle());
 
-/** A profile with its rule set: which inputs, which rules, when to warn. */
+/** A profile with its rule set. It defines the inputs, and when to warn. */
 export class Profile {
   /** @internal */
   constructor(readonly inner: wasm.Profile) {}
 
-  /** The names of the shipped profiles; the first is the default. */
+  /** Returns the names of the shipped profiles; the first is the default. */
   static shipped(): string[] {
     return guarded(() => wasm.Profile.shipped());
   }
 
-  /** A shipped profile by its name. The text of a rule set stands in for the one that it names. */
+  /** Creates a shipped profile by its name. The text of a rule set replaces the one that it names. */
   static named(name = 'flagred', rules?: string): Profile {
     return new Profile(guarded(() => new wasm.Profile(name, undefined, rules)));
   }
 
-  /** A profile from its text, which findings call `file`. */
+  /** Creates a profile from its text; findings call it `file`. */
   static fromText(file: string, text: string, rules?: string): Profile {
     return new Profile(guarded(() => new wasm.Profile(file, text, rules)));
   }
@@ -103,12 +103,12 @@ export class Profile {
     return guarded(() => this.inner.text);
   }
 
-  /** What does not keep it from being used, drawn in its text. */
+  /** Warnings, which do not prevent its use, displayed in its text. */
   get warnings(): string {
     return guarded(() => this.inner.warnings);
   }
 
-  /** The signals that have to be read of a log to assess it with this profile and to draw the report. */
+  /** The signals that must be read from a log to assess it with this profile and to draw the report. */
   get signals(): string[] {
     return guarded(() => this.inner.signals);
   }
@@ -117,12 +117,15 @@ export class Profile {
     return JSON.parse(guarded(() => this.inner.verdict)) as VerdictSettings;
   }
 
-  /** The same profile with other thresholds and times. They are written into its text; what else stands there stays. */
+  /**
+   * Returns the same profile with other thresholds and times. They are written into its text, which otherwise does not
+   * change.
+   */
   withVerdict(changes: VerdictChanges): Profile {
     return new Profile(guarded(() => this.inner.withVerdict(JSON.stringify(changes))));
   }
 
-  /** Gives its memory back. */
+  /** Frees its memory. */
   free(): void {
     this.inner.free();
   }
@@ -133,19 +136,23 @@ export class Flight {
   private constructor(private readonly inner: wasm.Flight) {}
 
   /**
-   * Reads a log from front to back, plain or gzipped, in pieces of a megabyte. `name` is what messages and reports call it.
-   * Of the signals beside the motors only those named are kept ({@link Profile.signals}), or all.
+   * Reads a log from front to back, plain or gzipped, in pieces of a megabyte. `name` is its name in messages and
+   * reports. Of the signals that do not come from the motors, only those in `signals` are kept ({@link
+   * Profile.signals}), or all by default.
    */
   static read(name: string, read: Read, signals?: string[]): Flight {
     return new Flight(guarded(() => new wasm.Flight(name, read, signals)));
   }
 
-  /** Reads a log that is in memory. */
+  /** Reads a log from memory. */
   static fromBytes(name: string, bytes: Uint8Array, signals?: string[]): Flight {
     return Flight.read(name, (offset, length) => bytes.subarray(offset, offset + length), signals);
   }
 
-  /** Reads a file that the user chose: in a worker, where files can be read in turn. `progress` hears the share that is read. */
+  /**
+   * Reads a file that the user chose. It requires a worker, where files can be read synchronously. `progress` receives
+   * the share that has been read.
+   */
   static fromFile(file: File, signals?: string[], progress?: (share: number) => void): Flight {
     const reader = new FileReaderSync();
     const read: Read = (offset, length) => {
@@ -155,7 +162,7 @@ export class Flight {
     return Flight.read(file.name, read, signals);
   }
 
-  /** Whether all signals were read that a profile needs. */
+  /** Whether all signals that a profile needs were read. */
   serves(profile: Profile): boolean {
     return guarded(() => this.inner.serves(profile.inner));
   }
@@ -164,75 +171,75 @@ export class Flight {
     return new Assessment(guarded(() => this.inner.assess(profile.inner)));
   }
 
-  /** Gives the flight as flight CSV to `write`, piece by piece: all signals that were read. */
+  /** Writes the flight as flight CSV, with all signals that were read. `write` is called for each piece. */
   writeCsv(write: (piece: Uint8Array<ArrayBuffer>) => void): void {
     guarded(() => this.inner.writeCsv(write));
   }
 
-  /** What is lost in the CSV: the part that is damaged, and what a log has too much of. */
+  /** Describes what is lost in the CSV: damaged parts of the log, and data beyond its limits. */
   get warnings(): string[] {
     return guarded(() => this.inner.warnings());
   }
 
-  /** Gives its memory back. */
+  /** Frees its memory. */
   free(): void {
     this.inner.free();
   }
 }
 
-/** What is said of a flight. */
+/** The assessment of a flight. */
 export class Assessment {
   /** @internal */
   constructor(readonly inner: wasm.Assessment) {}
 
-  /** What `flagred assess --json` prints, to the byte. */
+  /** Returns the output of `flagred assess --json`, byte for byte. */
   json(): string {
     return guarded(() => this.inner.json());
   }
 
-  /** The same without the steps, which may be many. */
+  /** Returns the same document without the steps, of which there may be many. */
   brief(): Brief {
     return JSON.parse(guarded(() => this.inner.brief())) as Brief;
   }
 
-  /** What `flagred assess --csv` prints, in UTF-8. */
+  /** Returns the output of `flagred assess --csv`, in UTF-8. */
   csv(): Uint8Array<ArrayBuffer> {
     return guarded(() => this.inner.csv()) as Uint8Array<ArrayBuffer>;
   }
 
-  /** What `flagred assess --html` writes: a page that needs nothing beside it. */
+  /** Returns the output of `flagred assess --html`: a self-contained page. */
   html(): string {
     return guarded(() => this.inner.html());
   }
 
-  /** What `flagred assess --svg` writes; nothing where no risk is known. */
+  /** Returns the output of `flagred assess --svg`; `undefined` if no risk is known. */
   svg(): string | undefined {
     return guarded(() => this.inner.svg());
   }
 
-  /** The time that the report shows. */
+  /** The stretch of time that the report shows. */
   get stretch(): Stretch {
     const [start_s = 0, end_s = 0] = guarded(() => this.inner.stretch());
     return { start_s, end_s };
   }
 
-  /** A part of the report as HTML, in which every text is escaped; empty where there is nothing to show. */
+  /** Returns a part of the report as HTML in which all text is escaped; empty if there is nothing to show. */
   part(part: Part, stretch?: Stretch): string {
     return guarded(() => this.inner.part(part, stretch?.start_s, stretch?.end_s));
   }
 
-  /** What was known at a time, and which rules fire there. */
+  /** Returns the state at a time, and the rules that fire. */
   moment(t_s: number): Moment {
     return JSON.parse(guarded(() => this.inner.moment(t_s))) as Moment;
   }
 
-  /** Gives its memory back. */
+  /** Frees its memory. */
   free(): void {
     this.inner.free();
   }
 }
 
-/** Flights that were assessed with one profile, side by side. */
+/** Several flights that were assessed with one profile, side by side. */
 export class Comparison {
   private readonly inner: wasm.Comparison;
 
@@ -241,32 +248,32 @@ export class Comparison {
     for (const assessment of assessments) guarded(() => this.inner.add(assessment.inner));
   }
 
-  /** What `flagred assess --json` prints of these logs. */
+  /** Returns the output of `flagred assess --json` for these logs. */
   json(): string {
     return guarded(() => this.inner.json());
   }
 
-  /** What `flagred assess --csv` prints of these logs. */
+  /** Returns the output of `flagred assess --csv` for these logs. */
   csv(): Uint8Array<ArrayBuffer> {
     return guarded(() => this.inner.csv()) as Uint8Array<ArrayBuffer>;
   }
 
-  /** What `flagred assess --html` writes of these logs. */
+  /** Returns the output of `flagred assess --html` for these logs. */
   html(): string {
     return guarded(() => this.inner.html());
   }
 
-  /** The body of that page; of a stretch of time since each flight began, or of all of it. */
+  /** Returns the body of that page, for a stretch of time since the start of each flight, or for all of it. */
   part(stretch?: Stretch): string {
     return guarded(() => this.inner.part(stretch?.start_s, stretch?.end_s));
   }
 
-  /** How long the longest of the flights is, in seconds. */
+  /** The length of the longest flight, in seconds. */
   get length_s(): number {
     return guarded(() => this.inner.length_s());
   }
 
-  /** Gives its memory back. */
+  /** Frees its memory. */
   free(): void {
     this.inner.free();
   }

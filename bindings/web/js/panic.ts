@@ -1,9 +1,12 @@
-/** A defect of flagred. What ran is lost, and the module must be loaded again: in a new worker or a new process. */
+/**
+ * Thrown for a bug of flagred. The running work is lost, and the module must be loaded again in a new worker or a new
+ * process.
+ */
 export class Panic extends Error {
   override name = 'Panic';
 }
 
-/** Runs calls into a module; one that traps throws a {@link Panic} with the words that the module left. */
+/** Wraps calls into a module: if one traps, a {@link Panic} with the message of the module is thrown. */
 export function guard(panicMessage: () => string): <T>(call: () => T) => T {
   return (call) => {
     try {

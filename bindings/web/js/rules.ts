@@ -1,4 +1,7 @@
-/** Rule sets: an open text under an author's hands, a compiled rule set to evaluate and draw, other programs' formats. */
+/**
+ * Rule sets: open texts for editing, compiled rule sets for evaluation and pictures, and conversion from and to other
+ * formats.
+ */
 
 import type { Explanation } from './documents.js';
 import { beside, type Source } from './load.js';
@@ -9,12 +12,12 @@ export type { Explanation } from './documents.js';
 
 const guarded = guard(wasm.panicMessage);
 
-/** Loads the module for rule sets, from beside this file or from elsewhere. Calls after the first do nothing. */
+/** Loads the module for rule sets, from the file next to this one or from `source`. Later calls do nothing. */
 export async function startRules(source?: Source): Promise<void> {
   await wasm.default({ module_or_path: source ?? (await beside('rules')) });
 }
 
-/** A finding in a text; places count UTF-16 code units, as JavaScript does. */
+/** A finding in a text; offsets are in UTF-16 code units, as in JavaScript strings. */
 export interface Diagnostic {
   severity: 'error' | 'warning' | 'note';
   code: string;
@@ -22,21 +25,21 @@ export interface Diagnostic {
   help: string | null;
   from: number;
   to: number;
-  /** Counted from 1. */
+  /** The line, counted from 1. */
   line: number;
   related: { from: number; to: number; message: string }[];
 }
 
-/** What can be written at a place. */
+/** A completion. */
 export interface Completion {
   label: string;
-  /** What is written. */
+  /** The text to insert. */
   text: string;
   kind: 'keyword' | 'variable' | 'choice' | 'key' | 'signal';
   detail: string | null;
 }
 
-/** What a name means. */
+/** The meaning of a name. */
 export interface Hover {
   from: number;
   to: number;
@@ -50,29 +53,29 @@ export interface Edit {
   insert: string;
 }
 
-/** A point by which a term is dragged. */
+/** A handle for dragging a term. */
 export interface Handle {
-  /** The parameter that it moves: `peak`. */
+  /** The name of the parameter that it changes, such as `peak`. */
   name: string;
   x: number;
   degree: number;
-  /** How far it goes. */
+  /** The minimum of its position. */
   low: number;
   high: number;
-  /** Whether it moves up and down too. */
+  /** Whether it can also be moved vertically. */
   movesDegree: boolean;
 }
 
-/** A term as a curve: x and degree in turns. A number, which is no set, has none. */
+/** A term as a curve of alternating x and degree. It is empty for a number, which is not a fuzzy set. */
 export interface DrawnTerm {
   name: string;
-  /** As it stands in a rule set: `triangle: [0, 2, 4]`. */
+  /** Its shape in the syntax of rule sets: `triangle: [0, 2, 4]`. */
   shape: string;
   curve: number[];
   handles: Handle[];
 }
 
-/** A variable as it is drawn. Its range is `null` where it cannot be read. */
+/** A variable to draw. Its range is `null` if it cannot be read. */
 export interface DrawnVariable {
   name: string;
   description: string | null;
@@ -80,12 +83,12 @@ export interface DrawnVariable {
   isOutput: boolean;
   low: number | null;
   high: number | null;
-  /** The part where its terms change. */
+  /** The part of the range in which its terms change. */
   shown: [number | null, number | null];
   terms: DrawnTerm[];
 }
 
-/** A rule set or a profile as an editor shows it, whatever is wrong with it. Call {@link RuleText.free} when done. */
+/** A rule set or a profile in an editor; it may contain errors. Call {@link RuleText.free} when done. */
 export class RuleText {
   readonly #text: wasm.RuleText;
 
@@ -97,47 +100,47 @@ export class RuleText {
     return guarded(() => this.#text.isProfile);
   }
 
-  /** The rule set, or the profile with its rule set, compiled; throws what is wrong with it. */
+  /** Compiles the rule set, or the profile with its rule set; throws its errors. */
   ruleSet(): RuleSet {
     return new RuleSet(guarded(() => this.#text.ruleSet()));
   }
 
-  /** What `flagred check` finds. */
+  /** Returns the findings of `flagred check`. */
   findings(): Diagnostic[] {
     return parsed(() => this.#text.findings());
   }
 
-  /** What can be written at a place. */
+  /** Returns the completions at an offset. */
   completions(at: number): Completion[] {
     return parsed(() => this.#text.completions(at));
   }
 
-  /** What the name at a place means. */
+  /** Returns the meaning of the name at an offset. */
   hover(at: number): Hover | null {
     return parsed(() => this.#text.hover(at));
   }
 
-  /** Where the name at a place is defined. */
+  /** Returns the offset at which the name at `at` is defined. */
   definition(at: number): number | undefined {
     return guarded(() => this.#text.definition(at));
   }
 
-  /** The edits that give the name at a place another. */
+  /** Returns the edits that rename the name at an offset. */
   rename(at: number, name: string): Edit[] {
     return parsed(() => this.#text.rename(at, name));
   }
 
-  /** The text in the layout of `flagred fmt`. */
+  /** Returns the text as formatted by `flagred fmt`. */
   formatted(): string {
     return guarded(() => this.#text.formatted());
   }
 
-  /** Variables and terms to draw, inputs first. */
+  /** Returns the variables and terms to draw, inputs first. */
   variables(): DrawnVariable[] {
     return parsed(() => this.#text.variables());
   }
 
-  /** The edits that drag a point of a term: they change its numbers and nothing else. */
+  /** Returns the edits that move a handle of a term; they change only numbers. */
   drag(variable: number, term: number, handle: number, x: number, degree: number): Edit[] {
     return parsed(() => this.#text.drag(variable, term, handle, x, degree));
   }
@@ -154,20 +157,20 @@ export interface Variable {
   unit: string | null;
   low: number;
   high: number;
-  /** The part where its terms change. */
+  /** The part of the range in which its terms change. */
   shown: [number, number];
 }
 
-/** What a rule set has. */
+/** A description of a rule set. */
 export interface About {
   name: string;
   inputs: Variable[];
   outputs: Variable[];
-  /** The rules in words. */
+  /** The texts of the rules. */
   rules: string[];
-  /** The index of the output that a profile takes; 0 of a rule set. */
+  /** The index of the output that a profile uses as risk; 0 for a rule set. */
   output: number;
-  /** How a profile fills gaps between the rules. */
+  /** The method by which a profile fills gaps between the rules. */
   filling: string | null;
 }
 
@@ -175,44 +178,44 @@ export interface About {
 export interface Value {
   name: string;
   value: number | null;
-  /** Whether no rule fires and the value is the rule set's default. */
+  /** Whether no rule fires and the value is the default of the rule set. */
   isDefault: boolean;
   /** The largest firing strength. */
   coverage: number;
-  /** The number of the rule that has it, from 1; `null` where none fires. */
+  /** The number of the rule with that strength, from 1; `null` if none fires. */
   dominantRule: number | null;
-  /** Whether an input lay outside its range. */
+  /** Whether an input was outside its range. */
   clamped: boolean;
 }
 
-/** What a map shows: one output over one or two inputs, the others held. */
+/** The content of a map: one output over one or two inputs, with the others held at a value. */
 export interface View {
   /** The index of the output. */
   output: number;
-  /** The index of an input and the part of it that is shown; one or two. */
+  /** For one or two axes, the index of the input and the part of its range that is shown. */
   axes: { input: number; low: number; high: number }[];
-  /** The points along each axis. */
+  /** The number of points along each axis. */
   points: number;
-  /** A value for each input; those of the axes do not count. */
+  /** A value for each input; those of the axes are ignored. */
   held: number[];
 }
 
-/** The cells of a map: for each point of the first axis one for each of the second. NaN is none. */
+/** The cells of a map: for each point of the first axis one for each point of the second. NaN is unknown. */
 export interface Cells {
   values: Float64Array;
   /** The largest firing strength. */
   coverage: Float64Array;
-  /** The number of the rule that has it, from 1; NaN where none fires. */
+  /** The number of the rule with that strength, from 1; NaN if none fires. */
   dominantRules: Float64Array;
-  /** 1 where a profile filled a gap between rules. */
+  /** 1 if a profile filled a gap between rules, otherwise 0. */
   filled: Float64Array;
 }
 
-/** A rule set, compiled once. Call {@link RuleSet.free} when done. */
+/** A compiled rule set. Call {@link RuleSet.free} when done. */
 export class RuleSet {
   readonly #set: wasm.RuleSet;
 
-  /** Compiles a rule set in YAML, FIS, FLL, FCL or FML, or that of a profile; throws what is wrong with it. */
+  /** Compiles a rule set in YAML, FIS, FLL, FCL or FML, or the rule set of a profile; throws its errors. */
   constructor(text: string | wasm.RuleSet) {
     this.#set = typeof text === 'string' ? guarded(() => new wasm.RuleSet(text)) : text;
   }
@@ -221,12 +224,12 @@ export class RuleSet {
     return parsed(() => this.#set.about());
   }
 
-  /** The outputs at a point, which holds a value for each input. */
+  /** Returns the outputs at a point, which has a value for each input. */
   evaluate(point: number[]): Value[] {
     return parsed(() => this.#set.evaluate(Float64Array.from(point)));
   }
 
-  /** The outputs of many rows: a column for each input in, one for each output out. NaN is unknown. */
+  /** Evaluates many rows: takes one column for each input and returns one for each output. NaN is unknown. */
   evaluateColumns(columns: ArrayLike<number>[]): Float64Array[] {
     const rows = columns[0]?.length ?? 0;
     const inputs = new Float64Array(rows * columns.length);
@@ -235,18 +238,18 @@ export class RuleSet {
     return this.about().outputs.map((_, i) => values.slice(i * rows, (i + 1) * rows));
   }
 
-  /** Why the outputs at a point are what they are. */
+  /** Explains the outputs at a point. */
   explain(point: number[]): Explanation {
     return parsed(() => this.#set.explain(Float64Array.from(point)));
   }
 
-  /** Values for the inputs that are no axis: those of `fixed` that are numbers stay. */
+  /** Returns values for the inputs that are not axes; numbers in `fixed` are kept. */
   held(output: number, axes: number[], fixed: (number | null)[]): number[] {
     const known = Float64Array.from(fixed, (value) => value ?? NaN);
     return [...guarded(() => this.#set.held(output, Uint32Array.from(axes), known))];
   }
 
-  /** The cells of a map. */
+  /** Computes the cells of a map. */
   map(view: View): Cells {
     const all = viewed(view, (made) => this.#set.map(made));
     const cells = all.length / 4;
@@ -254,17 +257,17 @@ export class RuleSet {
     return { values: part(0), coverage: part(1), dominantRules: part(2), filled: part(3) };
   }
 
-  /** The picture of `flagred map`: SVG. */
+  /** Returns the picture of `flagred map` as SVG. */
   mapSvg(kind: 'map' | 'surface' | 'rules', view: View): string {
     return viewed(view, (made) => this.#set.mapSvg(kind, made));
   }
 
-  /** The picture of `flagred plot`: SVG. */
+  /** Returns the picture of `flagred plot` as SVG. */
   termsSvg(): string {
     return guarded(() => this.#set.termsSvg());
   }
 
-  /** The picture of `flagred explain`: SVG. */
+  /** Returns the picture of `flagred explain` as SVG. */
   explanationSvg(point: number[]): string {
     return guarded(() => this.#set.explanationSvg(Float64Array.from(point)));
   }
@@ -274,48 +277,51 @@ export class RuleSet {
   }
 }
 
-/** The document of `flagred check --json`, as text. A rule set that a profile names is a shipped one. */
+/** Returns the document of `flagred check --json` as text. A rule set that a profile names must be a shipped one. */
 export const checkRules = (text: string, file: string): string => guarded(() => wasm.checkRules(text, file));
 
-/** A text to start from. */
+/** A template text. */
 export interface Start {
   name: string;
   about: string;
   text: string;
 }
 
-/** The starter of `flagred new`, the shipped rule sets and profiles, and examples. */
+/** Returns the template of `flagred new`, the shipped rule sets and profiles, and examples. */
 export const startingPoints = (): Start[] => parsed(() => wasm.startingPoints());
 
 export type Format = 'FIS' | 'FLL' | 'FCL' | 'FML';
 
-/** A rule set in another format. */
+/** A converted rule set. */
 export interface Exchanged {
   text: string;
   /** The format that was read or written. */
   format: Format | 'YAML';
-  /** What is said in another way, and what is left out. */
+  /** Notes about content that is expressed differently, or was omitted. */
   notes: string[];
 }
 
-/** A rule set of another program in YAML; throws what it says that cannot be carried over, unless `lossy`. */
+/** Converts a rule set of another program to YAML; throws for content that cannot be converted, unless `lossy`. */
 export const importRules = (text: string, lossy = false): Exchanged => parsed(() => wasm.importRules(text, lossy));
 
-/** A rule set for another program; throws what the format cannot say, unless `lossy`. */
+/**
+ * Converts a rule set to the format of another program; throws for content that the format cannot represent, unless
+ * `lossy`.
+ */
 export const exportRules = (text: string, format: Format, lossy = false): Exchanged =>
   parsed(() => wasm.exportRules(text, format, lossy));
 
-/** Colours: red, green and blue of each. */
+/** Colours, each as red, green and blue. */
 export interface Colours {
-  /** Of values from low to high, 256. */
+  /** 256 colours of a scale from low to high values. */
   scale: Uint8Array;
-  /** Without order. */
+  /** Unordered colours. */
   distinct: Uint8Array;
-  /** Without order, dark enough for thin lines on white. */
+  /** Unordered colours that are dark enough for thin lines on white. */
   lines: Uint8Array;
 }
 
-/** The colours of flagred's pictures. */
+/** Returns the colours of flagred's pictures. */
 export function colours(): Colours {
   const all = guarded(() => wasm.colours());
   const part = (from: number, to: number) => all.slice(3 * from, 3 * to);

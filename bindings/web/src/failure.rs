@@ -1,10 +1,10 @@
-//! What is refused, as JavaScript's `Error`.
+//! Errors as JavaScript's `Error`.
 
 use fuzzy::drawing::visible_lines;
 use wasm_bindgen::JsError;
 
-/// An error with the words of the command line: the message, then a line of help where there is one. Characters that would be
-/// hidden are visible, as there; several findings stand on a line each.
+/// Creates an error with the words of the command line: the message, then a line of help if there is one. Hidden
+/// characters are made visible; each of several findings is on its own line.
 pub(crate) fn failure(message: impl std::fmt::Display, help: Option<&str>) -> JsError {
     let message = message.to_string();
     match help {

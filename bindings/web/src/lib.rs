@@ -1,9 +1,10 @@
 //! flagred for JavaScript: rule sets and flight logs in a browser's worker or in Node.
 //!
-//! What is refused is thrown as an `Error` with the words of the command line. Documents are JSON, the same as the command
-//! line's; columns and maps are `Float64Array`.
+//! Errors are thrown as an `Error` with the words of the command line. Documents are JSON, the same as those of the
+//! command line; columns and maps are `Float64Array`.
 //!
-//! It is compiled twice, with either feature: whoever looks at flights need not load what rule sets are edited with.
+//! It is compiled twice, once for each feature, so that programs that only read flights do not need to load the code
+//! for editing rule sets.
 
 mod failure;
 #[cfg(feature = "flight")]
@@ -15,7 +16,7 @@ use std::sync::Mutex;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
-/// What the last panic said. A panic ends the module: no call after it can be trusted but the one that asks for these words.
+/// The message of the last panic. After a panic only the function that returns this message may be called.
 static PANIC: Mutex<String> = Mutex::new(String::new());
 
 /// Runs when the module is loaded.
@@ -28,7 +29,7 @@ fn start() {
     }));
 }
 
-/// What the panic said that ended the module; empty where there was none.
+/// The message of the panic that ended the module; empty if there was none.
 #[wasm_bindgen(js_name = panicMessage)]
 pub fn panic_message() -> String {
     PANIC
@@ -42,7 +43,7 @@ pub fn version() -> String {
     env!("CARGO_PKG_VERSION").into()
 }
 
-/// A panic, so that tests see what becomes of one.
+/// Panics, for tests of how panics are handled.
 #[wasm_bindgen(js_name = panicNow)]
 #[expect(clippy::panic, reason = "it is asked for")]
 pub fn panic_now(words: &str) {

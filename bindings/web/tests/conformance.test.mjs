@@ -1,4 +1,4 @@
-// The conformance corpus of all languages through the package in Node: every outcome has the bits on file.
+// Runs the conformance corpus of all languages through the package in Node: every outcome has the recorded bits.
 
 import assert from 'node:assert/strict';
 import { readFile, readdir } from 'node:fs/promises';
@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { repository } from './installed.mjs';
 
-/** The text of a rule set with other operators and defuzzifiers, as a case asks for them. */
+/** The text of a rule set with the operators and defuzzifiers of a case. */
 function varied(text, settings) {
   const { defuzzifier, ...operators } = settings;
   let changed = text;
@@ -18,7 +18,7 @@ function varied(text, settings) {
   return written.length > 0 ? `${changed}\noperators: {${written.join(', ')}}\n` : changed;
 }
 
-/** The cases: where each stands, its rule set, its point, and for each output the bits on file. */
+/** The cases: location, rule set, point, and for each output the recorded bits. */
 async function corpus() {
   const folder = join(repository, 'tests/conformance');
   const onFile = new Map();

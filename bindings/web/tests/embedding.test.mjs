@@ -1,4 +1,4 @@
-// What the README of the package shows, in Chromium: a worker that assesses a log, and a bundle.
+// Runs the examples of the package's README in Chromium: a worker that assesses a log, and a bundle.
 
 import assert from 'node:assert/strict';
 import { cp, readFile, writeFile } from 'node:fs/promises';
@@ -24,7 +24,7 @@ after(async () => {
   await server.close();
 });
 
-/** Opens a page with a script; what that logs is kept in `said`. */
+/** Opens a page with a script; its log messages are collected in `said`. */
 async function opened(t, script) {
   await writeFile(
     join(folder, 'index.html'),

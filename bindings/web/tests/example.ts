@@ -1,4 +1,4 @@
-// Compiled by package.test.mjs: what users write, with the types that they are given.
+// Compiled by package.test.mjs: code of users, with the types of the package.
 
 import { Flight, Panic, Profile, RuleSet, RuleText, start, type Diagnostic, type Moment, type Value } from 'flagred';
 

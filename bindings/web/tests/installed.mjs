@@ -1,4 +1,4 @@
-// The package as users have it: packed, and installed in a folder of its own.
+// The package as users get it: packed, and installed in a separate folder.
 
 import { execFile } from 'node:child_process';
 import { mkdtemp, rm, writeFile } from 'node:fs/promises';
@@ -11,7 +11,7 @@ import { promisify } from 'node:util';
 export const repository = fileURLToPath(new URL('../../../', import.meta.url));
 export const run = promisify(execFile);
 
-/** Packs and installs the package: the folder, and the files that were packed. Gone when the tests of a file are. */
+/** Packs and installs the package; returns the folder and the packed files. It is removed after the tests of a file. */
 export async function install() {
   const folder = await mkdtemp(join(tmpdir(), 'flagred-package-'));
   after(() => rm(folder, { recursive: true }));

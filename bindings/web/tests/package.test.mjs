@@ -7,7 +7,7 @@ import { test } from 'node:test';
 import { browser, serve, tab } from '../../../web/tests/page.mjs';
 import { install, repository, run } from './installed.mjs';
 
-/** What the package may weigh, packed. */
+/** The maximum size of the packed package. */
 const MOST_BYTES = 2_000_000;
 
 const SCRIPT = `
@@ -80,7 +80,7 @@ for (const resolution of ['nodenext', 'bundler']) {
     const compiled = run(tsc, [...flags, ...target, 'example.ts'], { cwd: folder });
     const told = await compiled.then(() => '', (failed) => failed.stdout);
     assert.equal(told, '');
-    // A wrong use is an error.
+    // Wrong use is an error.
     await writeFile(join(folder, 'wrong.ts'), "import { RuleSet } from 'flagred'; new RuleSet(1);");
     await assert.rejects(run(tsc, [...flags, ...target, 'wrong.ts'], { cwd: folder }), { stdout: /TS2345/ });
   });

@@ -1,4 +1,4 @@
-// A defect of flagred is an exception of its own, with the words of the panic.
+// A bug of flagred throws a special exception, with the message of the panic.
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
@@ -20,7 +20,7 @@ test('what is refused is an error and no defect, and it goes on', async () => {
   assert.ok(new RuleSet(text).evaluate([8, 9])[0].value > 22);
 });
 
-// The last one: nothing can be asked of the module after it.
+// This test is the last one: the module is unusable after it.
 test('a panic is caught, with its words', async () => {
   await start();
   assert.throws(

@@ -1,4 +1,5 @@
-// The README of the package runs as printed: what follows `console.log(...); //`, and comments of their own, is what it prints.
+// The README of the package runs as printed: the comments after `console.log(...); //`, and those on their own lines,
+// are the expected output.
 
 import assert from 'node:assert/strict';
 import { cp, readFile, writeFile } from 'node:fs/promises';
@@ -7,7 +8,7 @@ import { test } from 'node:test';
 import { install, repository, run } from './installed.mjs';
 
 const readme = await readFile(join(repository, 'bindings/web/README.md'), 'utf8');
-// Blocks that begin with the name of a file are for browsers: embedding.test.mjs runs them.
+// Blocks that begin with the name of a file are for browsers; embedding.test.mjs runs them.
 const file = /^\/\/ (\w+\.js)\b/;
 const all = [...readme.matchAll(/^```js\n(.*?)^```$/gms)].map(([, code]) => code);
 const blocks = all.filter((code) => !file.test(code));
@@ -15,7 +16,7 @@ const written = all.map((code) => file.exec(code)?.[1]);
 
 const { folder, files } = await install();
 
-/** What a block says that it prints. */
+/** The expected output in a block. */
 function said(code) {
   const printed = code.split('\n').map((line) => /^\/\/ (.*)$|console\.log\(.*\); \/\/ (.*)$/.exec(line));
   return printed.filter((found) => found).map(([, own, behind]) => own ?? behind);

@@ -1,21 +1,24 @@
-/** What the address says of the flight room: it can be linked to, but for the logs, which stay on the user's machine. */
+/**
+ * The state of the flight room in its address. It can be linked to, except for the logs, which stay on the user's
+ * machine.
+ */
 
 import type { Stretch, VerdictChanges } from 'flagred';
 import { isUnchanged } from './whatif';
 
 export interface Place {
   example: string | undefined;
-  /** A shipped profile's name; the default is not said. */
+  /** The name of a shipped profile; `undefined` for the default. */
   profile: string | undefined;
-  /** Other thresholds. */
+  /** Changed thresholds. */
   changes: VerdictChanges;
-  /** The cursor's time, in seconds. */
+  /** The time of the cursor, in seconds. */
   t_s: number | undefined;
-  /** The stretch that is shown; nothing for all of the flight. */
+  /** The stretch that is shown; `undefined` for the whole flight. */
   stretch: Stretch | undefined;
 }
 
-/** What an address says; what is no number or no JSON is not said. */
+/** Parses an address; invalid numbers and JSON are ignored. */
 export function placeIn(address: URLSearchParams): Place {
   const number = (name: string) => {
     const value = parseFloat(address.get(name) ?? '');
@@ -40,7 +43,7 @@ function changesIn(text: string | null): VerdictChanges {
   }
 }
 
-/** A place as an address. */
+/** Converts a state to an address. */
 export function said({ example, profile, changes, t_s, stretch }: Place): URLSearchParams {
   const address = new URLSearchParams();
   if (example) address.set('example', example);

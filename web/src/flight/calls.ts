@@ -1,6 +1,6 @@
 /**
- * What the flight room asks of its worker. Each call names the log and the profile: what it takes is kept from call to call, and
- * made again where it is gone, as after a restart.
+ * The calls of the flight room to its worker. Each call names the log and the profile. Their data is kept between
+ * calls, and loaded again if it is gone, as after a restart.
  */
 
 import {
@@ -25,7 +25,7 @@ export interface Log {
   file: File;
 }
 
-/** A shipped profile's name, or a text and the name of its file; and a rule set that stands in for the one it names. */
+/** The name of a shipped profile, or a text and the name of its file; and a rule set that replaces the one it names. */
 export interface ProfileSource {
   name: string;
   text?: string;
@@ -34,7 +34,7 @@ export interface ProfileSource {
 
 export interface ProfileFacts extends ProfileSource {
   text: string;
-  /** Its own name. */
+  /** The name in its text. */
   title: string;
   warnings: string;
   verdict: VerdictSettings;
@@ -47,7 +47,7 @@ const profiles = new Map<string, Profile>();
 /** The latest assessment of each log, and the key of its profile. */
 const assessments = new Map<number, { key: string; assessment: Assessment }>();
 
-/** Profiles that are kept compiled. */
+/** The maximum number of compiled profiles that are kept. */
 const MOST_PROFILES = 8;
 
 const keyOf = ({ name, text, rules }: ProfileSource) => JSON.stringify([text ?? name, rules]);
@@ -87,7 +87,7 @@ function assessmentOf(tell: Tell, log: Log, source: ProfileSource): Assessment {
   if (known?.key === key) return known.assessment;
   const profile = profileOf(source);
   const flight = flightOf(tell, log, profile);
-  // Before the new one is made, so that memory holds one of them.
+  // Freed before the new one is created, so that memory contains only one of them.
   assessments.get(log.id)?.assessment.free();
   assessments.delete(log.id);
   const assessment = flight.assess(profile);
@@ -95,12 +95,12 @@ function assessmentOf(tell: Tell, log: Log, source: ProfileSource): Assessment {
   return assessment;
 }
 
-/** The shipped profiles, and the look of the report. */
+/** Returns the names of the shipped profiles, and the style sheet of the report. */
 export function beginFlights(_tell: Tell): { shipped: string[]; style: string } {
   return { shipped: Profile.shipped(), style: reportStyle() };
 }
 
-/** What a profile says, or why it cannot be used. */
+/** Returns the properties of a profile, or the reason why it cannot be used. */
 export function profileFacts(_tell: Tell, source: ProfileSource, changes: VerdictChanges = {}): ProfileFacts {
   const base = profileOf(source);
   const changed = base.withVerdict(changes);
@@ -109,13 +109,13 @@ export function profileFacts(_tell: Tell, source: ProfileSource, changes: Verdic
   return { ...source, text, title, warnings, verdict };
 }
 
-/** The verdict of a log. */
+/** Returns the assessment of a log. */
 export function assessLog(tell: Tell, log: Log, source: ProfileSource): { brief: Brief; stretch: Stretch } {
   const assessment = assessmentOf(tell, log, source);
   return { brief: assessment.brief(), stretch: assessment.stretch };
 }
 
-/** Parts of the report of a log as HTML, for a stretch of time or all of it. */
+/** Returns parts of the report of a log as HTML, for a stretch of time or for all of it. */
 export function reportParts(
   tell: Tell,
   log: Log,
@@ -127,12 +127,12 @@ export function reportParts(
   return parts.map((part) => [part, assessment.part(part, stretch)]);
 }
 
-/** What was known at a time of a flight, and why. */
+/** Returns the state at a time of a flight, with an explanation. */
 export function momentOf(tell: Tell, log: Log, source: ProfileSource, t_s: number): Moment {
   return assessmentOf(tell, log, source).moment(t_s);
 }
 
-/** The comparison of several logs as HTML. */
+/** Returns the comparison of several logs as HTML. */
 export function compareLogs(
   tell: Tell,
   logs: Log[],
@@ -153,7 +153,7 @@ function compared<T>(tell: Tell, logs: Log[], source: ProfileSource, use: (all: 
 
 const TYPES = { html: 'text/html', csv: 'text/csv', json: 'application/json' };
 
-/** What the command line writes of a log, or of several, to the byte. */
+/** Returns the output of the command line for one or several logs, byte for byte. */
 export function downloadLogs(tell: Tell, logs: Log[], source: ProfileSource, kind: Download): Blob {
   const [only] = logs;
   const whole =
@@ -163,7 +163,7 @@ export function downloadLogs(tell: Tell, logs: Log[], source: ProfileSource, kin
   return new Blob([whole], { type: TYPES[kind] });
 }
 
-/** A log as flight CSV with all its signals, and what is lost in it. */
+/** Converts a log to flight CSV with all its signals, and describes what is lost. */
 export function convertLog(tell: Tell, { file }: Log): { csv: Blob; warnings: string[] } {
   const flight = Flight.fromFile(file, undefined, tell);
   try {
@@ -175,7 +175,7 @@ export function convertLog(tell: Tell, { file }: Log): { csv: Blob; warnings: st
   }
 }
 
-/** Gives back the memory of a log. */
+/** Frees the memory of a log. */
 export function forgetLog(_tell: Tell, id: number): void {
   assessments.get(id)?.assessment.free();
   assessments.delete(id);

@@ -1,4 +1,4 @@
-/** The charts of a report: what their curves say at a time. The curves themselves are the data. */
+/** The charts of a report: the values of their curves at a time. The curves themselves are the data. */
 
 export interface Chart {
   box: HTMLElement;
@@ -11,16 +11,16 @@ export interface Chart {
   input: number | undefined;
   unit: string;
   cursor: SVGPathElement;
-  /** What follows the cursor's place in its path. */
+  /** The values after the cursor in its path. */
   tail: string;
   outputs: HTMLElement[];
   lines: SVGPathElement[];
-  /** The points of the lines, read when they are first asked for. */
+  /** The points of the lines, parsed on first use. */
   curves: Curve[] | undefined;
   events: { x_s: number; text: string }[];
 }
 
-/** Seconds since the start, and values; NaN where the line is broken. */
+/** Seconds since the start, and values; NaN where the line is interrupted. */
 interface Curve {
   x_s: number[];
   values: number[];
@@ -40,7 +40,7 @@ interface Axis {
   high: number;
 }
 
-/** The charts within an element, which get a name for those who do not see them. */
+/** Finds the charts within an element, and gives them names for screen readers. */
 export function chartsIn(root: ParentNode): Chart[] {
   const charts: Chart[] = [];
   for (const box of root.querySelectorAll<HTMLElement>('.panel')) {
@@ -73,7 +73,7 @@ export function chartsIn(root: ParentNode): Chart[] {
   return charts;
 }
 
-/** The decision map within an element. */
+/** Finds the decision map within an element. */
 export function mapIn(root: ParentNode): DecisionMap | undefined {
   const box = root.querySelector<HTMLElement>('.map');
   const here = box?.querySelector<SVGPathElement>('.here');
@@ -91,7 +91,7 @@ export function mapIn(root: ParentNode): DecisionMap | undefined {
   };
 }
 
-/** Reads the curves of a chart; it takes a millisecond or two. */
+/** Parses the curves of a chart, which takes a millisecond or two. */
 export function curvesOf(chart: Chart): Curve[] {
   chart.curves ??= chart.lines.map((line) => {
     const curve: Curve = { x_s: [], values: [] };
@@ -109,7 +109,7 @@ export function curvesOf(chart: Chart): Curve[] {
   return chart.curves;
 }
 
-/** The latest value at or before a place; NaN where it is unknown. */
+/** The latest value at or before `x`; NaN if it is unknown. */
 export function held({ x_s, values }: Curve, x: number): number {
   let low = 0;
   let high = x_s.length;
@@ -121,13 +121,13 @@ export function held({ x_s, values }: Curve, x: number): number {
   return values[low - 1] ?? NaN;
 }
 
-/** A value as the report says it. */
+/** Formats a value as in the report. */
 export function said(value: number, unit = ''): string {
   if (!Number.isFinite(value)) return 'unknown';
   return String(Number(value.toPrecision(3))) + (unit ? ` ${unit}` : '');
 }
 
-/** Puts the cursor of a chart at a place, and shows the values there. */
+/** Moves the cursor of a chart, and shows the values there. */
 export function point(chart: Chart, x_s: number): void {
   chart.cursor.setAttribute('d', `M${Number.isFinite(x_s) ? x_s.toFixed(4) : -1}${chart.tail}`);
   curvesOf(chart).forEach((curve, i) => {
@@ -136,9 +136,9 @@ export function point(chart: Chart, x_s: number): void {
   });
 }
 
-/** Puts the point of the map where the inputs are. */
+/** Moves the point of the map to the values of the inputs. */
 export function locate(map: DecisionMap, inputs: ReadonlyMap<number, number>): void {
-  // What lies beyond the map is at its edge, as the values that the rules use are.
+  // A point beyond the map is shown at its edge, like the clamped values that the rules use.
   const along = ({ input, low, high }: Axis) =>
     Math.min(1, Math.max(0, ((inputs.get(input) ?? NaN) - low) / (high - low))) * map.size;
   const [across, up] = [along(map.x), along(map.y)];

@@ -1,4 +1,4 @@
-/** The menu of what can be kept of a flight. */
+/** The menu of files that can be downloaded for a flight. */
 
 import { h } from '../dom';
 import type { Download } from './calls';
@@ -12,10 +12,10 @@ const WORDS: Record<Kind, string> = {
   flight: 'Flight CSV',
 };
 
-/** How the names of the files end. */
+/** The endings of the file names. */
 export const ENDINGS: Record<Kind, string> = { html: '.html', csv: '.steps.csv', json: '.json', flight: '.csv' };
 
-/** A menu that closes when one chooses, or goes elsewhere. */
+/** Creates a menu that closes after a choice, or when the focus leaves it. */
 export function downloadMenu(choose: (kind: Kind) => void): HTMLElement {
   const body = h('div', { class: 'menu-body' });
   const menu = h('details', { class: 'menu' }, h('summary', { class: 'button' }, 'Download'), body);

@@ -1,4 +1,4 @@
-/** Where logs are dropped or chosen. */
+/** The zone where logs are dropped or chosen. */
 
 import { h } from '../dom';
 
@@ -9,7 +9,7 @@ interface Actions {
   takeExample(): void;
 }
 
-/** The zone; files may be dropped anywhere in the room, which is `root`. */
+/** Creates the zone; files may be dropped anywhere in the room, which is `root`. */
 export function dropZone(root: HTMLElement, actions: Actions): HTMLElement {
   const input = h('input', { type: 'file', multiple: true, 'aria-label': 'Flight logs', class: 'visually-hidden' });
   input.addEventListener('change', () => {

@@ -1,4 +1,4 @@
-/** A flight to try: a simulated octocopter that a gust nearly throws down. Loaded when it is asked for. */
+/** An example flight: a simulated octocopter that a gust nearly overturns. Loaded on demand. */
 
 import gust from './gust.csv.gz';
 

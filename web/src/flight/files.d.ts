@@ -1,4 +1,4 @@
-/** A file as its bytes. */
+/** The bytes of a file. */
 declare module '*.gz' {
   const bytes: Uint8Array<ArrayBuffer>;
   export default bytes;

@@ -1,23 +1,24 @@
-/** What pointers do on a chart: point at a time, select a stretch, zoom with two fingers or the wheel. */
+/** Pointer gestures on a chart: point at a time, select a stretch, zoom with two fingers or the wheel. */
 
 export interface Gestures {
-  /** Points at a place of the chart, from 0 at its left edge to 1. */
+  /** Points at a position on the chart, from 0 at its left edge to 1. */
   point(share: number): void;
-  /** Zooms to what lies between two places. They may lie outside: then it zooms out. */
+  /** Zooms to the part between two positions. If these are outside the chart, it zooms out. */
   zoom(from: number, to: number): void;
-  /** A stretch is being selected, or no longer. */
+  /** A selection changed; `undefined` when it ended. */
   select(area: HTMLElement, ends: [number, number] | undefined): void;
 }
 
-/** A pointer that moved less has not selected anything, in pixels. */
+/** The minimum movement of a selection, in pixels. */
 const LEAST_PX = 8;
 
 /**
- * Listens to the pointers on all charts in an element. `areaOf` gives the chart's area that an event is about. Where the charts
- * are in a shadow root, the element is its host: browsers do not always hand wheel events on to listeners of a shadow root.
+ * Handles the pointers on all charts in an element. `areaOf` returns the chart's area of an event. If the charts are in
+ * a shadow root, the element is its host, because browsers do not always pass wheel events to listeners of a shadow
+ * root.
  */
 export function gestures(element: HTMLElement, areaOf: (event: Event) => HTMLElement | undefined, on: Gestures): void {
-  /** The pointers that are down on one area. */
+  /** The pointers that are pressed on one area. */
   let area: HTMLElement | undefined;
   const down = new Map<number, { from: number; now: number }>();
 
@@ -69,7 +70,7 @@ export function gestures(element: HTMLElement, areaOf: (event: Event) => HTMLEle
   listen<PointerEvent>('pointerup', (event) => end(event, false));
   listen<PointerEvent>('pointercancel', (event) => end(event, true));
 
-  /** What was between the fingers is between them after, too. */
+  /** The part between the fingers stays between them. */
   function pinch(one: { from: number; now: number }, other: { from: number; now: number }): void {
     const [apart, before] = [other.now - one.now, other.from - one.from];
     if (Math.abs(apart) < 0.02 || Math.abs(before) < 0.02) return;

@@ -1,4 +1,4 @@
-/** The logs that were dropped: each is waiting, read, assessed or refused. */
+/** The list of logs: each is waiting, being read, assessed or refused. */
 
 import type { Brief, Stretch } from 'flagred';
 import { fill, h } from '../dom';
@@ -7,14 +7,14 @@ import type { Log } from './calls';
 export interface Entry {
   log: Log;
   state: 'waiting' | 'reading' | 'done' | 'refused';
-  /** The share of the file that was read. */
+  /** The share of the file that has been read. */
   share: number;
-  /** With the profile and its changes. */
+  /** The assessment with the profile and its changes. */
   brief?: Brief;
   stretch?: Stretch;
-  /** The verdict with the profile alone. */
+  /** The verdict with the unchanged profile. */
   unchanged?: Brief['verdict'];
-  /** Why there is no assessment: the command line's words. */
+  /** The reason why there is no assessment, in the words of the command line. */
   refusal?: string;
 }
 
@@ -49,7 +49,7 @@ function about(entry: Entry): string {
   }
 }
 
-/** The list; only what changed of it is drawn anew. */
+/** Creates the list; only changed entries are drawn again. */
 export function logList(actions: Actions): LogList {
   const list = h('ul', { class: 'logs', 'aria-label': 'Flights' });
   const rows = new Map<Entry, { element: HTMLElement; update(isCurrent: boolean): void }>();

@@ -1,4 +1,4 @@
-/** What was known at the cursor's time, and the rules that fire there. */
+/** The state at the time of the cursor, and the rules that fire. */
 
 import type { Moment } from 'flagred';
 import { fill, h, type Child } from '../dom';
@@ -9,16 +9,16 @@ export interface MomentPanel {
   show(moment: Moment | undefined, events: string[]): void;
 }
 
-/** Rules that are listed; the others hardly count. */
+/** The maximum number of rules in the list; the others hardly matter. */
 const MOST_RULES = 8;
 
 const percent = (value: number | null | undefined) => (value === null || value === undefined ? 'unknown' : `${said(value)} %`);
 
-/** A panel that is empty at first. */
+/** Creates a panel, which is empty at first. */
 export function momentPanel(): MomentPanel {
   const head = h('summary', {}, 'At the cursor');
   const body = h('div', { class: 'moment-body' });
-  // On a phone it lies over the report: there it opens when it is touched.
+  // On a phone it covers the report, so it is closed at first.
   const open = matchMedia('(min-width: 64rem)').matches;
   const element = h('details', { class: 'moment card', open }, head, body);
   return {

@@ -1,42 +1,45 @@
-/** The report of a flight, or the comparison of several, drawn part by part, with a cursor and a zoom that its charts share. */
+/**
+ * Draws the report of a flight, or the comparison of several, part by part, with a cursor and a zoom that its charts
+ * share.
+ */
 
 import type { Part } from 'flagred';
 import { fragment, h } from '../dom';
 import { chartsIn, curvesOf, locate, mapIn, held, point, type Chart, type DecisionMap } from './charts';
 import { gestures } from './gestures';
 
-/** What happens on the charts. */
+/** Handles events on the charts. */
 export interface Listener {
   /** The cursor was moved; 0 is the left edge of the charts, 1 the right one. */
   onPoint(share: number): void;
-  /** A stretch between two places of the charts is asked for; they may lie outside. */
+  /** The part between two positions of the charts is requested; they may be outside. */
   onZoom(from: number, to: number): void;
-  /** A flight of a comparison is asked for, by its place in it. */
+  /** A flight of a comparison was chosen, by its index. */
   onFlight(place: number): void;
 }
 
 export interface Report {
   element: HTMLElement;
-  /** Draws parts, those that are not named stay. Gives up where another drawing begins; then it gives `false`. */
+  /** Draws parts; those that are not named do not change. Returns `false` if another drawing started meanwhile. */
   draw(parts: readonly (readonly [Part | 'comparison', string])[], isAll: boolean): Promise<boolean>;
-  /** Takes everything away. */
+  /** Removes everything. */
   clear(): void;
-  /** Shows the charts with another stretch of time until they are drawn anew: the places of its ends. */
+  /** Shows the charts with another stretch of time until they are drawn again, given the positions of its ends. */
   preview(from: number, to: number): void;
-  /** Puts the cursor of all charts at a place. */
+  /** Moves the cursor of all charts. */
   point(share: number): void;
-  /** The messages of the log near a place. */
+  /** Returns the messages of the log near a position. */
   near(share: number): string[];
 }
 
 interface Section {
   element: HTMLElement;
   charts: Chart[];
-  /** Whether there is nothing to show of the whole flight either. */
+  /** Whether there is nothing to show for the whole flight either. */
   isEmpty: boolean;
 }
 
-/** What the style sheet of the report does not know: it is a page there. */
+/** Styles that the style sheet of the report lacks, because it is written for a page. */
 const STYLE = `
 :host{display:block;min-width:0}
 section{content-visibility:auto;contain-intrinsic-size:auto 20rem}
@@ -52,10 +55,10 @@ a{color:var(--accent)}
 
 const nextTask = () => new Promise<void>((resolve) => setTimeout(resolve));
 
-/** A report with the style sheet of the command line's. */
+/** Creates a report with the style sheet of the command line's reports. */
 export function report(style: string, listener: Listener): Report {
   const element = h('div', { class: 'report' });
-  // Its style sheet is that of a whole page: it ends at this border.
+  // Its style sheet is written for a whole page, so it is confined to this shadow root.
   const root = element.attachShadow({ mode: 'open' });
   const sheet = new CSSStyleSheet();
   sheet.replaceSync(style.replaceAll(':root', ':host') + STYLE);
@@ -83,7 +86,7 @@ export function report(style: string, listener: Listener): Report {
     return known;
   }
 
-  /** Reads the curves bit by bit, and shows what they say at the cursor. */
+  /** Parses the curves step by step, and shows their values at the cursor. */
   async function read(of: Iterable<Chart>, mine: number): Promise<boolean> {
     for (const chart of of) {
       curvesOf(chart);
@@ -146,7 +149,7 @@ export function report(style: string, listener: Listener): Report {
       for (const [name, html] of parts) {
         const made = section(name);
         const drawn = document.createDocumentFragment();
-        // A chart at a time, so that no task is long.
+        // One chart at a time, so that no task is long.
         for (const piece of html.split(/(?=<figure class="panel)/)) {
           drawn.append(fragment(piece));
           await nextTask();
@@ -154,7 +157,7 @@ export function report(style: string, listener: Listener): Report {
         }
         if (isAll) made.isEmpty = !html;
         else if (!html && !made.isEmpty) drawn.append(h('p', { class: 'nothing' }, 'Nothing is known in this stretch of time.'));
-        // What may scroll can be scrolled by keys.
+        // Elements that may scroll can also be scrolled by keys.
         for (const wide of drawn.querySelectorAll<HTMLElement>('pre, .scroll')) wide.tabIndex = 0;
         made.charts = chartsIn(drawn);
         if (name === 'map') map = mapIn(drawn);

@@ -1,4 +1,4 @@
-/** The flight room: logs are dropped, assessed and looked at. */
+/** The flight room, where logs are dropped, assessed and displayed. */
 
 import type { Part, Stretch, VerdictChanges } from 'flagred';
 import type { App, Room } from '../app';
@@ -16,7 +16,7 @@ import { timeBar } from './timebar';
 import { within, zoomed } from './time';
 import { isUnchanged, whatIf } from './whatif';
 
-/** The parts of a report that change with the stretch of time. */
+/** The parts of a report that depend on the stretch of time. */
 const OVER_TIME: readonly Part[] = ['risk', 'inputs', 'motors', 'attitude'];
 
 /** Opens the room. */
@@ -29,7 +29,7 @@ export function open(root: HTMLElement, app: App): Room {
   let base: ProfileSource = { name: begun.profile ?? 'flagred' };
   let changes: VerdictChanges = begun.changes;
   let facts: ProfileFacts | undefined;
-  /** What can be shown, what is shown of it, and what the charts were drawn for: in seconds. */
+  /** The whole stretch, the stretch that is shown, and the stretch for which the charts were drawn, in seconds. */
   let whole: Stretch = { start_s: 0, end_s: 1 };
   let shown = begun.stretch;
   let drawn: Stretch = whole;
@@ -95,7 +95,7 @@ export function open(root: HTMLElement, app: App): Room {
     wanted();
   });
 
-  /** What is given up needs no words; whatever else goes wrong is told. */
+  /** Reports errors of some work, except cancellation. */
   function quiet(work: Promise<unknown>): void {
     work.catch((error: Error) => {
       if (!(error instanceof Cancelled)) app.say(told(error));
@@ -121,7 +121,7 @@ export function open(root: HTMLElement, app: App): Room {
   }
 
   let isPumping = false;
-  /** Reads the logs that wait, one after the other. */
+  /** Reads the waiting logs one after another. */
   async function pump(): Promise<void> {
     if (isPumping) return;
     isPumping = true;
@@ -147,7 +147,7 @@ export function open(root: HTMLElement, app: App): Room {
       if (isUnchanged(changes)) entry.unchanged = entry.brief?.verdict;
     } catch (error) {
       if (error instanceof Cancelled) {
-        // Another log was given up, and the worker with it.
+        // Another log was cancelled, and the worker with it.
         entry.state = 'waiting';
         entry.share = 0;
         return;
@@ -228,7 +228,10 @@ export function open(root: HTMLElement, app: App): Room {
     await redraw(true);
   }
 
-  /** Draws the report, or of it what changes with the stretch of time. What is asked for meanwhile is drawn after. */
+  /**
+   * Draws the report, or only the parts that depend on the stretch of time. A request during drawing is handled
+   * afterwards.
+   */
   const redraw = (isAll: boolean): Promise<void> => {
     isStale ||= isAll;
     return drawAgain();
@@ -273,12 +276,12 @@ export function open(root: HTMLElement, app: App): Room {
     quiet(redraw(false));
   }
 
-  /** Moves the cursor by steps of a five-hundredth of what is shown. */
+  /** Moves the cursor by steps of 1/500 of the shown stretch. */
   function move(steps: number): void {
     pointAt(cursor_s + (steps * lengthOf(view())) / 500);
   }
 
-  /** Points at a time that may lie outside of what is shown: then other times are shown. */
+  /** Moves the cursor to a time; if it is outside the shown stretch, the stretch moves too. */
   function seek(t_s: number): void {
     const { start_s, end_s } = view();
     const half_s = lengthOf(view()) / 2;
@@ -298,7 +301,7 @@ export function open(root: HTMLElement, app: App): Room {
     write();
   }
 
-  /** Asks what was known at the cursor; of many places that it passes only the last counts. */
+  /** Requests the state at the cursor; while the cursor moves, only its latest position counts. */
   const follow = latest(async () => {
     if (isComparing || current?.state !== 'done') return;
     const entry = current;
@@ -327,7 +330,7 @@ export function open(root: HTMLElement, app: App): Room {
     timer = window.setTimeout(() => quiet(useProfile(base, changes)), 60);
   }
 
-  /** Takes another profile, or other thresholds of it, and assesses all logs again: the one that is looked at first. */
+  /** Uses another profile, or other thresholds of it, and assesses all logs again, beginning with the displayed one. */
   const useProfile = latest(async (wanted: ProfileSource, changed: VerdictChanges) => {
     try {
       const plain = await engine.call('profileFacts', wanted);
@@ -394,7 +397,7 @@ export function open(root: HTMLElement, app: App): Room {
   }
 
   let written = 0;
-  /** Says in the address what is looked at, but not with every move of the pointer. */
+  /** Writes the state of the room into the address, but not with every movement of the pointer. */
   function write(): void {
     clearTimeout(written);
     const profile = base.text === undefined && base.name !== shipped[0] ? base.name : undefined;
@@ -437,10 +440,10 @@ export function open(root: HTMLElement, app: App): Room {
   };
 }
 
-/** The words of an error; those of a defect are told apart from a refusal. */
+/** The message for an error; bugs are distinguished from refusals. */
 const told = (error: Error): string => (error instanceof Trapped ? `flagred has a defect: ${error.message}` : error.message);
 
-/** A profile that was chosen, with its rule set where that was chosen, too. */
+/** Reads a profile that was chosen, with its rule set if that was chosen too. */
 async function profileIn(files: File[]): Promise<ProfileSource> {
   const texts = await Promise.all(files.map(async (file) => ({ name: file.name, text: await file.text() })));
   const isProfile = ({ text }: { text: string }) => /^flagred\s*:/m.test(text);

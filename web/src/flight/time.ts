@@ -2,10 +2,10 @@
 
 import type { Stretch } from 'flagred';
 
-/** Less is not shown, in seconds. */
+/** The shortest stretch that is shown, in seconds. */
 const SHORTEST_S = 0.5;
 
-/** The part of a stretch that lies within another one; nothing where it is all of it. */
+/** The part of a stretch that is within another one; `undefined` if it is all of it. */
 export function within(part: Stretch, whole: Stretch): Stretch | undefined {
   const length_s = Math.max(part.end_s - part.start_s, SHORTEST_S);
   if (!(length_s < (whole.end_s - whole.start_s) * 0.999)) return undefined;
@@ -13,7 +13,7 @@ export function within(part: Stretch, whole: Stretch): Stretch | undefined {
   return { start_s, end_s: start_s + length_s };
 }
 
-/** What lies between two places of a stretch, as shares of it. */
+/** The part of a stretch between two positions, given as shares of it. */
 export function zoomed({ start_s, end_s }: Stretch, from: number, to: number, whole: Stretch): Stretch | undefined {
   const at = (share: number) => start_s + share * (end_s - start_s);
   return within({ start_s: at(from), end_s: at(to) }, whole);

@@ -1,28 +1,28 @@
-/** The bar over the charts: the cursor's time, and which stretch of the flight is shown. */
+/** The bar above the charts: the time of the cursor, and the stretch of the flight that is shown. */
 
 import type { Stretch } from 'flagred';
 import { h } from '../dom';
 
 export interface TimeBar {
   element: HTMLElement;
-  /** The stretch that is shown of the whole, and the cursor's time. */
+  /** Sets the stretch that is shown, the whole stretch, and the time of the cursor. */
   show(shown: Stretch, whole: Stretch, t_s: number): void;
-  /** What the cursor's time is called. */
+  /** Sets the label of the cursor's time. */
   say(words: string): void;
 }
 
 interface Actions {
-  /** Leads to a time, in seconds. */
+  /** Moves the cursor to a time, in seconds. */
   seek(t_s: number): void;
   /** Moves the cursor, in steps. */
   move(steps: number): void;
-  /** As on the charts: between two places of what is shown. */
+  /** Zooms to the part between two positions of the shown stretch, as on the charts. */
   zoom(from: number, to: number): void;
   reset(): void;
 }
 
 export function timeBar(actions: Actions): TimeBar {
-  /** Where the cursor is in what is shown, from 0 to 1. */
+  /** The position of the cursor in the shown stretch, from 0 to 1. */
   let share = 0.5;
   const slider = h('input', { type: 'range', step: 'any', 'aria-label': 'Time' });
   slider.addEventListener('input', () => actions.seek(slider.valueAsNumber));
@@ -39,7 +39,7 @@ export function timeBar(actions: Actions): TimeBar {
     made.addEventListener('click', act);
     return made;
   };
-  /** Around the cursor, which stays where it is. */
+  /** Zooms around the cursor, which keeps its position. */
   const about = (scale: number) => actions.zoom(share - share * scale, share + (1 - share) * scale);
   const closer = button('+', 'Zoom in', () => about(0.5));
   const farther = button('−', 'Zoom out', () => about(2));

@@ -1,15 +1,15 @@
-/** What if the profile warned earlier, or later? Thresholds and times to change, and the verdict that comes of it. */
+/** A panel for trying other thresholds and times of the profile, with the resulting verdict. */
 
 import type { LevelChanges, LevelSettings, Threshold, VerdictChanges, VerdictSettings } from 'flagred';
 import { fill, h, type Child } from '../dom';
 
 export interface WhatIf {
   element: HTMLElement;
-  /** Shows the settings of a profile, and what is changed of them. */
+  /** Shows the settings of a profile, and the changes to them. */
   set(base: VerdictSettings, changes: VerdictChanges): void;
-  /** Says the verdict with the profile and with the changes. */
+  /** Shows the verdict with the profile and with the changes. */
   tell(...words: Child[]): void;
-  /** Says why the changes cannot be used. */
+  /** Shows why the changes cannot be used. */
   refuse(message: string): void;
 }
 
@@ -66,7 +66,10 @@ function put(changes: VerdictChanges, place: Place, value: number): void {
   }
 }
 
-/** A level is held down to a value that is not above the one that raises it: the one that was moved takes the other along. */
+/**
+ * Keeps the threshold that holds a level at or below the one that raises it: the one that was moved takes the other
+ * along.
+ */
 function keepOrder(changes: VerdictChanges, base: VerdictSettings, moved: Place): void {
   if (moved.length !== 3) return;
   const [name, part, key] = moved;
@@ -80,7 +83,7 @@ function keepOrder(changes: VerdictChanges, base: VerdictSettings, moved: Place)
 /** Whether nothing is changed. */
 export const isUnchanged = (changes: VerdictChanges): boolean => Object.keys(changes).length === 0;
 
-/** The panel; `change` hears what is changed of the profile, all of it. */
+/** Creates the panel; `change` receives all changes to the profile. */
 export function whatIf(change: (changes: VerdictChanges) => void): WhatIf {
   let base: VerdictSettings | undefined;
   let changes: VerdictChanges = {};
@@ -99,7 +102,7 @@ export function whatIf(change: (changes: VerdictChanges) => void): WhatIf {
     change(changes);
   }
 
-  /** Writes the values into the fields, but not into the one that is typed in. */
+  /** Writes the values into the fields, except the one that the user is typing into. */
   function update(except?: HTMLInputElement): void {
     if (!base) return;
     for (const { field, inputs } of shown) {

@@ -1,24 +1,27 @@
-/** The file on disk that the editor shows: saved, changed, changed on disk by somebody else, or not to be written. */
+/**
+ * The file on disk that the editor shows: saved, changed in the editor, changed on disk by another program, or
+ * read-only.
+ */
 
 import type { BackingFile } from '../app';
 import { fill, h } from '../dom';
 
 export interface Backing {
   element: HTMLElement;
-  /** The text as it was read. */
+  /** The text that was read. */
   text: string;
   changed(text: string): void;
   save(text: string): Promise<void>;
 }
 
-/** How often the file is looked at. */
+/** The interval of checks of the file. */
 const LOOK_MS = 3000;
 
 /** Reads the file. `load` puts another text into the editor. */
 export async function backing(file: BackingFile, say: (words: string) => void, load: (text: string) => void): Promise<Backing> {
   let saved = await file.read();
   let now = saved;
-  /** What is on disk, where somebody else wrote it and it is not decided which text counts. */
+  /** The text on disk, if another program wrote it and the user has not decided yet which text to keep. */
   let theirs: string | undefined;
   const state = h('span', { role: 'status' });
   const choice = h('span', {});
@@ -82,7 +85,7 @@ export async function backing(file: BackingFile, say: (words: string) => void, l
       show();
     },
   };
-  // The server may be gone for a moment; saving tells.
+  // The server may be unavailable for a moment; saving reports errors.
   setInterval(() => void look().catch(() => undefined), LOOK_MS);
   show();
   return made;

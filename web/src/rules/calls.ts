@@ -1,4 +1,7 @@
-/** What the rules room asks of its worker. Every call carries the text it is about; what was made of the last texts is kept. */
+/**
+ * The calls of the rules room to its worker. Every call contains the text it is about; results for the last texts are
+ * kept.
+ */
 
 import {
   RuleSet,
@@ -27,11 +30,11 @@ interface Known {
   text: string;
   open: RuleText;
   set: RuleSet | undefined;
-  /** Why it cannot be used. */
+  /** The reason why it cannot be used. */
   refusal: string;
 }
 
-/** The text before a drag, the one while it lasts, and one that is being typed. */
+/** The number of texts whose results are kept: before a drag, during it, and while typing. */
 const MOST = 3;
 const known: Known[] = [];
 
@@ -65,12 +68,12 @@ function compiled(text: string): RuleSet {
   return set;
 }
 
-/** What a text means, as far as it can be read. */
+/** The meaning of a text, as far as it can be read. */
 export interface Opened {
   text: string;
   isProfile: boolean;
   variables: DrawnVariable[];
-  /** Nothing where the rule set cannot be used. */
+  /** `undefined` if the rule set cannot be used. */
   about: About | undefined;
 }
 
@@ -93,21 +96,21 @@ export const rulesHeld = (_tell: Tell, text: string, output: number, axes: numbe
 
 export type Picture = 'map' | 'surface' | 'rules' | 'terms' | 'explanation';
 
-/** A picture as the command line draws it. */
+/** Returns a picture as drawn by the command line. */
 export function rulesPicture(_tell: Tell, text: string, kind: Picture, view: View): string {
   const set = compiled(text);
   if (kind === 'terms') return set.termsSvg();
   return kind === 'explanation' ? set.explanationSvg(view.held) : set.mapSvg(kind, view);
 }
 
-/** Where a point of a term is. */
+/** Identifies a handle of a term. */
 export interface Place {
   variable: number;
   term: number;
   handle: number;
 }
 
-/** The text after a point of a term has moved, counted from `text`, and what it means. */
+/** Returns the text after a handle of a term was moved, starting from `text`, and its meaning. */
 export function rulesDrag(_tell: Tell, text: string, { variable, term, handle }: Place, x: number, degree: number): Opened {
   const edits = of(text).open.drag(variable, term, handle, x, degree);
   return rulesOpen(_tell, edited(text, edits));

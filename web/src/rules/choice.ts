@@ -1,26 +1,26 @@
-/** What of a rule set the map shows, and how the address says it. */
+/** The part of a rule set that the map shows, and its representation in the address. */
 
 import type { About, View } from 'flagred';
 import type { Kind } from './map';
 
-/** Points along an axis of the map, and of the curve of one input. */
+/** The number of points along an axis of the map, and of the curve of one input. */
 const POINTS = 101;
 const CURVE = 401;
 
 export const KINDS: [Kind, string][] = [['map', 'Map'], ['surface', 'Surface'], ['rules', 'Strongest rule']];
 
-/** An output and the inputs along the axes, by their names: these outlive changes of the text. */
+/** An output and the inputs along the axes, by their names, which survive changes of the text. */
 export interface Choice {
   output: string;
   x: string;
-  /** Empty where there is one input. */
+  /** Empty if there is only one input. */
   y: string;
   kind: Kind;
-  /** Whether whole ranges are shown, or the parts where terms change. */
+  /** Whether whole ranges are shown, or only the parts in which terms change. */
   isWhole: boolean;
 }
 
-/** Chooses anew what the rule set does not have. */
+/** Replaces choices that the rule set does not have. */
 export function settle(choice: Choice, { inputs, outputs, output }: About): void {
   const names = inputs.map(({ name }) => name);
   if (!outputs.some(({ name }) => name === choice.output)) choice.output = outputs[output]!.name;
@@ -28,7 +28,7 @@ export function settle(choice: Choice, { inputs, outputs, output }: About): void
   if (!names.includes(choice.y) || choice.y === choice.x) choice.y = names.find((name) => name !== choice.x) ?? '';
 }
 
-/** The view of what is chosen, at a point. */
+/** The view of a choice, at a point. */
 export function view({ output, x, y, isWhole }: Choice, { inputs, outputs }: About, point: number[]): View {
   const chosen = [x, y].map((name) => inputs.findIndex((input) => input.name === name)).filter((input) => input >= 0);
   const axes = chosen.map((input) => {
@@ -43,7 +43,7 @@ export function view({ output, x, y, isWhole }: Choice, { inputs, outputs }: Abo
   };
 }
 
-/** What the address says of it. */
+/** Converts a choice to parameters of an address. */
 export function written(choice: Choice, point: number[] | undefined): URLSearchParams {
   const parameters = new URLSearchParams();
   for (const name of ['output', 'x', 'y'] as const) if (choice[name]) parameters.set(name, choice[name]);
@@ -53,7 +53,7 @@ export function written(choice: Choice, point: number[] | undefined): URLSearchP
   return parameters;
 }
 
-/** Takes over what an address says; the point, where it says one. */
+/** Sets the choice from an address; returns the point, if it contains one. */
 export function read(choice: Choice, parameters: URLSearchParams): number[] | undefined {
   for (const name of ['output', 'x', 'y'] as const) choice[name] = parameters.get(name) ?? choice[name];
   choice.kind = KINDS.find(([kind]) => kind === parameters.get('show'))?.[0] ?? 'map';

@@ -21,7 +21,7 @@ import type { Completion, Diagnostic, Edit, Hover } from 'flagred';
 import { h } from '../dom';
 import { markdown } from './markdown';
 
-/** What the editor asks for. */
+/** The services that the editor calls. */
 export interface Service {
   completions(text: string, at: number): Promise<Completion[]>;
   hover(text: string, at: number): Promise<Hover | null>;
@@ -34,15 +34,15 @@ export interface Service {
 
 export interface Editor {
   text(): string;
-  /** Replaces the whole text; undo brings the old one back. */
+  /** Replaces the whole text; undo restores the old one. */
   replace(text: string): void;
-  /** Changes to a text that differs a little; nothing for undo to remember. */
+  /** Replaces the text by one with a small difference, without an entry for undo. */
   follow(text: string): void;
-  /** Makes all that was followed since `before` one step for undo. */
+  /** Combines all changes by `follow` since `before` into one entry for undo. */
   conclude(before: string): void;
   apply(edits: Edit[]): void;
   show(findings: Diagnostic[]): void;
-  /** Selects a part and brings it into view. */
+  /** Selects a part and scrolls it into view. */
   select(from: number, to: number): void;
   cursor(): number;
   undo(): void;
@@ -98,7 +98,10 @@ const colours = HighlightStyle.define([
 const severities = { error: 'error', warning: 'warning', note: 'info' } as const;
 const kinds = { keyword: 'keyword', variable: 'variable', choice: 'enum', key: 'property', signal: 'constant' } as const;
 
-/** Makes the editor inside `place`. It lives in a shadow root: there its styles are sheets, not elements, as the policy wants. */
+/**
+ * Creates the editor inside `place`. It is in a shadow root, where its styles are style sheets, not elements, as the
+ * policy requires.
+ */
 export function editor(place: HTMLElement, text: string, readOnly: boolean, service: Service): Editor {
   const root = place.attachShadow({ mode: 'open' });
 
@@ -111,7 +114,7 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
     return {
       from: word?.from ?? context.pos,
       validFor: /^[\w-]*$/,
-      // In the order of the service, which knows what is likely.
+      // In the order of the service, which puts likely ones first.
       options: found.map(({ label, text, kind, detail }, i) => ({
         label, apply: text, type: kinds[kind], boost: Math.max(99 - i, -99), ...(detail ? { detail } : {}),
       })),
@@ -222,7 +225,7 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
   return made;
 }
 
-/** The one stretch in which two texts differ. */
+/** The only range in which two texts differ. */
 function difference(before: string, after: string): { from: number; to: number; insert: string } | undefined {
   if (before === after) return undefined;
   const shorter = Math.min(before.length, after.length);

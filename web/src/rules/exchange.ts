@@ -1,4 +1,4 @@
-/** Rule sets from files and into files, in YAML and in the formats of other programs. */
+/** Loads rule sets from files and saves them, in YAML and in the formats of other programs. */
 
 import type { Exchanged, Format, View } from 'flagred';
 import type { App } from '../app';
@@ -7,10 +7,12 @@ import { Trapped } from '../engine';
 import type { Picture } from './calls';
 
 const endings: Record<Format, string> = { FIS: 'fis', FLL: 'fll', FCL: 'fcl', FML: 'xml' };
-/** More is no rule set. */
+/** The maximum size of a file; a larger one is not a rule set. */
 const LARGEST_BYTES = 10_000_000;
 
-/** The text of a file in YAML. Where something would be lost the user is asked; nothing if he declines. */
+/**
+ * Returns the text of a file in YAML. If something would be lost the user is asked; `undefined` if the user declines.
+ */
 export async function opened(app: App, file: File): Promise<string | undefined> {
   if (file.size > LARGEST_BYTES) throw new Error(`\`${file.name}\` is larger than 10 MB: a rule set is a small text`);
   const text = new TextDecoder('utf-8', { fatal: true }).decode(await file.arrayBuffer());
@@ -35,7 +37,7 @@ export async function drawn(app: App, name: string, text: string, kind: Picture,
   download(`${name}-${kind}.svg`, await app.engine.call('rulesPicture', text, kind, view), 'image/svg+xml');
 }
 
-/** Runs without losses; where that is refused, asks whether to run with them. */
+/** Runs without losses; if that is refused, asks whether to accept them. */
 async function withLosses(title: string, run: (lossy: boolean) => Promise<Exchanged>): Promise<Exchanged | undefined> {
   try {
     return await run(false);
@@ -51,7 +53,7 @@ async function told(title: string, notes: string[]): Promise<void> {
   await dialog(title, notes.length > 0 ? notes : ['Nothing was lost.'], ['Close']);
 }
 
-/** Shows lines; the answer is the word on the button that was pressed. */
+/** Shows lines; resolves to the label of the button that was pressed. */
 function dialog(title: string, lines: string[], answers: string[]): Promise<string> {
   return new Promise((resolve) => {
     const buttons = answers.map((answer, i) => h('button', { value: answer, class: i === 0 ? 'main' : '' }, answer));

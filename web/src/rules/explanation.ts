@@ -1,10 +1,10 @@
-/** Why the outputs at a point are what they are: the rules that fire, and how strongly. */
+/** Explains the outputs at a point: the rules that fire, and how strongly. */
 
 import type { About, Explanation } from 'flagred';
 import { fill, h } from '../dom';
 import { short, told } from './numbers';
 
-/** The explanation in `place`. */
+/** Shows the explanation in `place`. */
 export function explain(place: HTMLElement, about: About, { outputs, rules, inputs }: Explanation): void {
   const values = outputs.map((output, i) => {
     const known = about.outputs[i];

@@ -1,4 +1,4 @@
-/** The inputs as sliders: the point that is explained; those that are no axis of the map are held there. */
+/** The inputs as sliders, which set the explained point. Inputs that are not axes of the map are held there. */
 
 import type { Variable } from 'flagred';
 import { h, fill } from '../dom';
@@ -6,7 +6,7 @@ import { clamp, step } from './numbers';
 
 export interface Inputs {
   element: HTMLElement;
-  /** Shows these inputs at a point; `isWhole` is whether sliders go over whole ranges. */
+  /** Shows these inputs at a point; `isWhole` is whether sliders cover whole ranges. */
   show(inputs: Variable[], axes: number[], point: number[], isWhole: boolean): void;
 }
 

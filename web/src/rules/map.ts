@@ -1,4 +1,4 @@
-/** The decision map on a canvas: values, the surface over them, or which rule is the strongest; and the point that is explained. */
+/** The decision map on a canvas: values, the surface over them, or the dominant rule; and the explained point. */
 
 import type { Cells, Colours, Variable, View } from 'flagred';
 import { h } from '../dom';
@@ -6,13 +6,13 @@ import { clamp, short, ticks, told } from './numbers';
 
 export type Kind = 'map' | 'surface' | 'rules';
 
-/** What is drawn. */
+/** The content to draw. */
 export interface Shown {
   kind: Kind;
   view: View;
   cells: Cells;
   x: Variable;
-  /** Nothing where there is one axis. */
+  /** `undefined` if there is only one axis. */
   y: Variable | undefined;
   output: Variable;
   /** The value for each input. */
@@ -31,15 +31,15 @@ interface Frame {
   height: number;
 }
 
-/** Room for axes and the colours beside the map, in pixels. */
+/** The space for axes and the colours next to the map, in pixels. */
 const LEFT = 54;
 const RIGHT = 58;
 const TOP = 10;
 const BOTTOM = 44;
-/** How far a key moves the point, as a share of the axis. */
+/** The distance by which a key moves the point, as a share of the axis. */
 const KEY_STEP = 0.02;
 
-/** The point that is explained: `at` is its value of an input, `move` moves it. */
+/** The explained point: `at` returns its value of an input, `move` changes it. */
 export interface Point {
   at(input: number): number;
   move(input: number, value: number): void;
@@ -132,7 +132,7 @@ function inks(element: Element): Ink {
 
 const share = (value: number, low: number, high: number) => clamp((value - low) / (high - low), 0, 1);
 
-/** The cells as pixels, seen from above: the second axis goes up. */
+/** The cells as pixels in a top view: the second axis points up. */
 function pixels(shown: Shown, colours: Colours): ImageData {
   const { cells, output, kind, view } = shown;
   const points = view.points;
@@ -168,7 +168,7 @@ function flat(pen: CanvasRenderingContext2D, small: HTMLCanvasElement, frame: Fr
   if (x && y) cross(pen, frame, share(shown.point[x.input]!, x.low, x.high), share(shown.point[y.input]!, y.low, y.high), ink);
 }
 
-/** Where nothing is known. */
+/** Draws the area where nothing is known. */
 function hatch(pen: CanvasRenderingContext2D, frame: Frame, ink: Ink): void {
   pen.save();
   pen.beginPath();
@@ -248,7 +248,7 @@ function axes(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, ink: In
 
 const titled = ({ name, unit }: Variable): string => (unit ? `${name} [${unit}]` : name);
 
-/** The point that is explained. */
+/** Draws the explained point. */
 function cross(pen: CanvasRenderingContext2D, frame: Frame, across: number, up: number | undefined, ink: Ink): void {
   const x = frame.left + frame.width * across;
   const y = up === undefined ? undefined : frame.top + frame.height * (1 - up);
@@ -277,7 +277,7 @@ function dot(pen: CanvasRenderingContext2D, x: number, y: number, ink: Ink): voi
   pen.stroke();
 }
 
-/** The colours beside the map and what they mean. */
+/** Draws the colours next to the map and their meaning. */
 function scale(pen: CanvasRenderingContext2D, frame: Frame, width: number, shown: Shown, colours: Colours, ink: Ink): void {
   const left = width - RIGHT + 12;
   for (let y = 0; y < frame.height; y++) {
@@ -299,7 +299,7 @@ function scale(pen: CanvasRenderingContext2D, frame: Frame, width: number, shown
 /** The direction of view, turned about the vertical and tipped; as `flagred map --surface`. */
 const TURN = (35 * Math.PI) / 180;
 const TIP = (28 * Math.PI) / 180;
-/** The most points of the surface along an axis. */
+/** The maximum number of points of the surface along an axis. */
 const MOST = 51;
 
 function surface(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, colours: Colours, ink: Ink): void {
@@ -328,7 +328,7 @@ function surface(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, colo
   }
   const count = Math.min(points, MOST);
   const index = (i: number) => Math.round((i * (points - 1)) / (count - 1));
-  // From the far corner to the near one: what is near covers what is behind it.
+  // From the far corner to the near one, so that near parts cover what is behind them.
   for (let j = count - 2; j >= 0; j--) {
     for (let i = 0; i < count - 1; i++) {
       const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(([a, b]) => [index(a!), index(b!)] as const);
@@ -358,7 +358,7 @@ function surface(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, colo
   pen.fillText(titled(shown.y!), right[0] + 10, right[1] + 6);
 }
 
-/** The map in words. */
+/** Describes the map in words. */
 function spoken({ output, x, y, view, cells, point }: Shown): string {
   const [across, up] = view.axes;
   const cell = (axis: typeof across) => (axis ? Math.round(share(point[axis.input]!, axis.low, axis.high) * (view.points - 1)) : 0);

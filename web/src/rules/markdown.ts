@@ -1,4 +1,4 @@
-/** The little Markdown that hovers have, as nodes: paragraphs, `**bold**` and `` `code` ``. */
+/** Renders the Markdown of hovers as nodes: paragraphs, `**bold**` and `` `code` ``. */
 
 import { add, h } from '../dom';
 

@@ -1,17 +1,17 @@
-/** Numbers for people. */
+/** Formats numbers for people. */
 
-/** Four digits that count. */
+/** Formats a value with four significant digits. */
 export function short(value: number): string {
   return String(Number(value.toPrecision(4))).replace('-', '\u2212');
 }
 
-/** A value with its unit; `unknown` where there is none. */
+/** Formats a value with its unit; `unknown` if there is none. */
 export function told(value: number | null, unit: string | null): string {
   if (value === null || Number.isNaN(value)) return 'unknown';
   return unit ? `${short(value)} ${unit}` : short(value);
 }
 
-/** Round numbers from `low` to `high`, about so many. */
+/** About `count` round numbers from `low` to `high`. */
 export function ticks(low: number, high: number, count: number): number[] {
   const rough = (high - low) / count;
   if (!(rough > 0) || !Number.isFinite(rough)) return [];
@@ -24,5 +24,5 @@ export function ticks(low: number, high: number, count: number): number[] {
 
 export const clamp = (value: number, low: number, high: number): number => Math.min(Math.max(value, low), high);
 
-/** The step of a slider over a range: a thousandth or a little finer, a power of ten. */
+/** The step of a slider over a range: a power of ten, about a thousandth of the range or slightly finer. */
 export const step = (low: number, high: number): number => 10 ** (Math.floor(Math.log10(high - low)) - 3);

@@ -1,4 +1,4 @@
-/** The findings as a list: how many there are is told aloud, a click leads to the place. */
+/** The findings as a list. Their number is announced to screen readers; a click selects the location. */
 
 import type { Diagnostic } from 'flagred';
 import { add, fill, h } from '../dom';

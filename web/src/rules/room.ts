@@ -1,4 +1,6 @@
-/** The rules room: an editor, what is wrong with the text, the decision map, why a value is what it is, the terms as shapes. */
+/**
+ * The rules room: an editor, the findings, the decision map, the explanation of a value, and the shapes of the terms.
+ */
 
 import type { About, Diagnostic, Format, Start, View } from 'flagred';
 import type { App, Room } from '../app';
@@ -27,19 +29,19 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   const { engine } = app;
   const [colours, starts] = await Promise.all([engine.call('rulesColours'), engine.call('rulesStarts')]);
 
-  /** What the editor's text means; of the map, what the last text without errors means. */
+  /** The meaning of the editor's text; for the map, the meaning of the last text without errors. */
   let opened: Opened | undefined;
   let good: { text: string; about: About } | undefined;
   const choice: Choice = { output: '', x: '', y: '', kind: 'map', isWhole: false };
   /** The value of each input that was ever set or held, by name. */
   const values = new Map<string, number>();
-  /** The text from which a point is dragged. */
+  /** The text at the start of a drag. */
   let base: string | undefined;
   let start: string | undefined;
-  /** A text that flagred breaks at is not tried again. */
+  /** A text that crashes flagred, which is not tried again. */
   let poison: string | undefined;
 
-  // What is wrong with flagred itself is told, and does not end the page.
+  // Bugs of flagred are reported, and do not end the page.
   async function guarded(text: string, run: () => Promise<void>): Promise<void> {
     if (text === poison) return;
     try {
@@ -52,7 +54,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   function refused(error: Error): void {
     app.say(error instanceof Trapped ? `flagred has a defect, and goes on: ${error.message}` : error.message);
   }
-  // Once it is known at which text it broke.
+  // Runs after it is known which text caused the crash.
   engine.onRestart = () => setTimeout(() => edit.text() !== poison && changed(edit.text()));
 
   // The parts of the room.
@@ -78,7 +80,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   const whole = h('input', { type: 'checkbox', onchange: chosen });
   const labelled = (words: string, select: HTMLElement) => h('label', {}, h('span', { class: 'soft' }, words), select);
 
-  // What can be done with the text.
+  // Actions on the text.
   const startFrom = h('select', { 'aria-label': 'Start from an example', onchange: startChosen });
   add(
     startFrom,
@@ -144,7 +146,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     ),
   );
 
-  // What happens as the text changes.
+  // Reactions to changes of the text.
   const refresh = latest((text: string) => guarded(text, async () => show(await engine.call('rulesOpen', text))));
   const examine = latest((text: string) =>
     guarded(text, async () => {
@@ -171,7 +173,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       const now = good;
       if (!now) return;
       explain(why, now.about, await engine.call('rulesExplain', now.text, point(now.about)));
-      // Words that change faster are not read, and laying them out takes time from what moves.
+      // Text that changes faster cannot be read, and its layout slows down the animation.
       await new Promise((done) => setTimeout(done, REASON_MS));
     }),
   );
@@ -215,7 +217,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     follow();
   }
 
-  /** A value for each input that has none yet. */
+  /** Sets a value for each input that has none yet. */
   async function hold(about: About): Promise<void> {
     settle(choice, about);
     const names = about.inputs.map(({ name }) => name);
@@ -238,7 +240,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   const chosenView = (about: About): View => viewOf(choice, about, point(about));
   const view = () => good && chosenView(good.about);
 
-  /** The map, the sliders and the reasons for what is good and chosen now. */
+  /** Updates the map, the sliders and the explanation for the current model and choice. */
   function follow(): void {
     const about = good!.about;
     const { axes, held } = chosenView(about);
@@ -261,7 +263,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     named(now.about, cells.dominantRules);
   }
 
-  /** Which colour is which rule. */
+  /** Shows which colour belongs to which rule. */
   function named(about: About, rules: Float64Array): void {
     legend.hidden = choice.kind !== 'rules' || !choice.y;
     if (legend.hidden) return;
@@ -294,7 +296,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     if (after !== before) changed(after);
   }
 
-  // What is chosen.
+  // The choice of output and axes.
   function options(about: About): void {
     const put = (select: HTMLSelectElement, names: string[], value: string) => {
       const now = JSON.stringify(names);
@@ -316,7 +318,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
 
   function chosen(): void {
     const [x, y] = [selects.x.value, selects.y.value];
-    // The axis that has the input already takes the other one.
+    // The axis that already has this input takes the other one.
     Object.assign(choice, { output: selects.output.value, ...(x === y ? { x: choice.y, y: choice.x } : { x, y }) });
     choice.kind = selects.kind.value as Kind;
     choice.isWhole = whole.checked;
@@ -328,7 +330,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     address();
   }
 
-  // What is done with the text.
+  // Actions on the text.
   function put(text: string, from?: string): void {
     start = from;
     values.clear();
@@ -412,7 +414,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     );
   }
 
-  // The address: what is open and what is chosen.
+  // The address: the open text and the choice.
   function said(): URLSearchParams {
     const parameters = written(choice, good && point(good.about));
     if (start) parameters.set('start', start);
@@ -425,7 +427,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     telling = setTimeout(() => app.navigate(said()), ADDRESS_MS);
   }
 
-  /** The text that an address names, if it names one. */
+  /** Returns the text that an address contains, if any. */
   async function textOf(parameters: URLSearchParams): Promise<string | undefined> {
     const packed = parameters.get('text');
     if (packed === null) {
@@ -442,7 +444,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     }
   }
 
-  /** Takes over what an address says of the view of a text. */
+  /** Sets the view of a text from an address. */
   async function look(parameters: URLSearchParams, text: string): Promise<void> {
     const at = read(choice, parameters);
     const { about } = await engine.call('rulesOpen', text).catch(() => ({ about: undefined }));
@@ -450,13 +452,13 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     about?.inputs.forEach(({ name }, i) => values.set(name, at![i]!));
   }
 
-  // Beginning.
+  // Start.
   const asked = app.parameters();
   const linked = await textOf(asked);
   let disk: Backing | undefined;
   if (app.file) disk = await backing(app.file, app.say, (text) => edit.replace(text));
   const text = disk?.text ?? linked ?? kept() ?? starts[0]!.text;
-  // A link of somebody else must not take what was one's own.
+  // A link from somebody else must not replace the user's own text.
   if (!disk && linked !== undefined && !starts.some((one) => one.text === kept())) setAside();
   if (!disk && linked === undefined && text === starts[0]!.text) start = starts[0]!.name;
   await look(asked, text);

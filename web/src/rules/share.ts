@@ -1,6 +1,6 @@
-/** A text as part of an address: deflated, in base64 without signs that addresses give a meaning. */
+/** Packs a text into an address: deflated, in base64 without characters that have a meaning in addresses. */
 
-/** The most letters of an address that browsers and messengers take for granted. */
+/** The maximum length of an address that browsers and messengers support reliably. */
 export const LONGEST = 30_000;
 
 export async function pack(text: string): Promise<string> {
@@ -10,7 +10,7 @@ export async function pack(text: string): Promise<string> {
   return btoa(letters).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 }
 
-/** The text of a packed one; fails where it is damaged. */
+/** Unpacks a text; fails if it is damaged. */
 export async function unpack(packed: string): Promise<string> {
   const letters = atob(packed.replaceAll('-', '+').replaceAll('_', '/'));
   const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));

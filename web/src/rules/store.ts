@@ -1,22 +1,22 @@
-/** The text that one was at, kept in this browser. */
+/** The user's current text, stored in this browser. */
 
 const KEY = 'flagred.rules';
-/** What was kept before a link or an example was opened. */
+/** The text that was stored before a link or an example was opened. */
 const ASIDE = 'flagred.rules.before';
 
-/** The text that was kept last; nothing where there is none, or the browser keeps nothing. */
+/** Returns the text that was stored last; `undefined` if there is none, or if the browser stores nothing. */
 export const kept = (): string | undefined => read(KEY);
 
-/** The text that was set aside last. */
+/** Returns the text that was set aside last. */
 export const before = (): string | undefined => read(ASIDE);
 
-/** Sets aside what is kept, before another text takes its place. */
+/** Sets the stored text aside, before another text replaces it. */
 export function setAside(): void {
   const text = kept();
   if (text !== undefined) write(ASIDE, text);
 }
 
-/** Keeps a text; says whether it could. */
+/** Stores a text; returns whether that succeeded. */
 export const keep = (text: string): boolean => write(KEY, text);
 
 function read(key: string): string | undefined {

@@ -1,26 +1,29 @@
-/** The terms of every variable as shapes; their points are dragged, by pointer, touch or keys, and write back into the text. */
+/**
+ * The terms of every variable as shapes. Their handles can be dragged by pointer, touch or keys, which changes the
+ * text.
+ */
 
 import type { Colours, DrawnTerm, DrawnVariable, Handle } from 'flagred';
 import { fill, h } from '../dom';
 import type { Place } from './calls';
 import { clamp, short, ticks } from './numbers';
 
-/** The picture of a variable, in its own units. */
+/** The size of the picture of a variable, in its own units. */
 const WIDTH = 320;
 const HEIGHT = 130;
 const FRAME = { left: 20, right: 12, top: 12, bottom: 22 };
 const INNER = { width: WIDTH - FRAME.left - FRAME.right, height: HEIGHT - FRAME.top - FRAME.bottom };
-/** How far a key moves a point, as a share of what is shown. */
+/** The distance by which a key moves a handle, as a share of the shown range. */
 const KEY_STEP = 0.01;
 
 export interface Terms {
   element: HTMLElement;
   show(variables: DrawnVariable[], isWhole: boolean): void;
-  /** Marks a value of each input. */
+  /** Marks the value of each input. */
   mark(point: number[]): void;
 }
 
-/** What is told of a drag. */
+/** Receives the events of a drag. */
 export interface Dragging {
   begin(): void;
   move(place: Place, x: number, degree: number): void;
@@ -52,7 +55,7 @@ interface Plot {
   mark(value: number): void;
 }
 
-/** An element of SVG. */
+/** Creates an SVG element. */
 function s<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>, ...children: Node[]): SVGElementTagNameMap[K] {
   const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
   set(made, attributes);
@@ -70,7 +73,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
   let [low, high] = [0, 1];
   const across = (x: number) => FRAME.left + (INNER.width * (x - low)) / (high - low);
   const up = (degree: number) => FRAME.top + INNER.height * (1 - degree);
-  /** Gives an element the colours of a term, on light and on dark ground. */
+  /** Gives an element the colours of a term, for light and dark backgrounds. */
   function coloured<E extends HTMLElement | SVGElement>(element: E, term: number): E {
     element.classList.add('term');
     for (const [name, all] of [['--light', lines], ['--dark', distinct]] as const) {
@@ -113,7 +116,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
     const dot = coloured(s('circle', { class: 'dot', r: 6 }), t);
     const group = s('g', { class: 'handle', tabindex: 0, role: 'slider' }, s('circle', { class: 'reach', r: 16 }), dot);
     const place: Place = { variable: index, term: t, handle: i };
-    /** Where it goes, until it is drawn there. */
+    /** The target position, until it is drawn there. */
     let aim: { x: number; degree: number } | undefined;
     const now = () => ({ ...variable.terms[t]!.handles[i]!, ...aim });
     const move = (x: number, degree: number) => {
@@ -125,7 +128,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
     group.addEventListener('pointerdown', (event) => {
       event.preventDefault();
       group.focus({ preventScroll: true });
-      // Asked once: it takes a layout of the page.
+      // Computed once, because it requires a layout of the page.
       toSvg = svg.getScreenCTM()!.inverse();
       group.setPointerCapture(event.pointerId);
       group.classList.add('held');
@@ -145,7 +148,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
       if (!dx && !dy) return;
       event.preventDefault();
       const { x, degree, movesDegree } = now();
-      // Where a point only goes left and right, up is right: that is how sliders are.
+      // If a handle only moves left and right, up means right, as for sliders.
       const steps = movesDegree ? dx! : dx! + dy!;
       const by = KEY_STEP * (event.shiftKey ? 0.1 : 1);
       dragging.begin();
@@ -165,7 +168,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
           'aria-valuenow': x,
           'aria-valuetext': variable.unit ? `${short(x)} ${variable.unit}` : short(x),
         });
-        // A point beyond what is shown cannot be taken hold of.
+        // A handle beyond the shown range cannot be grabbed.
         group.style.display = across(x) < FRAME.left - 1 || across(x) > WIDTH - FRAME.right + 1 ? 'none' : '';
         if (group.classList.contains('held') || document.activeElement === group) told.textContent = words;
       },
@@ -182,7 +185,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
       told.textContent = 'The range cannot be read.';
       return;
     }
-    // What is shown stays while a point is held, or it would run away under the hand.
+    // The shown range does not change while a handle is held; otherwise the handle would move away from the pointer.
     if (!svg.querySelector('.held') || low === high) [low, high] = [from, to];
     ruled();
     next.terms.forEach((term, t) => {
@@ -192,7 +195,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
   }
 
   let ruledFor = '';
-  /** The lines and numbers behind the curves. */
+  /** Draws the lines and numbers behind the curves. */
   function ruled(): void {
     if (ruledFor === `${low} ${high}`) return;
     ruledFor = `${low} ${high}`;
@@ -209,7 +212,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
     grid.replaceChildren(...labels.flat(), ...degrees.flat());
   }
 
-  /** A set as its curve; a number as a stick. */
+  /** The outline of a term: a curve for a set, a line for a number. */
   function outline({ curve, handles }: DrawnTerm): string {
     const places: string[] = [];
     for (let i = 0; i + 1 < curve.length; i += 2) places.push(`${across(curve[i]!).toFixed(2)} ${up(curve[i + 1]!).toFixed(2)}`);

@@ -1,5 +1,5 @@
-/* A PX4 module that says how close a multirotor is to losing control: FR_RISK and FR_ELEV as debug_key_value, which PX4 streams
- * as NAMED_VALUE_FLOAT, and a text when the level changes. See docs/firmware.md. */
+/* A PX4 module that reports how close a multirotor is to losing control: FR_RISK and FR_ELEV as debug_key_value,
+ * which PX4 streams as NAMED_VALUE_FLOAT, and a text when the level changes. See docs/firmware.md. */
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -29,7 +29,7 @@ public:
     bool init();
 
 private:
-    /* 50 samples a second are enough; actuator_motors comes at the rate of the rate controller. */
+    /* 50 samples a second are enough; actuator_motors is published at the rate of the rate controller. */
     static constexpr uint32_t INTERVAL_US = 20000;
     static constexpr hrt_abstime SEND_US = 500000;
     static constexpr size_t MOST_MOTORS = FLAGRED_PROFILE_MOTORS;
@@ -50,7 +50,7 @@ private:
     hrt_abstime _sent{0};
 };
 
-/* A parameter as a number; NAN where there is none. */
+/* A parameter as a number; NAN if it does not exist. */
 static double parameter(const char *name) {
     const param_t handle = param_find(name);
     float value = NAN;
@@ -64,8 +64,8 @@ static double parameter(const char *name) {
     return param_get(handle, &value) == 0 ? static_cast<double>(value) : NAN;
 }
 
-/* The factors of the motors by CA_ROTORn_PX, PY and KM, for propellers that point upwards. Returns their number; 0 where they
- * are not known. */
+/* The factors of the motors from CA_ROTORn_PX, PY and KM, for propellers that point upwards. Returns their number; 0
+ * if they are unknown. */
 size_t FlagredMonitor::geometry(flagred_factors factors[MOST_MOTORS]) const {
     const double count = parameter("CA_ROTOR_COUNT");
     if (!(count >= 1 && count <= MOST_MOTORS)) {
@@ -126,7 +126,7 @@ void FlagredMonitor::Run() {
     }
     double commands[MOST_MOTORS];
     for (size_t i = 0; i < _motors; i++) {
-        /* NAN is a motor that is told to stop. */
+        /* NAN means that the motor is commanded to stop. */
         commands[i] = std::isfinite(motors.control[i]) ? static_cast<double>(motors.control[i]) : 0.0;
     }
     flagred_sample sample{};
@@ -164,7 +164,7 @@ void FlagredMonitor::send(hrt_abstime now, const flagred_update &update) {
 void FlagredMonitor::say(const flagred_update &update) {
     flagred_finding finding;
     flagred_open_finding(_monitor, &finding);
-    /* An alarm of a motor or of the reserve has no cause of the risk. */
+    /* An alarm about a motor or the reserve has no cause of a risk. */
     const bool has_cause = finding.level != FLAGRED_LEVEL_NONE && finding.cause >= 0;
     const char *comma = has_cause ? ", " : "";
     const char *cause = has_cause ? flagred_profile_words(&finding)->brief : "";

@@ -1,11 +1,11 @@
-/* The profile, which is C: PX4's C++ has no initialisers that name their fields. */
+/* The profile, compiled as C because PX4's C++ has no designated initialisers. */
 #pragma once
 
 #include <stddef.h>
 
 #include "flagred.h"
 
-/* The most motors, and enough memory for as many. */
+/* The maximum number of motors, and enough memory for that many. */
 #define FLAGRED_PROFILE_MOTORS 12
 #define FLAGRED_PROFILE_MEMORY 140000
 

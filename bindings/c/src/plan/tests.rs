@@ -1,4 +1,4 @@
-//! Whatever a plan says, a monitor is refused or can be pushed for ever. Debug builds check bounds and overflow.
+//! With any plan, a monitor is refused or can process samples without end. Debug builds check bounds and overflow.
 #![allow(
     unsafe_code,
     clippy::unwrap_used,
@@ -21,7 +21,7 @@ use crate::{
     rules::{FORMAT, Rules, conjunction, disjunction},
 };
 
-/// A linear congruence; its high bits are random enough.
+/// A linear congruential generator; its high bits are random enough.
 struct Random(u64);
 
 impl Random {
@@ -39,7 +39,7 @@ impl Random {
         self.below(1000) as f64 / 1000.0
     }
 
-    /// A number that is likely to be trouble.
+    /// A number that is likely to cause trouble.
     fn number(&mut self) -> f64 {
         const ODD: [f64; 11] = [
             0.0,
@@ -70,7 +70,7 @@ impl Random {
     }
 }
 
-/// A piece of the plan that can be damaged: where it begins, and its bytes.
+/// A part of the plan that can be damaged: its start, and its length in bytes.
 struct Piece(*mut u8, usize);
 
 impl Piece {
@@ -87,12 +87,12 @@ impl Piece {
     }
 }
 
-/// A plan in C and its arrays.
+/// A plan in C with its arrays.
 struct Copied {
     plan: Box<Plan>,
     pieces: Vec<Piece>,
     counts: Vec<*mut usize>,
-    /// What the plan points to.
+    /// The arrays that the plan points to.
     _arrays: Vec<Box<dyn Any>>,
 }
 
@@ -169,7 +169,7 @@ macro_rules! copy {
                 &raw mut plan.propositions.count,
             ];
             let Arrays { kept, mut pieces } = arrays;
-            // Often enough: the numbers at the front.
+            // Often, damage numbers at the front.
             for _ in 0..pieces.len() / 4 {
                 let words = 6 * size_of::<u32>();
                 pieces.push(Piece((&raw mut plan.rules.and).cast(), words));
@@ -273,7 +273,7 @@ fn estimators() -> Vec<Estimator> {
     for outputs in [MAMDANI, SUGENO] {
         for rules in [DENSE, PROGRAMS] {
             let mut rules = format!("fuzzy: 1\nname: t\n{INPUTS}{outputs}rules:\n{rules}");
-            // Few rules have no table.
+            // A rule set with few rules uses no table.
             for (b, c) in ["low", "medium", "high"]
                 .iter()
                 .flat_map(|b| [(b, "low"), (b, "medium"), (b, "high")])
@@ -304,18 +304,18 @@ fn estimators() -> Vec<Estimator> {
 }
 
 const MOTORS: usize = 4;
-/// More than any sound plan of these tests takes.
+/// More bytes than any valid plan of these tests needs.
 const MOST_BYTES: usize = 1 << 21;
 
 fn start(plan: &Plan, memory: &mut [u128], size: usize) -> (i32, *mut CMonitor) {
     let mut monitor = ptr::null_mut();
     let place = memory.as_mut_ptr().cast();
-    // SAFETY: the plan's arrays and the memory have the lengths that are said, and outlive the monitor.
+    // SAFETY: the plan's arrays and the memory have the stated lengths, and outlive the monitor.
     let status = unsafe { flagred_start(plan, MOTORS, ptr::null(), place, size, &mut monitor) };
     (status, monitor)
 }
 
-/// A short flight with numbers that are trouble.
+/// A short flight with numbers that are likely to cause trouble.
 fn fly(monitor: *mut CMonitor, plan: &Plan, random: &mut Random) {
     let mut update = MaybeUninit::uninit();
     let mut t_s = 0.0;
@@ -339,7 +339,7 @@ fn fly(monitor: *mut CMonitor, plan: &Plan, random: &mut Random) {
             in_air: i32::from(i > 5),
         };
         let inputs: Vec<f64> = (0..plan.sources.count).map(|_| value()).collect();
-        // SAFETY: the monitor is started, the arrays have the lengths that are said, the update is writable.
+        // SAFETY: the monitor is started, the arrays have the stated lengths, the update is writable.
         unsafe {
             let pushed = flagred_push(monitor, &sample, update.as_mut_ptr());
             assert_eq!(pushed, Status::Ok as i32);
@@ -369,11 +369,12 @@ fn a_damaged_plan_is_refused_or_can_be_pushed() {
             }
             if round % 4 == 3 {
                 let count = copied.counts[random.below(copied.counts.len())];
-                // SAFETY: a count of the plan, which is in its box. A smaller one is true of the array, too.
+                // SAFETY: the pointer is to a count of the plan, which is in its box. A smaller count is valid for the
+                // array too.
                 unsafe { *count = random.below(*count + 1) };
             }
             let plan = &*copied.plan;
-            // SAFETY: the arrays have the lengths they say.
+            // SAFETY: the arrays have the stated lengths.
             let bytes = unsafe { flagred_memory_size(plan, MOTORS) };
             let (status, monitor) = start(plan, &mut memory, MOST_BYTES);
             assert!(round > 0 || status == Status::Ok as i32, "{status}");
@@ -398,7 +399,7 @@ fn a_damaged_plan_is_refused_or_can_be_pushed() {
 
 const ROUNDS: usize = 3000;
 
-/// A size that does not fit into a number is no size, and not a small one.
+/// A size that overflows is refused and does not wrap to a small one.
 #[test]
 fn sizes_do_not_wrap() {
     let estimator = shipped::flagred_paper();
@@ -407,7 +408,7 @@ fn sizes_do_not_wrap() {
     let mut monitor = ptr::null_mut();
     let place = memory.as_mut_ptr().cast();
     for motors in [usize::MAX, usize::MAX / 8, isize::MAX as usize] {
-        // SAFETY: the arrays of the plan have the lengths they say, and the memory is there.
+        // SAFETY: the arrays of the plan have the stated lengths, and the memory exists.
         let (bytes, status) = unsafe {
             let bytes = flagred_memory_size(&*copied.plan, motors);
             let limits = ptr::null();
@@ -420,7 +421,7 @@ fn sizes_do_not_wrap() {
     }
     for count in [usize::MAX, usize::MAX / 4] {
         copied.plan.rules.lines.count = count;
-        // SAFETY: an array that cannot be is refused before it is read.
+        // SAFETY: an impossible array is refused before it is read.
         let bytes = unsafe { flagred_memory_size(&*copied.plan, MOTORS) };
         assert_eq!(bytes, 0);
     }

@@ -1,7 +1,8 @@
-//! `flagred-web-bindgen MODULE FOLDER NAME`: the JavaScript and the types of a compiled module, and the module that fits them.
+//! `flagred-web-bindgen MODULE FOLDER NAME` generates JavaScript and type declarations for a compiled module, and the
+//! matching module.
 //!
-//! The same as the program `wasm-bindgen --target web`, which has to be of the version that the module was compiled with. Here
-//! Cargo.lock sees to that, and nothing has to be installed.
+//! It does the same as the program `wasm-bindgen --target web`, which must have the version that the module was
+//! compiled with. Cargo.lock ensures that here, and nothing needs to be installed.
 
 use std::{env, process::ExitCode};
 

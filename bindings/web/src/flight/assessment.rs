@@ -1,4 +1,4 @@
-//! What is said of a flight: the documents of the command line, and the report part by part.
+//! The assessment of a flight: the documents of the command line, and the report part by part.
 
 use std::rc::Rc;
 
@@ -22,12 +22,12 @@ pub struct Assessment {
 
 #[wasm_bindgen]
 impl Assessment {
-    /// What `flagred assess --json` prints.
+    /// The output of `flagred assess --json`.
     pub fn json(&self) -> Result<String, JsError> {
         documents(&[self])
     }
 
-    /// The same document in one line and without its steps.
+    /// The same document on one line and without its steps.
     pub fn brief(&self) -> Result<String, JsError> {
         let Subject {
             name,
@@ -38,17 +38,17 @@ impl Assessment {
         serde_json::to_string(&brief).map_err(|error| failure(error, None))
     }
 
-    /// What `flagred assess --csv` prints.
+    /// The output of `flagred assess --csv`.
     pub fn csv(&self) -> Result<Vec<u8>, JsError> {
         table(&[self])
     }
 
-    /// What `flagred assess --html` writes: the whole report.
+    /// The output of `flagred assess --html`: the whole report.
     pub fn html(&self) -> String {
         page::report(&self.subject, &self.loaded)
     }
 
-    /// What `flagred assess --svg` writes; nothing where no risk is known.
+    /// The output of `flagred assess --svg`; nothing if no risk is known.
     pub fn svg(&self) -> Option<String> {
         page::svg(&self.subject, &self.loaded)
     }
@@ -59,7 +59,7 @@ impl Assessment {
         vec![start_s, end_s]
     }
 
-    /// A part of the report as HTML, of a stretch of time or of all of it; empty where there is nothing to show.
+    /// A part of the report as HTML, for a stretch of time or for all of it; empty if there is nothing to show.
     pub fn part(
         &self,
         name: &str,
@@ -73,7 +73,7 @@ impl Assessment {
         Ok(Report::new(&self.subject, &self.loaded, stretch).part(part))
     }
 
-    /// What was known at a time in seconds, and the rules that fire there, as JSON.
+    /// The state at a time in seconds, and the rules that fire, as JSON.
     pub fn moment(&self, t_s: f64) -> Result<String, JsError> {
         let Subject {
             flight, assessed, ..
@@ -83,7 +83,7 @@ impl Assessment {
     }
 }
 
-/// The documents of assessments as the command line prints them: one, or an array.
+/// The documents of assessments as printed by the command line: one, or an array.
 pub(super) fn documents(assessments: &[&Assessment]) -> Result<String, JsError> {
     let texts = assessments.iter().map(|assessment| {
         let Subject {

@@ -23,7 +23,7 @@ impl Comparison {
         Comparison::default()
     }
 
-    /// Adds a flight; it is assessed with the profile of the first one.
+    /// Adds a flight, which is assessed with the profile of the first one.
     pub fn add(&mut self, assessment: &Assessment) -> Result<(), JsError> {
         let added = Assessment {
             subject: Rc::clone(&assessment.subject),
@@ -39,23 +39,23 @@ impl Comparison {
         Ok(())
     }
 
-    /// What `flagred assess --json` prints of these logs.
+    /// The output of `flagred assess --json` for these logs.
     pub fn json(&self) -> Result<String, JsError> {
         documents(&self.all())
     }
 
-    /// What `flagred assess --csv` prints of these logs.
+    /// The output of `flagred assess --csv` for these logs.
     pub fn csv(&self) -> Result<Vec<u8>, JsError> {
         table(&self.all())
     }
 
-    /// What `flagred assess --html` writes of these logs; empty without flights.
+    /// The output of `flagred assess --html` for these logs; empty without flights.
     pub fn html(&self) -> String {
         let page = |first: &Assessment| page::comparison(&self.subjects(), &first.loaded);
         self.0.first().map(page).unwrap_or_default()
     }
 
-    /// The body of that page, of a stretch of time since each flight began or of all of it.
+    /// The body of that page, for a stretch of time since the start of each flight, or for all of it.
     pub fn part(&self, start_s: Option<f64>, end_s: Option<f64>) -> String {
         let stretch = start_s.zip(end_s);
         let stretch = stretch.map(|(start_s, end_s)| Stretch { start_s, end_s });
@@ -65,7 +65,7 @@ impl Comparison {
         self.0.first().map(part).unwrap_or_default()
     }
 
-    /// How long the longest of the flights is, in seconds.
+    /// The length of the longest flight, in seconds.
     pub fn length_s(&self) -> f64 {
         page::longest_s(&self.subjects())
     }

@@ -1,5 +1,5 @@
-//! Flight logs: read in pieces, assessed, explained. What is expensive to make stays here between calls: the flight, the
-//! compiled profile, the assessment.
+//! Flight logs: read in pieces, assessed, explained. Results that are expensive to compute are kept between calls: the
+//! flight, the compiled profile, the assessment.
 
 mod assessment;
 mod comparison;
@@ -21,7 +21,7 @@ use assessment::Assessment;
 use profile::Profile;
 use stream::{Sink, Source};
 
-/// Bytes that are handed to JavaScript at once.
+/// The number of bytes that are passed to JavaScript at once.
 const PIECE: usize = 1 << 20;
 
 /// The style sheet of the parts of a report.
@@ -41,8 +41,9 @@ pub struct Flight {
 
 #[wasm_bindgen]
 impl Flight {
-    /// Reads a log from front to back, plain or gzipped. `read` gets an offset and a length in bytes and gives a `Uint8Array`,
-    /// which is empty at the end. Of the signals beside the motors, those named are kept, or all.
+    /// Reads a log from front to back, plain or gzipped. `read` takes an offset and a length in bytes and returns a
+    /// `Uint8Array`, which is empty at the end. Of the signals that do not come from the motors, those in `signals` are
+    /// kept, or all.
     #[wasm_bindgen(constructor)]
     pub fn new(
         name: String,
@@ -64,7 +65,7 @@ impl Flight {
         }
     }
 
-    /// Whether everything was read that a profile needs.
+    /// Whether all signals that a profile needs were read.
     pub fn serves(&self, profile: &Profile) -> bool {
         let read = |name: &String| self.signals.as_ref().is_none_or(|read| read.contains(name));
         profile.signals().iter().all(read)
@@ -83,7 +84,7 @@ impl Flight {
         }
     }
 
-    /// The flight as flight CSV; `write` is called with one `Uint8Array` after the other.
+    /// Writes the flight as flight CSV; `write` is called with a `Uint8Array` for each piece.
     #[wasm_bindgen(js_name = writeCsv)]
     pub fn write_csv(&self, write: &Function) -> Result<(), JsError> {
         let mut out = BufWriter::with_capacity(PIECE, Sink(write));
@@ -92,7 +93,7 @@ impl Flight {
         written.map_err(|error| failure(error, None))
     }
 
-    /// What is to be told beside a conversion: the warnings of `flagred convert`.
+    /// Warnings about the conversion, as printed by `flagred convert`.
     pub fn warnings(&self) -> Vec<String> {
         flagred_report::words::conversion(&self.name, &self.flight)
     }

@@ -1,4 +1,4 @@
-//! Profiles: shipped ones and texts, with other thresholds where these are tried.
+//! Profiles: shipped ones and texts, optionally with other thresholds.
 
 use std::{path::Path, rc::Rc};
 
@@ -13,20 +13,20 @@ use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 
 use crate::failure::failure;
 
-/// A profile with its rule set, compiled.
+/// A compiled profile and rule set.
 #[wasm_bindgen]
 pub struct Profile {
-    /// What it is called in findings.
+    /// The name in findings.
     name: String,
     pub(super) loaded: Rc<Loaded>,
-    /// The rule set that stands in for the one that the profile names.
+    /// The rule set that replaces the one that the profile names.
     rules: Option<String>,
 }
 
 #[wasm_bindgen]
 impl Profile {
-    /// A shipped profile of this name, or one from a text, whose findings then call it so. A rule set that is given stands in
-    /// for the one that the profile names.
+    /// A shipped profile with this name, or one from a text, which then has this name in findings. A given rule set
+    /// replaces the one that the profile names.
     #[wasm_bindgen(constructor)]
     pub fn new(
         name: String,
@@ -54,19 +54,19 @@ impl Profile {
         PROFILES.iter().map(|known| known.name.to_owned()).collect()
     }
 
-    /// Its own name.
+    /// The name in the text of the profile.
     #[wasm_bindgen(getter)]
     pub fn name(&self) -> String {
         self.loaded.estimator.profile().name.clone()
     }
 
-    /// Its text.
+    /// The text of the profile.
     #[wasm_bindgen(getter)]
     pub fn text(&self) -> String {
         self.loaded.profile.text().to_owned()
     }
 
-    /// What does not keep it from being used, drawn in its text; empty where there is nothing.
+    /// Warnings, which do not prevent its use, displayed in its text; empty if there are none.
     #[wasm_bindgen(getter)]
     pub fn warnings(&self) -> String {
         drawn(
@@ -76,21 +76,22 @@ impl Profile {
         )
     }
 
-    /// The signals that are to be read of a log to assess it and to draw the report.
+    /// The signals that must be read from a log to assess it and to draw the report.
     #[wasm_bindgen(getter)]
     pub fn signals(&self) -> Vec<String> {
         let options = flagred_report::options(&self.loaded.estimator, true);
         options.signals.unwrap_or_default()
     }
 
-    /// When it warns and fails, as JSON: `profile.verdict` of an assessment's document.
+    /// The conditions for levels, as JSON: `profile.verdict` in the document of an assessment.
     #[wasm_bindgen(getter)]
     pub fn verdict(&self) -> Result<String, JsError> {
         let verdict = &self.loaded.estimator.profile().verdict;
         serde_json::to_string(verdict).map_err(|error| failure(error, None))
     }
 
-    /// The same profile with other thresholds and times, as JSON in the layout of `verdict`; what is not in it stays.
+    /// The same profile with other thresholds and times, as JSON in the layout of `verdict`; omitted ones do not
+    /// change.
     #[wasm_bindgen(js_name = withVerdict)]
     pub fn with_verdict(&self, changes: &str) -> Result<Profile, JsError> {
         let changes: Value = serde_json::from_str(changes).map_err(|error| failure(error, None))?;
@@ -116,7 +117,7 @@ fn shipped_text(name: &str) -> Result<String, JsError> {
     })
 }
 
-/// There are no files beside a text.
+/// Fails, because a text has no files next to it.
 fn no_file(path: &Path) -> Result<String, String> {
     Err(format!("`{}` cannot be read here", path.display()))
 }
@@ -133,7 +134,7 @@ fn refusal<E: std::fmt::Display>(error: LoadError<E>) -> JsError {
     }
 }
 
-/// Findings in their text.
+/// Displays findings in their text.
 fn drawn(findings: &fuzzy::Findings, file: &str, text: &str) -> String {
     let style = Style {
         colored: false,
@@ -144,7 +145,7 @@ fn drawn(findings: &fuzzy::Findings, file: &str, text: &str) -> String {
     draw(&findings.0, file, text, style).trim_end().to_owned()
 }
 
-/// Takes the numbers that are in `changes`.
+/// Replaces the numbers that are in `changes`.
 fn change(verdict: &mut VerdictSettings, changes: &Value) {
     let number = |pointer: &str, to: &mut f64| {
         if let Some(value) = changes.pointer(pointer).and_then(Value::as_f64) {

@@ -1,4 +1,4 @@
-//! Bytes that JavaScript has, read in pieces, and bytes that it gets.
+//! Reads bytes from JavaScript in pieces, and writes bytes to it.
 
 use std::io::{self, Read, Write};
 
@@ -7,10 +7,10 @@ use wasm_bindgen::{JsCast, JsValue};
 
 use super::PIECE;
 
-/// What a function of an offset and a length gives.
+/// A reader that calls a function of an offset and a length.
 pub(super) struct Source<'f> {
     read: &'f Function,
-    /// Of the first byte after the piece.
+    /// The offset of the first byte after the piece.
     offset: f64,
     piece: Vec<u8>,
     used: usize,
@@ -52,7 +52,7 @@ impl Read for Source<'_> {
     }
 }
 
-/// A function that takes bytes.
+/// A writer that calls a function with bytes.
 pub(super) struct Sink<'f>(pub(super) &'f Function);
 
 impl Write for Sink<'_> {
@@ -67,7 +67,7 @@ impl Write for Sink<'_> {
     }
 }
 
-/// What JavaScript threw, with its words.
+/// Converts an exception of JavaScript to an error with its message.
 fn io_error(thrown: JsValue) -> io::Error {
     let words = match thrown.dyn_ref::<Error>() {
         Some(error) => String::from(error.message()),

@@ -1,4 +1,4 @@
-//! Rule sets of other programs, in and out.
+//! Conversion of rule sets from and to the formats of other programs.
 
 use flagred_interchange::{Format, Losses};
 use fuzzy::Findings;
@@ -11,14 +11,14 @@ use crate::failure::failure;
 #[derive(Serialize)]
 struct Exchanged {
     text: String,
-    /// The format that was read or written: `FIS`.
+    /// The format that was read or written, such as `FIS`.
     format: &'static str,
-    /// What is said in another way, and what is left out.
+    /// Notes about content that is expressed differently, or was omitted.
     notes: Vec<String>,
 }
 
-/// A rule set of another program in YAML, as `flagred import`: a JSON object with `text`, `format` and `notes`. Where it is
-/// in YAML it stays as it is.
+/// Converts a rule set of another program to YAML, as `flagred import`: a JSON object with `text`, `format` and
+/// `notes`. YAML is returned unchanged.
 #[wasm_bindgen(js_name = importRules)]
 pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
     let Some(format) = Format::of(text) else {
@@ -37,7 +37,7 @@ pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
     })
 }
 
-/// A rule set for another program, as `flagred export`: `format` is `FIS`, `FLL`, `FCL` or `FML`.
+/// Converts a rule set to the format of another program, as `flagred export`: `format` is `FIS`, `FLL`, `FCL` or `FML`.
 #[wasm_bindgen(js_name = exportRules)]
 pub fn export(text: &str, format: &str, lossy: bool) -> Result<String, JsError> {
     let mut formats = Format::ALL.into_iter();
@@ -73,7 +73,7 @@ fn notes(findings: &Findings) -> Vec<String> {
     told.map(ToString::to_string).collect()
 }
 
-/// Findings that keep a text from being used.
+/// Converts findings that make a text unusable to an error.
 pub(super) fn refused(findings: Findings) -> JsError {
     failure(findings, None)
 }

@@ -1,4 +1,5 @@
-//! Rule sets: an open text under an author's hands, a compiled rule set to evaluate and draw, and other programs' formats.
+//! Rule sets: open texts for editing, compiled rule sets for evaluation and pictures, and conversion from and to other
+//! formats.
 
 pub mod exchange;
 pub mod set;
@@ -15,7 +16,7 @@ use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 
 use crate::failure::failure;
 
-/// The document of `flagred check --json`. A rule set that a profile names is a shipped one.
+/// The document of `flagred check --json`. A rule set that a profile names must be a shipped one.
 #[wasm_bindgen(js_name = checkRules)]
 pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
     let document = text::document(text);
@@ -35,7 +36,7 @@ pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
     json(&Checked::rules(file, &examined))
 }
 
-/// A text to start from.
+/// A template text.
 #[derive(Serialize)]
 struct Start {
     name: String,
@@ -43,7 +44,7 @@ struct Start {
     text: String,
 }
 
-/// Texts to start from, as a JSON array: the starter of `flagred new`, the shipped rule sets and profiles, examples.
+/// The template texts as a JSON array: the template of `flagred new`, the shipped rule sets and profiles, and examples.
 #[wasm_bindgen(js_name = startingPoints)]
 pub fn starting_points() -> Result<String, JsError> {
     let start = |name: String, about, text: &str| Start {
@@ -53,7 +54,7 @@ pub fn starting_points() -> Result<String, JsError> {
     };
     let [rules, paper_rules, battery_rules] = &shipped::RULE_SETS;
     let [profile, paper_profile, battery_profile] = &shipped::PROFILES;
-    // A profile has the name of its rule set.
+    // A profile may have the same name as its rule set.
     let profile_name = |known: &shipped::Shipped| format!("profile-{}", known.name);
     json(&[
         start(
@@ -100,8 +101,8 @@ pub fn starting_points() -> Result<String, JsError> {
     ])
 }
 
-/// 256 colours of a scale from low to high, then 12 colours without order, then 12 for thin lines on white: red, green and blue of
-/// each.
+/// 256 colours of a scale from low to high, then 12 unordered colours, then 12 for thin lines on white, each as red,
+/// green and blue.
 #[wasm_bindgen]
 pub fn colours() -> Vec<u8> {
     let scale = (0..=255u8).map(|i| viridis(f64::from(i) / 255.0));

@@ -1,4 +1,4 @@
-//! A rule set, compiled: its values, their reasons, maps and pictures.
+//! A compiled rule set: its values, explanations, maps and pictures.
 
 use flagred::gap::Filling;
 use flagred_authoring::{
@@ -21,19 +21,19 @@ use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 use super::{exchange::refused, json};
 use crate::failure::failure;
 
-/// Points of the curve of a rule set of one input.
+/// The number of points of the curve of a rule set with one input.
 const CURVE_POINTS: usize = 401;
 
-/// A rule set, compiled once.
+/// A compiled rule set.
 #[wasm_bindgen(js_name = RuleSet)]
 pub struct RuleSet {
     engine: Engine,
-    /// Of a profile: its output, what fills the gaps of its rules, and the name of the method.
+    /// For a profile: the index of its output, the filling of gaps, and the name of the method.
     profile: Option<(usize, Filling, &'static str)>,
 }
 
-/// What a map shows: indices of an output and of one or two inputs, the parts of these, the points along each, and a value for
-/// each input, where the others are held.
+/// The content of a map: the index of an output and of one or two inputs, the parts of their ranges, the number of
+/// points along each, and a value for each input at which the others are held.
 #[wasm_bindgen(js_name = View)]
 #[derive(Debug, Clone)]
 pub struct View {
@@ -45,7 +45,7 @@ pub struct View {
 
 #[wasm_bindgen(js_class = View)]
 impl View {
-    /// `axes` holds for each axis the index of its input and the ends of the part to show.
+    /// Creates a view. `axes` contains for each axis the index of its input and the ends of the part to show.
     #[wasm_bindgen(constructor)]
     pub fn new(output: usize, axes: &[f64], points: usize, held: Vec<f64>) -> View {
         let axes = axes.chunks_exact(3).take(2);
@@ -70,7 +70,7 @@ struct Named<'a> {
     unit: Option<&'a str>,
     low: f64,
     high: f64,
-    /// The part where its terms change.
+    /// The part of the range in which its terms change.
     shown: [f64; 2],
 }
 
@@ -94,7 +94,7 @@ struct About<'a> {
     inputs: Vec<Named<'a>>,
     outputs: Vec<Named<'a>>,
     rules: Vec<String>,
-    /// The index of the output that a profile takes as its risk, and how it fills gaps.
+    /// The index of the output that a profile uses as its risk, and its method for filling gaps.
     output: usize,
     filling: Option<&'a str>,
 }
@@ -106,7 +106,7 @@ struct Value<'a> {
     value: Option<f64>,
     is_default: bool,
     coverage: f64,
-    /// The number of the strongest rule, from 1.
+    /// The number of the dominant rule, from 1.
     dominant_rule: Option<usize>,
     clamped: bool,
 }
@@ -155,8 +155,8 @@ impl RuleSet {
         json(&names.zip(&outcomes).map(value).collect::<Vec<_>>())
     }
 
-    /// The outputs of many rows: `columns` holds the inputs one behind the other, and so does the answer the outputs. NaN is
-    /// unknown.
+    /// The outputs of many rows: `columns` contains the columns of the inputs one after another, and the result the
+    /// columns of the outputs. NaN is unknown.
     #[wasm_bindgen(js_name = evaluateColumns)]
     pub fn evaluate_columns(&self, columns: &[f64]) -> Result<Vec<f64>, JsError> {
         let inputs = self.engine.input_names().len();
@@ -183,16 +183,16 @@ impl RuleSet {
         json(&Explained::new(&self.model().name, &explanation).with_reasons(silent, changes))
     }
 
-    /// Values for the inputs that are no axis, where those of `fixed` that are not NaN stay: the middle of a range, or where the
-    /// output varies more.
+    /// Values for the inputs that are not axes: those in `fixed` that are not NaN, otherwise the middle of the range,
+    /// or a value at which the output varies more.
     pub fn held(&self, output: usize, axes: &[usize], fixed: &[f64]) -> Vec<f64> {
         let fixed: Vec<Option<f64>> = fixed.iter().map(|x| x.is_finite().then_some(*x)).collect();
         let x = axes.first().copied().unwrap_or(0);
         slice::held(&self.mapped(output), &fixed, (x, axes.get(1).copied()))
     }
 
-    /// The cells of a map: all values, then all coverages, then the numbers of the strongest rules, then whether the value was filled in. For each
-    /// point of the first axis there is one for each of the second. NaN is none.
+    /// The cells of a map: all values, then all coverages, then the numbers of the dominant rules, then whether the
+    /// value was filled. For each point of the first axis there is one for each point of the second. NaN is unknown.
     pub fn map(&self, view: &View) -> Result<Vec<f64>, JsError> {
         let cells = self.slice(view)?.cells;
         let number = |rule: Option<usize>| rule.map_or(f64::NAN, |rule| rule as f64 + 1.0);

@@ -1,4 +1,4 @@
-//! An open text: findings, completion, names, layout, terms and the points by which they are dragged.
+//! An open text: findings, completion, names, layout, terms and the handles for dragging them.
 
 use flagred::{loaded, profile::Profile};
 use flagred_authoring::{Document, Edit, completion, handles, layout, names, slice};
@@ -12,10 +12,10 @@ use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 use super::{json, set::RuleSet};
 use crate::failure::failure;
 
-/// Points of a curve.
+/// The number of points of a curve.
 const SAMPLES: usize = 200;
 
-/// A text, with the shipped rule set that a profile names.
+/// A document, with the shipped rule set that a profile names.
 pub(super) fn document(text: &str) -> Document {
     Document::new(text, shipped_rules)
 }
@@ -25,7 +25,7 @@ fn shipped_rules(profile: &Profile) -> Option<String> {
     found.map(|(_, text)| text)
 }
 
-/// A rule set or a profile as an editor shows it. Places are counted as JavaScript counts letters.
+/// A rule set or a profile in an editor. Offsets are in UTF-16 code units, as in JavaScript strings.
 #[wasm_bindgen(js_name = RuleText)]
 pub struct RuleText {
     document: Document,
@@ -33,7 +33,7 @@ pub struct RuleText {
 
 #[wasm_bindgen(js_class = RuleText)]
 impl RuleText {
-    /// Reads a text, whatever is wrong with it.
+    /// Reads a text, which may contain errors.
     #[wasm_bindgen(constructor)]
     pub fn new(text: &str) -> RuleText {
         RuleText {
@@ -53,7 +53,7 @@ impl RuleText {
         RuleSet::of(&self.document)
     }
 
-    /// What `flagred check` finds, as a JSON array.
+    /// The findings of `flagred check`, as a JSON array.
     pub fn findings(&self) -> Result<String, JsError> {
         let text = self.document.text();
         let found = |finding| Found::new(text, finding);
@@ -68,7 +68,7 @@ impl RuleText {
         )
     }
 
-    /// What can be written at a place, as a JSON array.
+    /// The completions at an offset, as a JSON array.
     pub fn completions(&self, at: usize) -> Result<String, JsError> {
         let found = completion::at(&self.document, byte(self.document.text(), at));
         let found = found.into_iter().map(|found| Completion {
@@ -86,7 +86,7 @@ impl RuleText {
         json(&found.collect::<Vec<_>>())
     }
 
-    /// What the name at a place means, as JSON with Markdown; `null` where there is none.
+    /// The meaning of the name at an offset, as JSON with Markdown; `null` if there is no name.
     pub fn hover(&self, at: usize) -> Result<String, JsError> {
         let text = self.document.text();
         let meant = names::describe(&self.document, byte(text, at));
@@ -97,14 +97,14 @@ impl RuleText {
         }))
     }
 
-    /// Where the name at a place is defined; nothing where it is no name.
+    /// The offset at which the name at `at` is defined; nothing if there is no name.
     pub fn definition(&self, at: usize) -> Option<usize> {
         let text = self.document.text();
         let span = names::definition(&self.document, byte(text, at))?;
         Some(utf16(text, span.start))
     }
 
-    /// The edits that give the name at a place a new one, as JSON.
+    /// The edits that rename the name at an offset, as JSON.
     pub fn rename(&self, at: usize, name: &str) -> Result<String, JsError> {
         let text = self.document.text();
         let spans = names::rename(&self.document, byte(text, at), name);
@@ -116,13 +116,13 @@ impl RuleText {
         edits(text, spans.into_iter().map(edit).collect())
     }
 
-    /// The text in the layout of `flagred fmt`.
+    /// The text as formatted by `flagred fmt`.
     pub fn formatted(&self) -> Result<String, JsError> {
         layout::formatted(self.document.text()).map_err(|why| failure(why, None))
     }
 
-    /// The variables and their terms as curves, with the points by which they are dragged, as a JSON array: inputs first. Empty
-    /// where nothing can be read.
+    /// The variables and their terms as curves, with the handles for dragging them, as a JSON array with inputs first.
+    /// Empty if nothing can be read.
     pub fn variables(&self) -> Result<String, JsError> {
         let Some(model) = self.document.model() else {
             return Ok("[]".into());
@@ -141,7 +141,7 @@ impl RuleText {
         json(&drawn.collect::<Vec<_>>())
     }
 
-    /// The edits that drag a point of a term to a place and a degree, as JSON: they change numbers and nothing else.
+    /// The edits that move a handle of a term to a position and a degree, as JSON; they change only numbers.
     pub fn drag(
         &self,
         variable: usize,
@@ -236,7 +236,7 @@ struct Drawn<'a> {
     is_output: bool,
     low: Option<f64>,
     high: Option<f64>,
-    /// The part where its terms change.
+    /// The part of the range in which its terms change.
     shown: [Option<f64>; 2],
     terms: Vec<DrawnTerm<'a>>,
 }
@@ -245,9 +245,9 @@ struct Drawn<'a> {
 #[serde(rename_all = "camelCase")]
 struct DrawnTerm<'a> {
     name: &'a str,
-    /// As it stands in a rule set: `triangle: [0, 2, 4]`.
+    /// The shape in the syntax of rule sets: `triangle: [0, 2, 4]`.
     shape: String,
-    /// Its curve, x and degree in turns; of a number, which is no set, nothing.
+    /// The curve as alternating x and degree; empty for a number, which is not a fuzzy set.
     curve: Vec<f64>,
     handles: Vec<Handle>,
 }
@@ -264,7 +264,7 @@ struct Handle {
 }
 
 impl<'a> Drawn<'a> {
-    /// `output` tells of an output whether its terms are numbers.
+    /// Creates a variable to draw. For an output, `output` is whether its terms are numbers.
     fn new(
         document: &Document,
         index: usize,
@@ -307,7 +307,7 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// A term over the range of its variable: its corners where it has some.
+/// A term over the range of its variable; the corners if it has corners.
 fn curve(variable: &Variable, term: &Term) -> Vec<f64> {
     let (low, high) = (variable.low, variable.high);
     let at = |x: f64| [x, term.membership(x)];
@@ -323,13 +323,13 @@ fn curve(variable: &Variable, term: &Term) -> Vec<f64> {
         .collect()
 }
 
-/// A place in UTF-16 code units.
+/// Converts an offset in bytes to UTF-16 code units.
 fn utf16(text: &str, byte: usize) -> usize {
     let before = text.char_indices().take_while(|(at, _)| *at < byte);
     before.map(|(_, letter)| letter.len_utf16()).sum()
 }
 
-/// A place in bytes.
+/// Converts an offset in UTF-16 code units to bytes.
 fn byte(text: &str, utf16: usize) -> usize {
     let mut units = 0;
     for (at, letter) in text.char_indices() {
