@@ -65,7 +65,7 @@ learned.model.explain(temperature=33, humidity=80)
 learned.model.map(points=41)
 
 # %%
-for finding in learned.model.check(monotone=["temperature:increasing"]):
+for finding in learned.model.check(rising="temperature"):
     print(finding)
 
 # %% [markdown]

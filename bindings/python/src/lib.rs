@@ -12,6 +12,7 @@ mod compiled;
 mod errors;
 mod evaluate;
 mod evaluation;
+mod explained_rows;
 mod explanation;
 mod flight;
 mod identify;

@@ -5,11 +5,10 @@ use std::sync::{Arc, PoisonError, RwLock};
 use flagred_authoring::rewrite::rewritten;
 use flagred_interchange::{Format, Losses};
 use fuzzy::{
-    Engine, Findings, Model,
+    Findings, Model,
     check::{self, Direction, Monotone},
     diagnostic::{Severity, quoted, suggest},
     drawing::variables_svg,
-    engine::EvaluateError,
     format,
     map::Grid,
     model::MembershipFunction,
@@ -25,11 +24,11 @@ use pyo3::{
     sync::PyOnceLock,
     types::{PyDict, PyTuple},
 };
-use rayon::prelude::*;
 
 use crate::{
     compiled::Asked,
     errors::{data_error, diagnostics, rule_set_error},
+    explained_rows::explained_rows,
     explanation::Explanation,
     map::DecisionMap,
     source::Source,
@@ -69,46 +68,6 @@ impl RuleSet {
     pub(crate) fn compile(&self, py: Python<'_>) -> PyResult<()> {
         self.source().compiled(py).map(|_| ())
     }
-}
-
-/// A rule that contributes to an output at a row.
-struct Line {
-    row: usize,
-    output: usize,
-    rule: usize,
-    strength: f64,
-    share: f64,
-    dominant: Option<usize>,
-}
-
-/// What the outputs rest on at each row whose inputs are all known.
-fn explained(engine: &Engine, columns: &[Vec<f64>]) -> Result<Vec<Line>, EvaluateError> {
-    let rows = columns.first().map_or(0, Vec::len);
-    let lines = (0..rows).into_par_iter().map(|row| {
-        let values: Vec<f64> = columns.iter().map(|column| column[row]).collect();
-        if values.iter().any(|value| !value.is_finite()) {
-            return Ok(Vec::new());
-        }
-        let outcomes = engine.evaluate(&values)?;
-        let explanation = engine.explain(&values)?;
-        let outputs = explanation.outputs.iter().enumerate();
-        let lines = outputs.flat_map(|(output, explained)| {
-            let dominant = outcomes
-                .get(output)
-                .and_then(|outcome| outcome.dominant_rule);
-            explained.rules.iter().map(move |rule| Line {
-                row,
-                output,
-                rule: rule.rule,
-                strength: rule.strength,
-                share: rule.share,
-                dominant,
-            })
-        });
-        Ok(lines.collect())
-    });
-    let lines: Result<Vec<Vec<Line>>, EvaluateError> = lines.collect();
-    Ok(lines?.into_iter().flatten().collect())
 }
 
 /// Names of inputs: a list, or one name.
@@ -340,24 +299,7 @@ impl RuleSet {
     ) -> PyResult<Bound<'py, PyDict>> {
         let source = self.source();
         let compiled = Arc::clone(source.compiled(py)?);
-        let columns = columns.iter().map(|column| column.as_array().to_vec());
-        let columns: Vec<Vec<f64>> = columns.collect();
-        let pool = pool(None)?;
-        let rows = interruptible(py, move || {
-            pool.install(|| explained(&compiled.engine, &columns))
-        })?;
-        let rows = rows.map_err(|error| data_error(error, None))?;
-        let found = PyDict::new(py);
-        let number = |get: fn(&Line) -> i64| rows.iter().map(get).collect::<Vec<i64>>();
-        let float = |get: fn(&Line) -> f64| rows.iter().map(get).collect::<Vec<f64>>();
-        found.set_item("row", number(|line| line.row as i64).into_pyarray(py))?;
-        found.set_item("output", number(|line| line.output as i64).into_pyarray(py))?;
-        found.set_item("rule", number(|line| line.rule as i64 + 1).into_pyarray(py))?;
-        found.set_item("strength", float(|line| line.strength).into_pyarray(py))?;
-        found.set_item("share", float(|line| line.share).into_pyarray(py))?;
-        let dominant = number(|line| line.dominant.map_or(0, |rule| rule as i64 + 1));
-        found.set_item("dominant_rule", dominant.into_pyarray(py))?;
-        Ok(found)
+        explained_rows(py, compiled, &columns)
     }
 
     /// Another model that is equal, and apart: an edit of one does not change the other.

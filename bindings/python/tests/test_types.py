@@ -1,5 +1,6 @@
 """What type checkers see."""
 
+import os
 import pathlib
 import subprocess
 import sys
@@ -49,9 +50,11 @@ assert_type(term(array), NDArray[np.float64])
 def test_overloads(tmp_path):
     program = tmp_path / "program.py"
     program.write_text(PROGRAM.replace("typing import assert_type", "typing_extensions import assert_type"))
+    # A package that is not installed is looked for where it was imported from.
     package = pathlib.Path(flagred.__file__).parent.parent
+    environment = {**os.environ, **({} if package.name == "site-packages" else {"MYPYPATH": str(package)})}
     arguments = ["--strict", "--cache-dir", tmp_path / "cache", program]
     done = subprocess.run(
-        [sys.executable, "-m", "mypy", *arguments], capture_output=True, text=True, cwd=package, timeout=300
+        [sys.executable, "-m", "mypy", *arguments], capture_output=True, text=True, cwd=tmp_path, env=environment, timeout=300
     )
     assert done.returncode == 0, done.stdout + done.stderr
