@@ -79,7 +79,7 @@ fn every_package_stands_on_those_below_it_alone() {
         ("bindings/c", "flagred"),
         (
             "bindings/python",
-            "cli evaluation flagred flightlog fuzzy interchange report tuning",
+            "authoring cli evaluation flagred flightlog fuzzy interchange report tuning",
         ),
         (
             "bindings/web",

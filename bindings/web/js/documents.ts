@@ -1,34 +1,34 @@
 // Written by `UPDATE_DOCUMENTS=1 cargo test --workspace --test bindings` from the types in Rust.
 
-/** An input with a value that nobody measured: `ProfileInput::if_missing`. */
+/** An input with an assumed value: `ProfileInput::if_missing`. */
 export interface AssumedInput {
-  /** Its name. */
+  /** The name of the input. */
   input: string;
-  /** Its value. */
+  /** The assumed value. */
   value: number;
-  /** The signals that it is made of; at least one was missing. */
+  /** The signals that the input is computed from; at least one was missing. */
   signals: string[];
 }
 
-/** What raised the risk when a level was reached: `verdict::Cause` by name. */
+/** The cause of the risk when a level was reached: `verdict::Cause` by name. */
 export interface Cause {
-  /** The input of the rule that distinguishes it: of the propositions of its antecedent, that of the fewest rules. */
+  /** The input that distinguishes the rule: the input of the proposition in its antecedent that the fewest rules share. */
   input: string;
   /** The value of that input. */
   value: number;
   /** The term, with its hedges. */
   term: string;
-  /** The rule as its index in the model; serialised, as its number from 1. */
+  /** The index of the rule in the model; serialised as its number, from 1. */
   rule: number;
 }
 
-/** The nearest change if one input changes and the others stay. */
+/** The nearest change of the result if one input changes and the others do not. */
 export type Change = {
   /** The input that changes. */
   input: string;
-  /** The value of the input from which on the change holds. */
+  /** The value of the input at which the change takes effect. */
   at: number;
-  /** How far that is from its value now; negative below it. */
+  /** The difference between that value and the current one; negative if it is below. */
   by: number;
   effect: 'term';
   /** The term. */
@@ -36,69 +36,69 @@ export type Change = {
 } | {
   /** The input that changes. */
   input: string;
-  /** The value of the input from which on the change holds. */
+  /** The value of the input at which the change takes effect. */
   at: number;
-  /** How far that is from its value now; negative below it. */
+  /** The difference between that value and the current one; negative if it is below. */
   by: number;
   effect: 'rule';
-  /** The output. */
+  /** The name of the output. */
   output: string;
-  /** The index of the rule in the model, none where no rule fires; serialised, rules count from 1. */
+  /** The index of the rule in the model, null if no rule fires; serialised as the rule number, which counts from 1. */
   rule: number | null;
-  /** The value of the output there. */
+  /** The value of the output at the changed input. */
   value: number | null;
 };
 
 /** The degree of membership of a value in a term. */
 export interface Degree {
-  /** The term. */
+  /** The name of the term. */
   term: string;
   /** The degree, in [0, 1]. */
   degree: number;
 }
 
-/** An input, and the degrees of its terms. */
+/** An input with the degrees of its terms. */
 export interface ExplainedInput {
-  /** Its name. */
+  /** The name of the input. */
   name: string;
-  /** The value that was given. */
+  /** The value before clamping. */
   given: number;
-  /** The value that was used: the end of the range where the given one lies outside. */
+  /** The value that was used: clamped to the range of the input. */
   value: number;
   /** The degree of each term. */
   terms: Degree[];
 }
 
-/** An output, and the rules that contribute to it. */
+/** An output with the rules that contribute to it. */
 export interface ExplainedOutput {
-  /** Its name. */
+  /** The name of the output. */
   name: string;
-  /** The value; none where no rule fires and the model has no default. */
+  /** The value; null if no rule fires and the output has no default. */
   value: number | null;
-  /** Whether no rule fires and the value is the model's default. */
+  /** Whether no rule fires and the value is the default of the output. */
   is_default: boolean;
-  /** Whether it keeps its previous value where no rule fires. One point has none before it. */
+  /** Whether the output keeps its previous value where no rule fires. An explanation covers a single point, which has no previous value. */
   keeps_previous: boolean;
-  /** The outputs whose values it reads. Where one of them has no value, no rule of this output fires, and it has none. */
+  /** The outputs whose values this output reads. If one of them has no value, no rule of this output fires, and it has no value either. */
   reads: string[];
   /** The largest firing strength of a rule of this output. */
   coverage: number;
-  /** The rules that contribute to it, the largest share first. */
+  /** The rules that contribute to it, by decreasing share. */
   rules: Share[];
   /** The degree of the value in each term; empty for Takagi-Sugeno outputs. */
   terms: Degree[];
-  /** The aggregated set: `(value, degree)` at even steps over the range, or at the places of singletons; empty for Takagi-Sugeno and Tsukamoto outputs. */
+  /** The aggregated set: `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for Takagi-Sugeno and Tsukamoto outputs. */
   set: [number, number][];
 }
 
-/** How the outputs come about at a point: `flagred explain --json`. */
+/** An explanation of the outputs at a point: `flagred explain --json`. */
 export interface Explanation {
   schema: 'flagred.explain/1';
   /** The name of the rule set. */
   model: string;
   /** The inputs, with the degree of each of their terms. */
   inputs: ExplainedInput[];
-  /** The rules that fired, the strongest first. */
+  /** The rules that fired, by decreasing firing strength. */
   rules: FiredRule[];
   /** The outputs. */
   outputs: ExplainedOutput[];
@@ -110,17 +110,17 @@ export interface Explanation {
 
 /** A rule that fired. */
 export interface FiredRule {
-  /** Its index in the model; serialised, rules count from 1. */
+  /** The index of the rule in the model; serialised as the rule number, which counts from 1. */
   rule: number;
-  /** The rule as it is written. */
+  /** The text of the rule. */
   text: string;
   /** The degree of its condition. */
   degree: number;
-  /** The degree times the weight, as the activation method leaves it; hedges of its consequents change it in `Share::strength`. */
+  /** The degree of the condition times the weight of the rule, adjusted by the activation method. Hedges of its consequents are applied in `Share::strength`. */
   strength: number;
 }
 
-/** What is said of a flight: `flagred assess --json`. `docs/json.md` describes it. */
+/** The assessment of a flight: `flagred assess --json`. `docs/json.md` describes it. */
 export interface FlightDocument {
   schema: 'flagred.assess/1';
   /** The log that was read. */
@@ -133,48 +133,48 @@ export interface FlightDocument {
   verdict: VerdictWord;
   /** Only with `NA`: why there is no verdict. */
   reason?: string;
-  /** Only with `NA`: what the pilot can do to get a verdict next time. */
+  /** Only with `NA`: how the pilot can get a verdict next time. */
   help?: string | null;
-  /** The gravest first, those of equal severity in order of time; of many the gravest 1,000. */
+  /** The findings, the gravest first, those of equal severity in order of time; at most 1,000. */
   findings: FlightFinding[];
-  /** How many findings were left out. */
+  /** The number of findings that were left out. */
   findings_left_out: number;
   summary: Summary;
-  /** The inputs whose values were assumed because the log lacks their signals. */
+  /** The inputs whose values were assumed because their signals are missing from the log. */
   assumed_inputs: AssumedInput[];
   /** The risk over time. The npm package can leave it out; `flagred assess` never does. */
   steps?: Step[];
-  /** Seconds between the steps, where they are further apart than was asked for: 250,000 are kept at most. */
+  /** The distance between the steps in seconds, if it is larger than requested because at most 250,000 steps are kept. */
   widened_step_s: number | null;
 }
 
-/** A finding with the output of its motor, and in words. */
+/** A finding with the output of its motor, and its words. */
 export interface FlightFinding {
   /** The worst level that was reached. */
   severity: Level;
-  /** Since when the level was reached, in seconds. */
+  /** The time at which the level was first reached, in seconds. */
   from_s: number;
-  /** When it was first raised: `after_s` of that level later. */
+  /** The time at which it was first raised, in seconds: `after_s` of that level later. */
   raised_s: number;
-  /** When it became FAIL; null where it did not. */
+  /** The time at which it was raised to FAIL, in seconds; null if it was not. */
   failed_s: number | null;
-  /** When the level was last reached. It is held for a while longer. */
+  /** The time at which the level was last reached, in seconds. It is held for some time after that. */
   to_s: number;
-  /** What reached the level first. */
+  /** The measure that reached the level first. */
   measure: Measure;
   /** The threshold of the level in %. */
   threshold_pct: number;
-  /** The worst value of the measure in that time, in %. */
+  /** The worst value of the measure in that period, in %. */
   value_pct: number;
-  /** The motor that is the cause. Of a risk: where the cause is that motors are near a limit, the one with the least margin while the level was being raised. Of an imbalance: the one out of balance. */
+  /** The motor that is the cause. For a risk caused by motors near a limit, the motor with the least margin while the level was being raised. For an imbalance, the motor that is out of balance. */
   motor: MotorFinding | null;
-  /** What raised the risk; null where no rule did, as for a notice or an interpolated risk. */
+  /** The cause of the risk; null if no rule raised it, as for a notice or an interpolated risk. */
   cause: Cause | null;
-  /** The output that is the risk, where it is one of `Profile::other_risks`. */
+  /** The output that is the risk, if it is one of `Profile::other_risks`. */
   risk_output?: string;
-  /** The output of the motor, as the log names it. */
+  /** The name of the motor's output in the log. */
   output: string | null;
-  /** What kind of finding it is: a stable word for programs, such as `fighting_gusts`. */
+  /** The kind of finding: a stable word for programs, such as `fighting_gusts`. */
   code: string;
   /** What happened, and what it means, for pilots. */
   text: string;
@@ -182,18 +182,18 @@ export interface FlightFinding {
   advice: string;
 }
 
-/** How many moments were followed by an attitude error over 5 degrees within 5 s. */
+/** The number of moments that were followed by an attitude error over 5 degrees within 5 s. */
 export interface Followed {
-  /** All moments, one each 0.5 s. */
+  /** The number of moments, one every 0.5 s. */
   moments: number;
-  /** Those that were followed by such an error. */
+  /** The number of moments that were followed by such an error. */
   followed: number;
 }
 
-/** The kind of log a flight was read from. */
+/** The format of a flight log. */
 export type Format = string;
 
-/** What a log has beyond the bounds of what is kept of it: counted only. No flight comes near a bound; damaged and hostile logs do. */
+/** Counts of the data beyond the limits of what is kept. No real flight reaches a limit; damaged and malicious logs may. */
 export interface LeftOut {
   /** Texts after the first 10,000. */
   texts: number;
@@ -201,94 +201,94 @@ export interface LeftOut {
   modes: number;
   /** Values of parameters after the first 16,384 names, and those with names longer than 64 bytes. */
   parameters: number;
-  /** Changes of armed and in the air after the first 10,000 of each, where only the commands tell them. Nothing after these counts as in the air. */
+  /** Changes of armed and in the air after the first 10,000 of each, if they are derived from the commands. The time after them does not count as in the air. */
   changes: number;
-  /** Messages after those that fill a flight: 67,108,864 numbers, 10,000 events of arming and flying, or 1,000 boots. The flight ends there. */
+  /** Messages after the flight has reached a limit: 67,108,864 numbers, 10,000 events of arming and flying, or 1,000 boots. The flight ends there. */
   messages: number;
 }
 
-/** How risky it is, or was. */
+/** How risky a moment, or a flight, is. */
 export type Level = 'GOOD' | 'INFO' | 'WARN' | 'FAIL';
 
-/** When a level is raised and until when it is held. */
+/** The conditions under which a level is raised and held. */
 export interface LevelSettings {
-  /** The level is raised when this is reached ... */
+  /** The threshold that raises the level. */
   raise: Threshold;
-  /** ... for this long without a break, in seconds. */
+  /** How long the threshold must be reached without a break, in seconds. */
   after_s: number;
-  /** Once raised, the level is held while this, which is lower, is reached. */
+  /** The threshold that holds the level once it is raised; lower than `raise`. */
   until: Threshold;
 }
 
-/** A limit that has to be passed for a while. */
+/** A limit that must be exceeded for some time. */
 export interface Limit {
   /** The limit, on the effective range. */
   value: number;
-  /** For how long, in seconds. */
+  /** How long it must be exceeded, in seconds. */
   after_s: number;
 }
 
 export interface Log {
-  /** Its path, as given. */
+  /** The path of the log, as given. */
   path: string;
-  /** The kind of log, such as `ArduPilot DataFlash`. */
+  /** The format of the log, such as `ArduPilot DataFlash`. */
   format: Format;
 }
 
-/** The quantity that a threshold is on. */
+/** The quantity that a threshold applies to. */
 export type Measure = 'risk' | 'elevated_risk' | 'command_noise' | 'reserve' | 'imbalance' | 'pair_imbalance' | 'weak_motor' | 'idle_in_air';
 
-/** A time of a flight. */
+/** The state at a time of a flight. */
 export interface Moment {
-  /** The time that was asked for, in seconds. */
+  /** The requested time, in seconds. */
   t_s: number;
   /** The flight mode. */
   mode: string | null;
-  /** The latest step, where it is not long ago. */
+  /** The latest step, if it is recent. */
   step: Step | null;
-  /** The distance to the nearest inputs that rules cover, in shares of their ranges, where the risk is interpolated. */
+  /** If the risk is interpolated, the distance to the nearest inputs that rules cover, in shares of their ranges. */
   filled_from: number | null;
   /** Whether an input was outside its range. */
   clamped: boolean;
-  /** The inputs with the degrees of their terms; empty where one is unknown. */
+  /** The inputs with the degrees of their terms; empty if one is unknown. */
   inputs: ExplainedInput[];
-  /** The units of the inputs that have one. */
+  /** The units of the inputs, by name; inputs without a unit are omitted. */
   units: Record<string, string>;
-  /** The rules that fire, the strongest first. */
+  /** The rules that fire, strongest first. */
   rules: FiredRule[];
 }
 
 /** One motor, and the output that drives it. */
 export interface Motor {
-  /** Motor number of the autopilot, from 1. */
+  /** The motor number of the autopilot, from 1. */
   number: number;
-  /** The output as the log names it, such as `C3` or `actuator_motors.control[2]`. */
+  /** The name of the output in the log, such as `C3` or `actuator_motors.control[2]`. */
   output: string;
-  /** Where the assignment came from, such as `SERVO3_FUNCTION = 35`. */
+  /** The source of the assignment, such as `SERVO3_FUNCTION = 35`. */
   source: string;
 }
 
-/** The motor behind a finding. */
+/** The motor that caused a finding. */
 export interface MotorFinding {
-  /** Its number, from 1: of a log or a vehicle that of the autopilot, else its place in the samples. */
+  /** Its number, from 1: the number of the autopilot in logs and vehicles, otherwise its position in the samples. */
   number: number;
-  /** The number of the other motor that it may be as well, where the commands do not show which of the two. */
+  /** The number of a second motor that may be the cause instead, if the commands do not show which of the two. */
   or_number: number | null;
-  /** The limit it was nearest to. Out of balance: below or above its part. */
+  /** The nearest limit. For an imbalance, whether it is below or above its part. */
   side: Side;
   /** Its mean margin. */
   margin_mean: number;
-  /** Its least margin. */
+  /** Its smallest margin. */
   margin_min: number;
 }
 
-/** What is told beside the risk; null is not. */
+/** The limits of the findings that are not about the risk; null disables a finding. */
 export interface NoticeSettings {
-  /** Noise of the commands above this: vibration, or gains too high. */
+  /** The noise of the commands above which it is reported: vibration, or gains that are too high. */
   noise: Limit | null;
-  /** A mean command that leaves less than this below the upper limit. */
+  /** The reserve of the mean command to the upper limit below which it is reported. */
   reserve: Limit | null;
-  /** Motors that moved farther than this from their own part of the thrust earlier in the flight, or are farther than twice this from the motor opposite; half of it where one motor alone moved up. */
+  /** The deviation of motors from their own part of the thrust earlier in the flight above which it is reported; twice this between opposite motors, half of it if one motor alone is higher. */
   imbalance: Limit | null;
 }
 
@@ -296,131 +296,131 @@ export interface NoticeSettings {
 export interface Parameter {
   /** Its name. */
   name: string;
-  /** Its first value: failure tests and learning change parameters in flight. */
+  /** The first value, because failure tests and learning change parameters in flight. */
   value: number;
-  /** What told it, such as `PARM` or `PARAM_VALUE`. */
+  /** The message that contains it, such as `PARM` or `PARAM_VALUE`. */
   source: string;
 }
 
 /** The largest value of a quantity. */
 export interface Peak {
-  /** When it was first reached, in seconds. */
+  /** The time at which it was first reached, in seconds. */
   t_s: number;
   /** The value in %. */
   value_pct: number;
 }
 
-/** What the verdict rests on beside the flight. */
+/** The profile that the assessment used. */
 export interface Profile {
-  /** Its name. */
+  /** The name of the profile. */
   name: string;
   /** The name of its rule set, or its file. */
   rules: string;
-  /** When levels are raised and lowered. */
+  /** The conditions under which levels are raised and cleared. */
   verdict: VerdictSettings;
-  /** How often errors followed a risk; empty where it was not measured. */
+  /** How often large attitude errors followed a risk; empty if it was not measured. */
   reliability: Reliability[];
 }
 
-/** A range of commands, and where it came from. */
+/** A range of commands, and its source. */
 export interface Range {
-  /** Lower end. */
+  /** The lower end. */
   low: number;
-  /** Upper end, above `low`. */
+  /** The upper end, above `low`. */
   high: number;
-  /** Unit of both: `us`, `1` (a fraction) or `raw` (counts of a bus). */
+  /** The unit of both: `us`, `1` (a fraction) or `raw` (counts of a bus). */
   unit: string;
-  /** Where it came from, such as `MOT_PWM_MIN/MAX`. */
+  /** The source of the range, such as `MOT_PWM_MIN/MAX`. */
   source: string;
 }
 
-/** How many moments with a risk of a band were followed by a large attitude error. */
+/** How often a large attitude error followed moments with a risk in a band. */
 export interface Reliability {
-  /** The lower end of the band in %; it belongs to it. */
+  /** The lower end of the band in %, inclusive. */
   from_pct: number;
-  /** The upper end in %; 100 belongs to the last band. */
+  /** The upper end of the band in %, exclusive except for 100. */
   to_pct: number;
-  /** On real vehicles. */
+  /** The frequency on real vehicles. */
   real: Followed | null;
-  /** On simulated ones. */
+  /** The frequency on simulated vehicles. */
   simulated: Followed | null;
 }
 
-/** Report on the reading of a log. */
+/** A report on reading a log. */
 export interface Report {
-  /** Bytes of the log that were read. */
+  /** The number of bytes of the log that were read. */
   bytes: number;
-  /** Complete messages, kept or not (rows in a CSV file). */
+  /** The number of complete messages, kept or not (rows in a CSV file). */
   messages: number;
-  /** Bytes that belong to no message. */
+  /** The number of bytes that are not part of any message. */
   skipped_bytes: number;
-  /** Messages that were recognised and rejected as damaged. */
+  /** The number of messages that were recognised and rejected as damaged. */
   bad_messages: number;
-  /** The log ends inside a message, or the compressed stream ends early. */
+  /** Whether the log ends inside a message, or the compressed stream ends early. */
   truncated: boolean;
   /** The first reason for which bytes were skipped or a message was rejected. */
   reason: string | null;
-  /** What the log has beyond the bounds of what is kept. */
+  /** The data beyond the limits of what is kept. */
   left_out: LeftOut;
 }
 
-/** What a rule contributes to an output. */
+/** The contribution of a rule to an output. */
 export interface Share {
-  /** The rule's index in the model; serialised, rules count from 1. */
+  /** The index of the rule in the model; serialised as the rule number, which counts from 1. */
   rule: number;
-  /** The term it concludes. */
+  /** The term that the rule concludes. */
   term: string;
-  /** Its firing strength. */
+  /** The firing strength. */
   strength: number;
-  /** Its share of the result, in [0, 1]. With the maximum as aggregation, the part of the aggregated set's area where this rule is the highest; with sums, its part of the area of all sets; in a Takagi-Sugeno or Tsukamoto output, its part of the weights. */
+  /** The share of the result, in [0, 1]. With maximum as aggregation, it is the fraction of the aggregated set's area in which this rule is the highest; with sums, the rule's fraction of the area of all sets; in a Takagi-Sugeno or Tsukamoto output, its fraction of the weights. */
   share: number;
-  /** In a Takagi-Sugeno or Tsukamoto output, and one of singletons, the number that its consequent gives at these inputs. */
+  /** The number that the consequent yields at these inputs; only for Takagi-Sugeno and Tsukamoto outputs and for singletons. */
   value: number | null;
 }
 
-/** The limit that a motor is nearer to. */
+/** The nearer limit of a motor. */
 export type Side = 'lower' | 'upper';
 
-/** A rule that does not fire at a point, and why. */
+/** A rule that does not fire at a point, with the reason. */
 export type SilentRule = {
-  /** Its index in the model; serialised, rules count from 1. */
+  /** The index of the rule in the model; serialised as the rule number, which counts from 1. */
   rule: number;
-  /** The rule as it is written. */
+  /** The text of the rule. */
   text: string;
   reason: 'condition';
-  /** The part as it is written. */
+  /** The text of the part. */
   condition: string;
 } | {
-  /** Its index in the model; serialised, rules count from 1. */
+  /** The index of the rule in the model; serialised as the rule number, which counts from 1. */
   rule: number;
-  /** The rule as it is written. */
+  /** The text of the rule. */
   text: string;
   reason: 'no_value';
-  /** The output. */
+  /** The name of that output. */
   output: string;
 } | {
-  /** Its index in the model; serialised, rules count from 1. */
+  /** The index of the rule in the model; serialised as the rule number, which counts from 1. */
   rule: number;
-  /** The rule as it is written. */
+  /** The text of the rule. */
   text: string;
   reason: 'disabled';
 } | {
-  /** Its index in the model; serialised, rules count from 1. */
+  /** The index of the rule in the model; serialised as the rule number, which counts from 1. */
   rule: number;
-  /** The rule as it is written. */
+  /** The text of the rule. */
   text: string;
   reason: 'weight';
 } | {
-  /** Its index in the model; serialised, rules count from 1. */
+  /** The index of the rule in the model; serialised as the rule number, which counts from 1. */
   rule: number;
-  /** The rule as it is written. */
+  /** The text of the rule. */
   text: string;
   reason: 'activation';
-  /** The degree of its condition times its weight. */
+  /** The degree of the condition times the weight. */
   strength: number;
 };
 
-/** What was known at one time of a flight, as serde data; from `Step::by_name`. */
+/** The state at one time of a flight as serde data; from `Step::by_name`. */
 export interface Step {
   /** The time on the clock of the log, in seconds. */
   t_s: number;
@@ -428,11 +428,11 @@ export interface Step {
   risk: number | null;
   /** The elevated risk in %. */
   elevated_risk: number | null;
-  /** The largest firing strength of a rule, in [0, 1]. */
+  /** The coverage: the largest firing strength of a rule, in [0, 1]. */
   coverage: number | null;
-  /** Whether the risk is interpolated, since no rule applies. */
+  /** Whether the risk is interpolated, because no rule applies. */
   filled: boolean | null;
-  /** The number of the rule with the largest firing strength, from 1; null where none fires. */
+  /** The number of the rule with the largest firing strength, from 1; null if none fires. */
   dominant_rule: number | null;
   /** The mean margin over all motors and the window of the profile. */
   margin: number | null;
@@ -444,11 +444,11 @@ export interface Step {
   inputs: Record<string, number | null>;
 }
 
-/** A flight in a few numbers. The risks are those of judged time (`Update::judged`). */
+/** Summary figures of a flight. The risks are those of judged time (`Update::judged`). */
 export interface Summary {
-  /** The time in the air: the sum of all flights of a log, in seconds. */
+  /** The time in the air, summed over all flights of a log, in seconds. */
   in_air_s: number;
-  /** The time in the air with a known risk, of several with all of them known, in seconds. */
+  /** The time in the air with a known risk (with several risks, with all of them known), in seconds. */
   assessed_s: number;
   /** The time in the air with a risk interpolated where no rule applies, in seconds. */
   filled_s: number;
@@ -462,20 +462,20 @@ export interface Summary {
   saturated_share: number | null;
 }
 
-/** A limit on each quantity; reaching either is enough. */
+/** Thresholds on the risk and the elevated risk; reaching either is enough. */
 export interface Threshold {
-  /** On the risk, in %. */
+  /** The threshold on the risk, in %. */
   risk_pct: number | null;
-  /** On the elevated risk, in %. */
+  /** The threshold on the elevated risk, in %. */
   elevated_risk_pct: number | null;
 }
 
 export interface Vehicle {
-  /** What kind it is, such as `multirotor`. */
+  /** The kind of vehicle, such as `multirotor`. */
   kind: VehicleKind;
-  /** Frame or type name, such as `QUAD/X`. */
+  /** The name of the frame or type, such as `QUAD/X`. */
   frame: string | null;
-  /** Firmware with version. */
+  /** The firmware with its version. */
   firmware: string | null;
   /** The motors in order of their number. */
   motors: Motor[];
@@ -483,34 +483,34 @@ export interface Vehicle {
   range: Range | null;
   /** The part of the range that is used in flight, as fractions of it. */
   effective_range: Range;
-  /** Why the used part counts as the whole range although the log reports limits. */
+  /** The reason why the whole range is used although the log contains limits. */
   effective_range_doubt: string | null;
-  /** What is assumed of motors, their commands and ranges because the log does not report it, in words. */
+  /** What is assumed about motors, their commands and ranges because the log does not record it, in words. */
   assumed: string[];
-  /** Parameters of the autopilot that motors and ranges rest on, and gains, as far as the log has them. */
+  /** The parameters of the autopilot that determine motors and ranges, and the gains, if the log contains them. */
   parameters: Parameter[];
 }
 
-/** What kind of vehicle flew. */
+/** The kind of vehicle. */
 export type VehicleKind = string;
 
-/** When levels are raised and lowered. */
+/** The conditions under which levels are raised and cleared. */
 export interface VerdictSettings {
-  /** When to warn. */
+  /** The conditions for WARN. */
   warn: LevelSettings;
-  /** When it fails. */
+  /** The conditions for FAIL. */
   fail: LevelSettings;
-  /** A level is lowered when nothing has held it for this long, in seconds: to the level that is held then. */
+  /** A level is cleared when nothing has held it for this time, in seconds. The new level is the one that is held then. */
   clear_after_s: number;
-  /** In the first seconds in the air only FAIL is raised; WARN does not count as reached. */
+  /** In this time after take-off, in seconds, only FAIL is raised; WARN does not count as reached. */
   quiet_after_take_off_s: number;
-  /** A WARN that is raised in the last seconds before touch-down is taken back, unless FAIL is being reached at touch-down. */
+  /** A WARN that is raised in this time before touch-down, in seconds, is withdrawn, unless FAIL is being reached at touch-down. */
   quiet_before_landing_s: number;
-  /** While their mean effective command is below this, the motors idle: before take-off and after landing the vehicle is on the ground, also where the land detector lags. Motors that begin to idle within 2 s after a risk that reaches WARN do not rest. Motors that idle for 3 s while the autopilot reports that the vehicle is in the air are a fall, with a risk of 100 %. */
+  /** While their mean effective command is below this, the motors idle: before take-off and after landing the vehicle then counts as on the ground, even if the land detector lags. Motors that begin to idle within 2 s after a risk that reaches WARN do not count as a landing. Motors that idle for 3 s while the autopilot reports that the vehicle is in the air count as a fall, with a risk of 100 %. */
   idle_below: number;
-  /** What is told beside the risk. */
+  /** The limits of the findings that are not about the risk. */
   notices: NoticeSettings;
 }
 
-/** A verdict in one word. */
+/** A verdict as one word. */
 export type VerdictWord = 'GOOD' | 'WARN' | 'FAIL' | 'NA';

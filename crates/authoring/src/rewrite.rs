@@ -20,7 +20,7 @@ use crate::{Edit, edited, numbers};
 /// inputs: {heat: {range: [0, 40], partition: {cool: 5, hot: 35}}}
 /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
 /// rules:
-///   # from the manual
+///   ## from the manual
 ///   - IF heat IS hot THEN speed IS fast # loud
 /// ";
 /// let document = fuzzy::yaml::parse(text)?;

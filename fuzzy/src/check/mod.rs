@@ -53,12 +53,9 @@ pub use trend::AgainstTrend;
 /// ```
 /// use fuzzy::check::{Direction, Monotone, Options};
 ///
-/// let claim: Monotone = "heat:increasing:speed".parse()?;
-/// assert_eq!(claim.direction, Direction::Increasing);
 /// let mut options = Options::default();
-/// options.monotone.push(claim);
+/// options.monotone.push(Monotone::new("heat:speed", Direction::Increasing));
 /// assert_eq!(options.coverage, 0.5);
-/// # Ok::<(), String>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -199,7 +196,10 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
 ///
 /// # Example: a fan that slows down at the highest temperatures
 /// ```
-/// use fuzzy::{Engine, Model, check};
+/// use fuzzy::{
+///     Engine, Model,
+///     check::{self, Direction, Monotone},
+/// };
 ///
 /// let model: Model = "
 /// fuzzy: 1
@@ -208,7 +208,8 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
 /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
 /// rules: [IF heat IS medium THEN speed IS fast, IF heat IS high THEN speed IS slow]
 /// ".parse()?;
-/// let found = check::counterexamples(&Engine::new(&model)?, &["heat:increasing".parse()?])?;
+/// let claim = Monotone::new("heat", Direction::Increasing);
+/// let found = check::counterexamples(&Engine::new(&model)?, &[claim])?;
 /// assert_eq!((found[0].at[0].value, found[0].to), (20.0, 40.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

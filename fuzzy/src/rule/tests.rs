@@ -155,7 +155,7 @@ fn every_mistake_says_where_and_what_to_do() {
             "IF margin IS very THEN r IS h",
             "THEN",
             "expected a term or a hedge, found `THEN`",
-            "in quotes",
+            "add a term before `THEN`",
         ),
         (
             "IF (margin IS low THEN r IS h",
