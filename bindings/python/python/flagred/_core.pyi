@@ -32,6 +32,7 @@ __all__ = [
     "_simplify",
     "_built_in",
     "_c_means",
+    "_command",
     "_tune",
 ]
 
