@@ -1,5 +1,5 @@
 //! What an editor of rule sets and profiles asks for, whatever program shows the text: its findings, what can be written at a
-//! place, what a name means, new names, one layout, and numbers that change in place.
+//! place, what a name means, new names, one layout, parts that are added and removed, and numbers that change in place.
 //!
 //! It knows no protocol, opens no file and prints nothing: places are offsets in bytes, changes are [`Edit`]s. Where a profile
 //! names the file of a rule set, the caller gives its text.
@@ -37,6 +37,7 @@ mod numbers;
 pub mod provenance;
 pub mod slice;
 pub mod starter;
+pub mod structure;
 
 pub use document::{Document, Examined, examine, is_profile};
 
