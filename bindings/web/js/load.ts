@@ -4,7 +4,7 @@ import type { InitInput } from './wasm/rules.js';
 export type Source = InitInput | Promise<InitInput>;
 
 /** The module of a name, from the file beside this one. */
-export async function beside(name: 'flight' | 'rules'): Promise<InitInput> {
+export async function beside(name: 'data' | 'flight' | 'rules'): Promise<InitInput> {
   const url = new URL(`./wasm/${name}_bg.wasm`, import.meta.url);
   if (url.protocol !== 'file:') return url;
   // Only Node can read it so; its name is put together so that bundlers for browsers do not look for it.

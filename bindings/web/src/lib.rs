@@ -3,8 +3,11 @@
 //! What is refused is thrown as an `Error` with the words of the command line. Documents are JSON, the same as the command
 //! line's; columns and maps are `Float64Array`.
 //!
-//! It is compiled twice, with either feature: whoever looks at flights need not load what rule sets are edited with.
+//! It is compiled once for each feature: a page that shows flights need not load what rule sets are edited with, nor an editor what
+//! tunes them.
 
+#[cfg(feature = "data")]
+pub mod data;
 mod failure;
 #[cfg(feature = "flight")]
 pub mod flight;

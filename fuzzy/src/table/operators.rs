@@ -272,7 +272,8 @@ impl Aggregation {
 
 impl Hedge {
     /// The hedged degree.
-    pub(crate) fn of(self, x: f64) -> f64 {
+    #[must_use]
+    pub fn of(self, x: f64) -> f64 {
         match self {
             Hedge::Not => 1.0 - x,
             Hedge::Very => x * x,

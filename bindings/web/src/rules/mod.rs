@@ -1,8 +1,10 @@
 //! Rule sets: an open text under an author's hands, a compiled rule set to evaluate and draw, and other programs' formats.
 
 pub mod exchange;
+pub mod parts;
 pub mod set;
 pub mod text;
+pub mod viewer;
 
 use flagred::shipped;
 use flagred_authoring::{answers::Checked, starter};

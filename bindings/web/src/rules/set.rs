@@ -27,7 +27,7 @@ const CURVE_POINTS: usize = 401;
 /// A rule set, compiled once.
 #[wasm_bindgen(js_name = RuleSet)]
 pub struct RuleSet {
-    engine: Engine,
+    pub(super) engine: Engine,
     /// Of a profile: its output, what fills the gaps of its rules, and the name of the method.
     profile: Option<(usize, Filling, &'static str)>,
 }
