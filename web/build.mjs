@@ -10,7 +10,7 @@ const here = fileURLToPath(new URL('.', import.meta.url));
 const page = fileURLToPath(new URL('../target/web/page/', import.meta.url));
 const studio = fileURLToPath(new URL('../crates/cli/page/studio.html', import.meta.url));
 const module = (room) => fileURLToPath(new URL(`../bindings/web/js/wasm/${room}_bg.wasm`, import.meta.url));
-const rooms = ['flight', 'rules'];
+const rooms = ['flight', 'rules', 'data'];
 
 const common = {
   absWorkingDir: here,

@@ -15,6 +15,8 @@ export interface BackingFile {
 export interface App {
   /** The room's own worker. */
   engine: Engine;
+  /** A worker for rows of data; its module is loaded now. */
+  data(): Engine;
   /** What the address says of the room. */
   parameters(): URLSearchParams;
   /** Says it in the address. */

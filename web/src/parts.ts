@@ -14,7 +14,7 @@ export function worker(): Worker {
 }
 
 /** The compiled module of a room. */
-export async function module(room: 'flight' | 'rules'): Promise<WebAssembly.Module> {
+export async function module(room: 'data' | 'flight' | 'rules'): Promise<WebAssembly.Module> {
   const name = `${room}.wasm`;
   const packed = embedded(name);
   if (packed === undefined) return WebAssembly.compileStreaming(fetch(name));

@@ -2,6 +2,7 @@
 
 import type { Colours, DrawnTerm, DrawnVariable, Handle } from 'flagred';
 import { fill, h } from '../dom';
+import { s, set } from '../svg';
 import type { Place } from './calls';
 import { clamp, short, ticks } from './numbers';
 
@@ -52,18 +53,6 @@ interface Plot {
   mark(value: number): void;
 }
 
-/** An element of SVG. */
-function s<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>, ...children: Node[]): SVGElementTagNameMap[K] {
-  const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
-  set(made, attributes);
-  made.append(...children);
-  return made;
-}
-
-function set(element: Element, attributes: Record<string, string | number>): void {
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
-}
-
 function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours, dragging: Dragging): Plot {
   let variable = first;
   let drawn = '';
@@ -96,6 +85,8 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
     ...points.flat().map((point) => point.element),
   );
   const told = h('output', { class: 'soft' });
+  /** The point that was moved last. */
+  let moved: [term: number, handle: number] | undefined;
   const legend = first.terms.map((term, t) => {
     return h('li', {}, coloured(h('span', { class: 'swatch', 'aria-hidden': 'true' }), t), term.name);
   });
@@ -110,7 +101,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
   element.querySelector('.picture')!.append(svg);
 
   function handle(t: number, i: number): { element: SVGGElement; show(term: DrawnTerm, handle: Handle): void } {
-    const dot = coloured(s('circle', { class: 'dot', r: 6 }), t);
+    const dot = coloured(s('circle', { class: 'dot', r: 5 }), t);
     const group = s('g', { class: 'handle', tabindex: 0, role: 'slider' }, s('circle', { class: 'reach', r: 16 }), dot);
     const place: Place = { variable: index, term: t, handle: i };
     /** Where it goes, until it is drawn there. */
@@ -167,7 +158,8 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
         });
         // A point beyond what is shown cannot be taken hold of.
         group.style.display = across(x) < FRAME.left - 1 || across(x) > WIDTH - FRAME.right + 1 ? 'none' : '';
-        if (group.classList.contains('held') || document.activeElement === group) told.textContent = words;
+        if (group.classList.contains('held') || document.activeElement === group) moved = [t, i];
+        if (moved?.[0] === t && moved[1] === i) told.textContent = words;
       },
     };
   }
