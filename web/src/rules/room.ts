@@ -9,15 +9,16 @@ import { backing, type Backing } from './backing';
 import type { Opened, Picture, Place } from './calls';
 import { KINDS, read, settle, view as viewOf, written, type Choice } from './choice';
 import { editor, type Editor } from './editor';
+import { data } from './data';
 import { drawn, opened as openedFile, saved } from './exchange';
 import { explain } from './explanation';
 import { inputs } from './inputs';
 import { decisionMap, type Kind } from './map';
-import { data } from './data';
 import { problems } from './problems';
 import { LONGEST, pack, unpack } from './share';
 import { before, keep, kept, setAside } from './store';
 import { table } from './table';
+import { tabs } from './tabs';
 import { terms } from './terms';
 import { viewer } from './viewer';
 
@@ -154,33 +155,16 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   );
   const paper = h('div', { class: 'editor' });
   const heading = h('h1', {}, 'Rules');
-  const tabs = (['Text', 'Table'] as const).map((words) =>
-    h('button', { type: 'button', role: 'tab', id: `rules-${words}`, 'aria-selected': String(words === 'Text'), 'aria-controls': 'rules-writing', tabindex: words === 'Text' ? 0 : -1, onclick: () => chooseTab(words), onkeydown: otherTab }, words),
-  );
-  const writing = h('div', { role: 'tabpanel', id: 'rules-writing', 'aria-labelledby': 'rules-Text' }, paper, forms.element);
-  forms.element.hidden = true;
-  function chooseTab(words: 'Text' | 'Table'): void {
-    for (const tab of tabs) {
-      tab.setAttribute('aria-selected', String(tab.textContent === words));
-      tab.tabIndex = tab.textContent === words ? 0 : -1;
-    }
-    writing.setAttribute('aria-labelledby', `rules-${words}`);
-    [paper.hidden, forms.element.hidden] = [words !== 'Text', words !== 'Table'];
+  const writing = tabs('Edit as', [['Text', paper], ['Table', forms.element]], () => {
     if (opened && !forms.element.hidden) forms.show(opened.parts, opened.variables);
-  }
-  function otherTab(event: KeyboardEvent): void {
-    if (event.key !== 'ArrowLeft' && event.key !== 'ArrowRight') return;
-    const other = tabs.find((tab) => tab !== event.currentTarget)!;
-    chooseTab(other.textContent as 'Text' | 'Table');
-    other.focus();
-  }
+  });
   fill(
     root,
     h('div', { class: 'head' }, heading, bar),
     h(
       'div',
       { class: 'columns' },
-      h('div', { class: 'writing' }, h('div', { class: 'tabs', role: 'tablist', 'aria-label': 'Edit as' }, ...tabs), writing, found.element),
+      h('div', { class: 'writing' }, writing.list, writing.panel, found.element),
       h(
         'div',
         { class: 'seeing' },
