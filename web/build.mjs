@@ -21,7 +21,9 @@ const common = {
   legalComments: 'none',
   loader: { '.gz': 'binary' },
   logLevel: 'warning',
-  alias: { flagred: fileURLToPath(new URL('../target/web/package/index.js', import.meta.url)) },
+  alias: Object.fromEntries(
+    [['flagred', 'index'], ['flagred/data', 'data']].map(([name, file]) => [name, fileURLToPath(new URL(`../target/web/package/${file}.js`, import.meta.url))]),
+  ),
 };
 
 /** What the page may load. Pictures are made by the page itself. */

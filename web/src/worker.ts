@@ -1,6 +1,7 @@
 /** Runs flagred beside the page, which stays free to move. The first message is the compiled module of a room. */
 
-import { Panic, startData, startFlight, startRules } from 'flagred';
+import { Panic, startFlight, startRules } from 'flagred';
+import { startData } from 'flagred/data';
 import type { Begin, Reply, Request, Tell } from './calls';
 import * as flight from './flight/calls';
 import * as rules from './rules/calls';

@@ -1,4 +1,4 @@
-/** Rows of measured values: the error of a rule set on them, rules learned from them, numbers tuned to them. */
+/** Rows of measured values: the error of a rule set on them, rules learned from them, numbers tuned to them. The page has it; the npm package does not, which would grow by a third. */
 
 import { beside, type Source } from './load.js';
 import { guard } from './panic.js';

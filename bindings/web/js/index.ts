@@ -5,14 +5,13 @@ import { startRules } from './rules.js';
 
 export type { Source } from './load.js';
 export { Panic } from './panic.js';
-export * from './data.js';
 export * from './flight.js';
 export * from './rules.js';
 export { version } from './wasm/rules.js';
 
 /**
  * Loads the WebAssembly modules for flights and rule sets: in a browser by `fetch`, in Node from their files. Whoever needs one
- * alone calls `startFlight` or `startRules`; {@link DataTable} needs `startData`.
+ * alone calls `startFlight` or `startRules`.
  */
 export async function start(): Promise<void> {
   await Promise.all([startFlight(), startRules()]);

@@ -1,6 +1,6 @@
 /** Rows of measured values beside the rules: the error of the rule set on them, and rules and numbers from them. */
 
-import type { Errors, Made } from 'flagred';
+import type { Errors, Made } from 'flagred/data';
 import type { App } from '../app';
 import { fill, h } from '../dom';
 import { Cancelled, Trapped, type Engine } from '../engine';

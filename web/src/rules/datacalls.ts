@@ -1,6 +1,6 @@
 /** What the rules room asks of the worker for data. The table that was read last is kept. */
 
-import { DataTable, type Errors, type Made } from 'flagred';
+import { DataTable, type Errors, type Made } from 'flagred/data';
 import type { Tell } from '../calls';
 
 /** A file in CSV. */
