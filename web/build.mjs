@@ -10,7 +10,7 @@ const here = fileURLToPath(new URL('.', import.meta.url));
 const page = fileURLToPath(new URL('../target/web/page/', import.meta.url));
 const studio = fileURLToPath(new URL('../crates/cli/page/studio.html', import.meta.url));
 const module = (room) => fileURLToPath(new URL(`../bindings/web/js/wasm/${room}_bg.wasm`, import.meta.url));
-const rooms = ['flight', 'rules'];
+const rooms = ['flight', 'rules', 'data'];
 
 const common = {
   absWorkingDir: here,
@@ -21,7 +21,9 @@ const common = {
   legalComments: 'none',
   loader: { '.gz': 'binary' },
   logLevel: 'warning',
-  alias: { flagred: fileURLToPath(new URL('../target/web/package/index.js', import.meta.url)) },
+  alias: Object.fromEntries(
+    [['flagred', 'index'], ['flagred/data', 'data']].map(([name, file]) => [name, fileURLToPath(new URL(`../target/web/package/${file}.js`, import.meta.url))]),
+  ),
 };
 
 /** What the page may load. Pictures are made by the page itself. */

@@ -15,7 +15,9 @@ export interface BackingFile {
 export interface App {
   /** The worker of the room. */
   engine: Engine;
-  /** Returns the parameters of the room in the address. */
+  /** A worker for rows of data; its module is loaded now. */
+  data(): Engine;
+  /** What the address says of the room. */
   parameters(): URLSearchParams;
   /** Sets the parameters of the room in the address. */
   navigate(parameters: URLSearchParams): void;

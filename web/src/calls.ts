@@ -2,20 +2,19 @@
 
 import type * as flight from './flight/calls';
 import type * as rules from './rules/calls';
+import type * as data from './rules/datacalls';
 
-/**
- * All functions that can be called. Each runs in a worker, and receives a function for reporting progress as its first
- * argument.
- */
-export type Calls = typeof flight & typeof rules;
+/** All functions that can be called; each runs in a worker, and gets first a function that tells how far it is. */
+export type Calls = typeof flight & typeof rules & typeof data;
 export type Name = keyof Calls;
-export type Tell = (progress: number) => void;
+/** `found` is what was found so far, where there is something. */
+export type Tell = (progress: number, found?: unknown) => void;
 export type Arguments<K extends Name> = Parameters<Calls[K]> extends [Tell, ...infer A] ? A : never;
 export type Answer<K extends Name> = Awaited<ReturnType<Calls[K]>>;
 
 /** The first message: the room of the worker, and its module. */
 export interface Begin {
-  room: 'flight' | 'rules';
+  room: 'flight' | 'rules' | 'data';
   module: WebAssembly.Module;
 }
 
@@ -26,7 +25,7 @@ export interface Request {
 }
 
 export type Reply =
-  | { id: number; progress: number }
+  | { id: number; progress: number; found?: unknown }
   | { id: number; answer: unknown }
   | { id: number; refused: string }
   | { id: number; trapped: string };

@@ -15,9 +15,9 @@ export class Cancelled extends Error {
 export interface Engine {
   /** Runs a call in the worker; calls are answered in order. */
   call<K extends Name>(call: K, ...args: Arguments<K>): Promise<Answer<K>>;
-  /** As `call`, and reports progress from 0 to 1. */
-  follow<K extends Name>(progress: (share: number) => void, call: K, ...args: Arguments<K>): Promise<Answer<K>>;
-  /** Cancels all calls, and continues with a new worker. */
+  /** As `call`, and hears how far it is, and what was found so far. */
+  follow<K extends Name>(progress: (share: number, found?: unknown) => void, call: K, ...args: Arguments<K>): Promise<Answer<K>>;
+  /** Gives up whatever runs, and begins with an empty worker. */
   restart(): void;
   /** Called when a new worker replaced one that had a state. */
   onRestart?: () => void;
@@ -26,7 +26,7 @@ export interface Engine {
 interface Waiting {
   resolve(answer: unknown): void;
   reject(error: Error): void;
-  progress?: (share: number) => void;
+  progress?: (share: number, found?: unknown) => void;
 }
 
 /** Creates an engine: `create` creates a worker, `first` is its first message. */
@@ -61,7 +61,7 @@ export function engine(create: () => Worker, first: Promise<Begin>): Engine {
     const asked = waiting.get(reply.id);
     if (!asked) return;
     if ('progress' in reply) {
-      asked.progress?.(reply.progress);
+      asked.progress?.(reply.progress, reply.found);
       return;
     }
     waiting.delete(reply.id);
@@ -86,7 +86,7 @@ export function engine(create: () => Worker, first: Promise<Begin>): Engine {
     made.onRestart?.();
   }
 
-  function follow(progress: ((share: number) => void) | undefined, call: string, args: unknown[]): Promise<unknown> {
+  function follow(progress: ((share: number, found?: unknown) => void) | undefined, call: string, args: unknown[]): Promise<unknown> {
     return new Promise((resolve, reject) => {
       const id = next++;
       waiting.set(id, progress ? { resolve, reject, progress } : { resolve, reject });

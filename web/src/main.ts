@@ -44,6 +44,7 @@ function address(name: Name, parameters: URLSearchParams): string {
 async function open(name: Name, root: HTMLElement, file: BackingFile | undefined): Promise<Room> {
   const app: App = {
     engine: engine(worker, module(name).then((module) => ({ room: name, module }))),
+    data: () => engine(worker, module('data').then((module) => ({ room: 'data', module }))),
     parameters: () => place()?.parameters ?? new URLSearchParams(),
     navigate(parameters) {
       addresses.set(name, address(name, parameters));

@@ -13,8 +13,8 @@ export function worker(): Worker {
   return new Worker(url);
 }
 
-/** Returns the compiled module of a room. */
-export async function module(room: 'flight' | 'rules'): Promise<WebAssembly.Module> {
+/** The compiled module of a room. */
+export async function module(room: 'data' | 'flight' | 'rules'): Promise<WebAssembly.Module> {
   const name = `${room}.wasm`;
   const packed = embedded(name);
   if (packed === undefined) return WebAssembly.compileStreaming(fetch(name));

@@ -12,6 +12,17 @@ const states = [
   ['the room for flights', 'flight', (page) => page.locator('.drop').waitFor()],
   ['a flight', 'flight', flight],
   ['a rule set', 'rules', rules],
+  ['a rule set as a table', 'rules', async (page) => {
+    await rules(page);
+    await page.getByRole('tab', { name: 'Table' }).click();
+    await page.getByRole('button', { name: 'Add rule' }).waitFor();
+  }],
+  ['a rule set with rows of data', 'rules', async (page) => {
+    await rules(page);
+    const rows = 'temperature,humidity,fan\n10,20,0\n30,80,90\n35,x,90\n';
+    await page.getByLabel('Rows of data').setInputFiles({ name: 'rows.csv', mimeType: 'text/csv', buffer: Buffer.from(rows) });
+    await page.locator('.data tbody tr').first().waitFor();
+  }],
 ];
 const sizes = { phone: { width: 390, height: 844 }, desktop: { width: 1280, height: 900 } };
 

@@ -29,7 +29,7 @@ const text = (page) => page.evaluate(() => localStorage.getItem('flagred.rules')
 
 /** Opens a text as a file. */
 const put = (page, content, name = 'rules.yaml') =>
-  page.locator('input[type=file]').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
+  page.getByLabel('Rule set', { exact: true }).and(page.locator('input')).setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
 
 /** Pastes a text in the place of all that is in the editor. */
 async function paste(page, content) {
@@ -166,7 +166,7 @@ test('a click on the map is explained as by the command line', async (t) => {
       await page.locator('.fired li').evaluateAll((all) => all.map((one) => one.value)),
       rules.map(({ rule }) => rule),
     );
-    const shown = await page.locator('.strength').allTextContents();
+    const shown = await page.locator('.fired .strength').allTextContents();
     shown.forEach((strength, i) => assert.ok(Math.abs(Number(strength) - rules[i].strength) < 1e-3, strength));
     if (outputs[0].value !== null) assert.ok(Math.abs(parseFloat(await page.locator('.value b').textContent()) - outputs[0].value) < 0.1);
     return values;
@@ -252,15 +252,83 @@ test('what was one\'s own is not lost to a link or an example', async (t) => {
   await page.waitForFunction((mine) => localStorage.getItem('flagred.rules') === mine, mine);
 });
 
-test('the picture of an explanation follows the point', async (t) => {
+test('the rule viewer shows all rules, how far they hold, and follows the point', async (t) => {
   const { page } = await room(t, '?start=tipper');
-  await page.locator('.explanation summary').click();
-  const image = page.getByAltText('Terms, rules and results at this point');
-  await image.waitFor();
-  const first = await image.getAttribute('src');
-  await page.getByLabel('food, as a number').fill('9');
+  const viewer = page.locator('.viewer');
+  await viewer.locator('tbody tr').nth(2).waitFor();
+  assert.equal(await viewer.locator('tbody tr').count(), 3);
+  const cells = () => viewer.locator('tbody tr').first().locator('.part').evaluateAll((all) => all.map((one) => [one.textContent, one.querySelector('.cut').getAttribute('d')]));
+  await page.getByLabel('food, as a number').fill('2');
   await page.getByLabel('food, as a number').press('Enter');
-  await page.waitForFunction((first) => document.querySelector('.drawing img')?.getAttribute('src') !== first, first);
+  await viewer.getByText('rancid 0.5').waitFor();
+  const first = await cells();
+  assert.deepEqual(first.map(([words]) => words), ['poor 0.004', 'rancid 0.5', 'cheap 0.5']);
+  assert.ok(first[2][1].length > 10, 'the consequent is cut');
+  assert.equal(await viewer.locator('tbody tr').first().locator('.strength').textContent(), '0.500');
+  assert.match(await viewer.locator('tfoot').textContent(), /\d %/);
+  // The line of an input is dragged.
+  const box = await viewer.locator('tbody tr').first().locator('svg.moves').nth(1).boundingBox();
+  await page.mouse.click(box.x + box.width * 0.9, box.y + box.height / 2);
+  await viewer.getByText('rancid 0', { exact: true }).waitFor();
+  assert.ok(Math.abs(Number(await page.getByLabel('food, as a number').inputValue()) - 9) < 0.2);
+});
+
+test('a surface turns by drag and keys, and turns back', async (t) => {
+  const { page } = await room(t, '?start=tipper&show=surface');
+  const drawn = () => page.locator('canvas.decision').evaluate((canvas) => canvas.toDataURL());
+  await page.waitForTimeout(300);
+  const front = await drawn();
+  const at = await page.getByLabel('service, as a number').inputValue();
+  const box = await page.locator('canvas.decision').boundingBox();
+  await page.mouse.move(box.x + 200, box.y + 150);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 280, box.y + 170, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForTimeout(100);
+  const turned = await drawn();
+  assert.notEqual(turned, front);
+  await page.locator('canvas.decision').focus();
+  await page.keyboard.press('ArrowLeft');
+  await page.waitForTimeout(100);
+  assert.notEqual(await drawn(), turned);
+  assert.equal(await page.getByLabel('service, as a number').inputValue(), at, 'the point stays');
+  await page.locator('canvas.decision').dblclick();
+  await page.waitForTimeout(100);
+  assert.equal(await drawn(), front);
+});
+
+test('what is shown is of the text that is open', async (t) => {
+  const { page } = await room(t, '?start=tipper&x=food&y=service');
+  // The line under a term is of its point now, also after Undo.
+  await page.getByRole('slider', { name: 'good: mean' }).focus();
+  await page.keyboard.press('ArrowRight');
+  await page.locator('.variable output', { hasText: 'good: mean 5.1' }).waitFor();
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.locator('.variable output', { hasText: /^good: mean 5$/ }).waitFor();
+  // A number that is taken away is there again.
+  await page.getByLabel('food, as a number').fill('');
+  await page.getByLabel('service, as a number').focus();
+  assert.equal(await page.getByLabel('food, as a number').inputValue(), '5');
+  // Another rule set with the same inputs begins with its own axes.
+  await put(page, (await read('rules/tipper.yaml')).replace('name: tipper', 'name: other'));
+  await page.getByRole('heading', { name: 'other' }).waitFor();
+  assert.equal(await page.getByLabel('Input across').inputValue(), 'service');
+  // A value outside the part that is shown is not at the end of its slider.
+  const { page: flight } = await room(t, '?start=flagred-paper&at=0.25,0.25');
+  const slider = flight.getByRole('slider', { name: 'spread' });
+  await flight.waitForFunction(() => document.querySelector('[aria-label="spread, as a number"]').value === '0.25');
+  assert.ok(Number(await slider.getAttribute('max')) > 0.25);
+});
+
+test('a file that cannot be read is not offered for reading with losses', async (t) => {
+  const { page } = await room(t);
+  const fis = "[System]\nName='x'\nType='mamdani'\nNumInputs=1\nNumOutputs=1\nNumRules=0\n[Input1]\nName='a'\nRange=[0 x]\nNumMFs=0\n[Output1]\nName='b'\nRange=[0 1]\nNumMFs=0\n[Rules]\n";
+  await put(page, fis, 'broken.fis');
+  const dialog = page.getByRole('dialog');
+  await dialog.getByRole('heading', { name: 'Open broken.fis' }).waitFor();
+  assert.deepEqual(await dialog.getByRole('button').allTextContents(), ['Close']);
+  assert.doesNotMatch(await dialog.textContent(), /\\u\{a\}/);
+  assert.ok((await dialog.getByRole('listitem').count()) > 0);
 });
 
 test('other formats are opened by drop and button, and written', async (t) => {

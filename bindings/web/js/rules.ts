@@ -88,7 +88,14 @@ export interface DrawnVariable {
   terms: DrawnTerm[];
 }
 
-/** A rule set or a profile in an editor; it may contain errors. Call {@link RuleText.free} when done. */
+/** Where the parts of a rule set are that can be renamed and removed. */
+export interface Parts {
+  variables: { at: number; terms: number[] }[];
+  /** The rules in words. */
+  rules: string[];
+}
+
+/** A rule set or a profile as an editor shows it, whatever is wrong with it. Call {@link RuleText.free} when done. */
 export class RuleText {
   readonly #text: wasm.RuleText;
 
@@ -143,6 +150,41 @@ export class RuleText {
   /** Returns the edits that move a handle of a term; they change only numbers. */
   drag(variable: number, term: number, handle: number, x: number, degree: number): Edit[] {
     return parsed(() => this.#text.drag(variable, term, handle, x, degree));
+  }
+
+  /** Where the names of variables, inputs first, and of their terms are, and the rules; `null` of a profile. */
+  parts(): Parts | null {
+    return parsed(() => this.#text.parts());
+  }
+
+  /** The edits that add an input or output with two terms. */
+  addVariable(name: string, low: number, high: number, isOutput: boolean): Edit[] {
+    return parsed(() => this.#text.addVariable(name, low, high, isOutput));
+  }
+
+  /** The edits that add a term to a variable. */
+  addTerm(variable: number, name: string): Edit[] {
+    return parsed(() => this.#text.addTerm(variable, name));
+  }
+
+  /** The edits that add a rule. */
+  addRule(rule: string): Edit[] {
+    return parsed(() => this.#text.addRule(rule));
+  }
+
+  /** The edits that give a rule other words. */
+  changeRule(rule: number, to: string): Edit[] {
+    return parsed(() => this.#text.changeRule(rule, to));
+  }
+
+  /** The edits that remove a variable, or a term of it, that no rule uses. */
+  removeNamed(variable: number, term?: number): Edit[] {
+    return parsed(() => this.#text.removeNamed(variable, term));
+  }
+
+  /** The edits that remove a rule. */
+  removeRule(rule: number): Edit[] {
+    return parsed(() => this.#text.removeRule(rule));
   }
 
   free(): void {
@@ -211,7 +253,18 @@ export interface Cells {
   filled: Float64Array;
 }
 
-/** A compiled rule set. Call {@link RuleSet.free} when done. */
+/** All rules with the terms that they read and conclude. */
+export interface ViewedRules {
+  /** Whether a consequent is scaled by the firing strength, rather than cut. */
+  scales: boolean;
+  rules: {
+    /** `words` are hedges and term; `curve` is that of hedges, x and degree in turns, and empty without hedges. */
+    conditions: { variable: string; words: string; term: string | null; curve: number[] }[];
+    conclusions: { output: string; words: string; term: string }[];
+  }[];
+}
+
+/** A rule set, compiled once. Call {@link RuleSet.free} when done. */
 export class RuleSet {
   readonly #set: wasm.RuleSet;
 
@@ -238,7 +291,17 @@ export class RuleSet {
     return this.about().outputs.map((_, i) => values.slice(i * rows, (i + 1) * rows));
   }
 
-  /** Explains the outputs at a point. */
+  /** What each rule reads and concludes. */
+  viewed(): ViewedRules {
+    return parsed(() => this.#set.viewed());
+  }
+
+  /** The degrees of the propositions of all rules at a point, rule by rule. NaN where a proposition reads an output. */
+  propositionDegrees(point: number[]): Float64Array {
+    return guarded(() => this.#set.propositionDegrees(Float64Array.from(point)));
+  }
+
+  /** Why the outputs at a point are what they are. */
   explain(point: number[]): Explanation {
     return parsed(() => this.#set.explain(Float64Array.from(point)));
   }

@@ -3,9 +3,11 @@
 //! Errors are thrown as an `Error` with the words of the command line. Documents are JSON, the same as those of the
 //! command line; columns and maps are `Float64Array`.
 //!
-//! It is compiled twice, once for each feature, so that programs that only read flights do not need to load the code
-//! for editing rule sets.
+//! It is compiled once for each feature: a page that shows flights need not load what rule sets are edited with, nor an editor what
+//! tunes them.
 
+#[cfg(feature = "data")]
+pub mod data;
 mod failure;
 #[cfg(feature = "flight")]
 pub mod flight;

@@ -1,5 +1,5 @@
-//! Functions for editors of rule sets and profiles: findings, completion, descriptions of names, renaming, formatting,
-//! and changing numbers in place.
+//! What an editor of rule sets and profiles asks for, whatever program shows the text: its findings, what can be written at a
+//! place, what a name means, new names, one layout, parts that are added and removed, and numbers that change in place.
 //!
 //! It implements no protocol, opens no file and prints nothing. Positions are offsets in bytes, changes are [`Edit`]s.
 //! If a profile names the file of a rule set, the caller provides its text.
@@ -38,6 +38,7 @@ pub mod provenance;
 pub mod rewrite;
 pub mod slice;
 pub mod starter;
+pub mod structure;
 
 pub use document::{Document, Examined, examine, is_profile};
 

@@ -163,7 +163,18 @@ pub fn definition(document: &Document, offset: usize) -> Option<Range<usize>> {
     }
 }
 
-/// Returns all positions of the name at an offset, to replace it with `new`.
+/// Refuses what is not a name of a variable or term.
+pub(crate) fn check_name(new: &str) -> Result<(), String> {
+    let plain = rule::parse(&format!("IF {new} IS {new} THEN {new} IS {new}"));
+    match plain.is_err() || new.contains(|c: char| c.is_whitespace() || "'\":#,[]{}".contains(c)) {
+        true => Err(format!(
+            "`{new}` is not a name: write letters, digits, `_` and `-`, and no keyword"
+        )),
+        false => Ok(()),
+    }
+}
+
+/// All places of the name at a place, for a new one.
 ///
 /// # Errors
 /// The reason why it cannot be renamed.
@@ -175,12 +186,7 @@ pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range
             "a rule or a term cannot be read, so its names are unknown; correct it first".into(),
         );
     }
-    let plain = rule::parse(&format!("IF {new} IS {new} THEN {new} IS {new}"));
-    if plain.is_err() || new.contains(|c: char| c.is_whitespace() || "'\":#,[]{}".contains(c)) {
-        return Err(format!(
-            "`{new}` is not a name: write letters, digits, `_` and `-`, and no keyword"
-        ));
-    }
+    check_name(new)?;
     let variables = variables(rules);
     let taken = match meaning {
         Meaning::Variable(_) => variables.iter().any(|known| known.variable.name == new),

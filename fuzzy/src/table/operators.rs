@@ -272,8 +272,9 @@ impl Aggregation {
 }
 
 impl Hedge {
-    /// Returns the hedged degree.
-    pub(crate) fn of(self, x: f64) -> f64 {
+    /// The hedged degree.
+    #[must_use]
+    pub fn of(self, x: f64) -> f64 {
         match self {
             Hedge::Not => 1.0 - x,
             Hedge::Very => x * x,

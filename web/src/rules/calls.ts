@@ -21,8 +21,10 @@ import {
   type Diagnostic,
   type Format,
   type Hover,
+  type Parts,
   type Start,
   type View,
+  type ViewedRules,
 } from 'flagred';
 import type { Tell } from '../calls';
 
@@ -73,13 +75,15 @@ export interface Opened {
   text: string;
   isProfile: boolean;
   variables: DrawnVariable[];
-  /** `undefined` if the rule set cannot be used. */
+  /** What can be renamed and removed by forms; nothing of a profile. */
+  parts: Parts | null;
+  /** Nothing where the rule set cannot be used. */
   about: About | undefined;
 }
 
 export function rulesOpen(_tell: Tell, text: string): Opened {
   const { open, set } = of(text);
-  return { text, isProfile: open.isProfile, variables: open.variables(), about: set?.about() };
+  return { text, isProfile: open.isProfile, variables: open.variables(), parts: open.parts(), about: set?.about() };
 }
 
 export const rulesFindings = (_tell: Tell, text: string): Diagnostic[] => of(text).open.findings();
@@ -89,8 +93,29 @@ export const rulesDefinition = (_tell: Tell, text: string, at: number): number |
 export const rulesRename = (_tell: Tell, text: string, at: number, name: string): Edit[] => of(text).open.rename(at, name);
 export const rulesFormat = (_tell: Tell, text: string): string => of(text).open.formatted();
 
+export const rulesAddVariable = (_tell: Tell, text: string, name: string, low: number, high: number, isOutput: boolean): Edit[] =>
+  of(text).open.addVariable(name, low, high, isOutput);
+export const rulesAddTerm = (_tell: Tell, text: string, variable: number, name: string): Edit[] => of(text).open.addTerm(variable, name);
+export const rulesRemoveNamed = (_tell: Tell, text: string, variable: number, term?: number): Edit[] =>
+  of(text).open.removeNamed(variable, term);
+export const rulesAddRule = (_tell: Tell, text: string, rule: string): Edit[] => of(text).open.addRule(rule);
+export const rulesChangeRule = (_tell: Tell, text: string, rule: number, to: string): Edit[] => of(text).open.changeRule(rule, to);
+export const rulesRemoveRule = (_tell: Tell, text: string, rule: number): Edit[] => of(text).open.removeRule(rule);
+
 export const rulesMap = (_tell: Tell, text: string, view: View): Cells => compiled(text).map(view);
-export const rulesExplain = (_tell: Tell, text: string, point: number[]): Explanation => compiled(text).explain(point);
+/** Why the outputs at a point are what they are: all rules, and the degree of each proposition. */
+export interface Reasons {
+  explanation: Explanation;
+  viewed: ViewedRules;
+  degrees: Float64Array;
+  variables: DrawnVariable[];
+}
+
+export function rulesExplain(_tell: Tell, text: string, point: number[]): Reasons {
+  const { open } = of(text);
+  const set = compiled(text);
+  return { explanation: set.explain(point), viewed: set.viewed(), degrees: set.propositionDegrees(point), variables: open.variables() };
+}
 export const rulesHeld = (_tell: Tell, text: string, output: number, axes: number[], fixed: (number | null)[]): number[] =>
   compiled(text).held(output, axes, fixed);
 

@@ -1,7 +1,7 @@
 /** The editor: CodeMirror with flagred's own findings, completion and hover. */
 
 import { autocompletion, completionKeymap, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete';
-import { defaultKeymap, history, historyKeymap, redo, redoDepth, undo, undoDepth } from '@codemirror/commands';
+import { defaultKeymap, history, historyKeymap, isolateHistory, redo, redoDepth, undo, undoDepth } from '@codemirror/commands';
 import { yaml } from '@codemirror/lang-yaml';
 import { HighlightStyle, bracketMatching, indentOnInput, syntaxHighlighting } from '@codemirror/language';
 import { lintGutter, setDiagnostics, type Diagnostic as Mark } from '@codemirror/lint';
@@ -177,10 +177,12 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
     }),
   });
 
+  view.dispatch({ effects: toContent(text) });
+
   const made: Editor = {
     text: () => view.state.doc.toString(),
     replace(text) {
-      view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: text }, selection: { anchor: 0 }, scrollIntoView: true });
+      view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: text }, selection: { anchor: 0 }, effects: toContent(text) });
     },
     follow(text) {
       const changes = difference(made.text(), text);
@@ -191,10 +193,10 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
       const changes = difference(before, after);
       if (!changes) return;
       made.follow(before);
-      view.dispatch({ changes, userEvent: 'drag' });
+      view.dispatch({ changes, userEvent: 'drag', annotations: isolateHistory.of('full') });
     },
     apply(edits) {
-      view.dispatch({ changes: edits });
+      view.dispatch({ changes: edits, annotations: isolateHistory.of('full') });
     },
     show(findings) {
       const length = view.state.doc.length;
@@ -225,7 +227,10 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
   return made;
 }
 
-/** The only range in which two texts differ. */
+/** Scrolls past the comments at the head of a text, which are about the command line. */
+const toContent = (text: string) => EditorView.scrollIntoView(/^(?:#[^\n]*\n)*/.exec(text)![0].length, { y: 'start', yMargin: 0 });
+
+/** The one stretch in which two texts differ. */
 function difference(before: string, after: string): { from: number; to: number; insert: string } | undefined {
   if (before === after) return undefined;
   const shorter = Math.min(before.length, after.length);

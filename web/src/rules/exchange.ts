@@ -37,15 +37,23 @@ export async function drawn(app: App, name: string, text: string, kind: Picture,
   download(`${name}-${kind}.svg`, await app.engine.call('rulesPicture', text, kind, view), 'image/svg+xml');
 }
 
-/** Runs without losses; if that is refused, asks whether to accept them. */
+/** Runs without losses. Where that is refused and losses help, asks whether to run with them. */
 async function withLosses(title: string, run: (lossy: boolean) => Promise<Exchanged>): Promise<Exchanged | undefined> {
   try {
     return await run(false);
   } catch (error) {
     if (error instanceof Trapped) throw error;
-    const why = error instanceof Error ? error.message : String(error);
-    const goOn = await dialog(title, why.split('\n'), ['Leave it out and go on', 'Cancel']);
-    return goOn === 'Leave it out and go on' ? run(true) : undefined;
+    const lossy = await run(true).catch((still: Error) => {
+      if (still instanceof Trapped) throw still;
+      return undefined;
+    });
+    const lines = (error as Error).message.split('\n');
+    if (!lossy) {
+      await dialog(title, lines, ['Close']);
+      return undefined;
+    }
+    const goOn = await dialog(title, lines, ['Leave it out and go on', 'Cancel']);
+    return goOn === 'Leave it out and go on' ? lossy : undefined;
   }
 }
 
@@ -53,14 +61,24 @@ async function told(title: string, notes: string[]): Promise<void> {
   await dialog(title, notes.length > 0 ? notes : ['Nothing was lost.'], ['Close']);
 }
 
-/** Shows lines; resolves to the label of the button that was pressed. */
+/** Lines of a message: those that help with the one before, or are part of it, belong to it. */
+function items(lines: string[]): string[] {
+  const made: string[] = [];
+  for (const line of lines) {
+    if (made.length > 0 && /^(\s|help: )/.test(line)) made.push(`${made.pop()}\n${line.trim()}`);
+    else made.push(line);
+  }
+  return made;
+}
+
+/** Shows lines; the answer is the word on the button that was pressed. */
 function dialog(title: string, lines: string[], answers: string[]): Promise<string> {
   return new Promise((resolve) => {
     const buttons = answers.map((answer, i) => h('button', { value: answer, class: i === 0 ? 'main' : '' }, answer));
     const made = h(
       'dialog',
       { 'aria-label': title, class: 'notes' },
-      h('form', { method: 'dialog' }, h('h2', {}, title), h('ul', {}, ...lines.map((line) => h('li', {}, line))), h('div', { class: 'answers' }, ...buttons)),
+      h('form', { method: 'dialog' }, h('h2', {}, title), h('ul', {}, ...items(lines).map((line) => h('li', {}, line))), h('div', { class: 'answers' }, ...buttons)),
     );
     made.addEventListener('close', () => {
       made.remove();

@@ -20,7 +20,8 @@ export function explain(place: HTMLElement, about: About, { outputs, rules, inpu
   const fired = rules.map(({ rule, text, strength }) => {
     const bar = h('span', { class: 'bar' });
     bar.style.inlineSize = `${100 * Math.min(strength, 1)}%`;
-    return h('li', { value: rule }, h('span', { class: 'track', 'aria-hidden': 'true' }, bar), h('span', { class: 'strength' }, short(strength)), h('code', {}, text));
+    bar.style.opacity = String(0.35 + 0.65 * Math.min(strength, 1));
+    return h('li', { value: rule }, h('div', {}, h('span', { class: 'track', 'aria-hidden': 'true' }, bar), h('span', { class: 'strength' }, strength.toFixed(3)), h('code', {}, text)));
   });
   const degrees = inputs.map((input, i) => {
     const terms = input.terms.filter(({ degree }) => degree > 0).map(({ term, degree }) => `${term} ${short(degree)}`);

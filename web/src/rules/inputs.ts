@@ -30,6 +30,8 @@ export function inputs(moved: (input: number, value: number) => void): Inputs {
       const value = clamp(number.valueAsNumber, Number(number.min), Number(number.max));
       if (Number.isFinite(value)) moved(i, value);
     });
+    // A box that is left empty, or with what is not a number, shows the value that counts.
+    number.addEventListener('blur', () => (number.value = written(slider.dataset['value'])));
     const role = h('span', { class: 'role soft' });
     const label = h('span', { class: 'name', title: description }, name, unit && h('span', { class: 'soft' }, ` ${unit}`));
     return { row: h('div', { class: 'input' }, label, slider, number, role), slider, number, role };
@@ -46,16 +48,20 @@ export function inputs(moved: (input: number, value: number) => void): Inputs {
       }
       inputs.forEach((input, i) => {
         const { slider, number, role } = rows[i]!;
-        const [low, high] = isWhole ? [input.low, input.high] : input.shown;
         const value = point[i]!;
-        slider.min = String(Math.min(low, value));
-        slider.max = String(Math.max(high, value));
+        // A value outside the part that is shown needs the whole range: at the end of the part it would look like that end.
+        const isPart = !isWhole && value >= input.shown[0] && value <= input.shown[1];
+        const [low, high] = isPart ? input.shown : [input.low, input.high];
+        [slider.min, slider.max] = [String(low), String(high)];
+        slider.dataset['value'] = String(value);
         slider.step = String(step(low, high));
         slider.value = String(value);
         [number.min, number.max, number.step] = [String(input.low), String(input.high), 'any'];
-        if (document.activeElement !== number) number.value = String(Number(value.toPrecision(6)));
+        if (document.activeElement !== number) number.value = written(value);
         role.textContent = ['across', 'up'][axes.indexOf(i)] ?? 'held';
       });
     },
   };
 }
+
+const written = (value: number | string | undefined): string => String(Number(Number(value).toPrecision(6)));

@@ -3,6 +3,7 @@
 import type { Cells, Colours, Variable, View } from 'flagred';
 import { h } from '../dom';
 import { clamp, short, ticks, told } from './numbers';
+import { FRONT, surface, turned } from './surface';
 
 export type Kind = 'map' | 'surface' | 'rules';
 
@@ -24,7 +25,7 @@ export interface DecisionMap {
   draw(shown: Shown): void;
 }
 
-interface Frame {
+export interface Frame {
   left: number;
   top: number;
   width: number;
@@ -34,10 +35,13 @@ interface Frame {
 /** The space for axes and the colours next to the map, in pixels. */
 const LEFT = 54;
 const RIGHT = 58;
-const TOP = 10;
-const BOTTOM = 44;
-/** The distance by which a key moves the point, as a share of the axis. */
+const TOP = 28;
+const BOTTOM = 40;
+/** How far a key moves the point, as a share of the axis. */
 const KEY_STEP = 0.02;
+/** How far a surface turns, in degrees: by a key, and by a pixel of a drag. */
+const KEY_TURN = 5;
+const PIXEL_TURN = 0.5;
 
 /** The explained point: `at` returns its value of an input, `move` changes it. */
 export interface Point {
@@ -58,6 +62,7 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
   let shown: Shown | undefined;
   let asked = 0;
   let ink: Ink | undefined;
+  let camera = FRONT;
 
   function draw(next: Shown): void {
     shown = next;
@@ -79,7 +84,9 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
     ink ??= inks(canvas);
     pen.font = '12px system-ui, sans-serif';
     const frame: Frame = { left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - BOTTOM };
-    if (shown.y && shown.kind === 'surface') surface(pen, { ...frame, left: 12, width: width - RIGHT - 12 }, shown, colours, ink);
+    if (isSurface()) {
+      surface(pen, { left: 4, top: 4, width: width - RIGHT - 4, height: height - 8 }, shown, colours, ink, camera);
+    }
     else if (shown.y) flat(pen, small, frame, shown, colours, ink);
     else curve(pen, frame, shown, ink);
     if (shown.kind !== 'rules' && shown.y) scale(pen, frame, width, shown, colours, ink);
@@ -92,8 +99,14 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
     if (shown) draw(shown);
   });
 
+  const isSurface = () => shown?.y !== undefined && shown.kind === 'surface';
+  function turn(by: { turn?: number; tip?: number }): void {
+    camera = turned(camera, by);
+    if (shown) draw(shown);
+  }
+
   function at(event: PointerEvent): void {
-    if (!shown || shown.kind === 'surface') return;
+    if (!shown || isSurface()) return;
     const box = canvas.getBoundingClientRect();
     const part = (at: number, low: number, size: number) => clamp((at - low) / size, 0, 1);
     const [x, y] = shown.view.axes;
@@ -107,10 +120,20 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
     at(event);
   });
   canvas.addEventListener('pointermove', (event) => {
-    if (canvas.hasPointerCapture(event.pointerId)) at(event);
+    if (!canvas.hasPointerCapture(event.pointerId)) return;
+    if (isSurface()) turn({ turn: -PIXEL_TURN * event.movementX, tip: PIXEL_TURN * event.movementY });
+    else at(event);
+  });
+  canvas.addEventListener('dblclick', () => {
+    camera = FRONT;
+    if (shown) draw(shown);
   });
   canvas.addEventListener('keydown', (event) => {
     const [across, up] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
+    if (isSurface() && (across || up)) {
+      event.preventDefault();
+      return turn({ turn: KEY_TURN * across!, tip: KEY_TURN * up! });
+    }
     const [x, y] = shown?.view.axes ?? [];
     const axis = across ? x : up ? y : undefined;
     if (!axis) return;
@@ -121,7 +144,7 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
   return { element: canvas, draw };
 }
 
-type Ink = Record<'ink' | 'soft' | 'rule' | 'paper' | 'accent', string>;
+export type Ink = Record<'ink' | 'soft' | 'rule' | 'paper' | 'accent', string>;
 
 /** The colours of the page. */
 function inks(element: Element): Ink {
@@ -237,16 +260,23 @@ function axes(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, ink: In
   pen.fillStyle = ink.ink;
   pen.textAlign = 'center';
   pen.textBaseline = 'bottom';
-  pen.fillText(titled(shown.x), frame.left + frame.width / 2, bottom + BOTTOM - 2);
+  pen.fillText(part(shown.x, x), frame.left + frame.width / 2, bottom + BOTTOM - 3);
   pen.save();
   pen.translate(3, frame.top + frame.height / 2);
   pen.rotate(-Math.PI / 2);
   pen.textBaseline = 'top';
-  pen.fillText(titled(upper), 0, 0);
+  pen.fillText(part(upper, y), 0, 0);
   pen.restore();
 }
 
-const titled = ({ name, unit }: Variable): string => (unit ? `${name} [${unit}]` : name);
+export const titled = ({ name, unit }: Variable): string => (unit ? `${name} [${unit}]` : name);
+
+/** The title of an axis, which says where it does not show the whole range. */
+function part(variable: Variable, axis: { low: number; high: number } | undefined): string {
+  const { low, high } = variable;
+  if (!axis || (axis.low <= low && axis.high >= high)) return titled(variable);
+  return `${titled(variable)}, ${short(axis.low)} to ${short(axis.high)} of ${short(low)} to ${short(high)}`;
+}
 
 /** Draws the explained point. */
 function cross(pen: CanvasRenderingContext2D, frame: Frame, across: number, up: number | undefined, ink: Ink): void {
@@ -267,7 +297,7 @@ function cross(pen: CanvasRenderingContext2D, frame: Frame, across: number, up: 
   if (y !== undefined) dot(pen, x, y, ink);
 }
 
-function dot(pen: CanvasRenderingContext2D, x: number, y: number, ink: Ink): void {
+export function dot(pen: CanvasRenderingContext2D, x: number, y: number, ink: Ink): void {
   pen.beginPath();
   pen.arc(x, y, 6, 0, 2 * Math.PI);
   pen.fillStyle = ink.paper;
@@ -292,77 +322,15 @@ function scale(pen: CanvasRenderingContext2D, frame: Frame, width: number, shown
   for (const tick of ticks(low, high, 4)) pen.fillText(short(tick), left + 14, frame.top + frame.height * (1 - share(tick, low, high)));
   pen.fillStyle = ink.ink;
   pen.textAlign = 'right';
-  pen.textBaseline = 'bottom';
-  pen.fillText(titled(shown.output), width - 2, frame.top + frame.height + BOTTOM - 2);
-}
-
-/** The direction of view, turned about the vertical and tipped; as `flagred map --surface`. */
-const TURN = (35 * Math.PI) / 180;
-const TIP = (28 * Math.PI) / 180;
-/** The maximum number of points of the surface along an axis. */
-const MOST = 51;
-
-function surface(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, colours: Colours, ink: Ink): void {
-  const { points } = shown.view;
-  const { low, high } = shown.output;
-  const size = Math.min(frame.width / 1.42, (frame.height + BOTTOM - 24) / 1.32);
-  const middle = { x: frame.left + frame.width / 2, y: frame.top + (frame.height + BOTTOM - 24) / 2 };
-  const depth = (x: number, y: number) => (y - 0.5) * Math.cos(TURN) - (x - 0.5) * Math.sin(TURN);
-  const place = (x: number, y: number, z: number): [number, number] => [
-    middle.x + size * ((x - 0.5) * Math.cos(TURN) + (y - 0.5) * Math.sin(TURN)),
-    middle.y - size * ((z - 0.5) * 0.75 * Math.cos(TIP) + depth(x, y) * Math.sin(TIP)),
-  ];
-  const line = (...places: [number, number][]) => {
-    pen.beginPath();
-    places.forEach((at, i) => pen[i ? 'lineTo' : 'moveTo'](...at));
-  };
-  pen.strokeStyle = ink.rule;
-  pen.lineWidth = 1;
-  for (let i = 0; i <= 4; i++) {
-    line(place(i / 4, 0, 0), place(i / 4, 1, 0), place(i / 4, 1, 1));
-    pen.stroke();
-    line(place(1, i / 4, 0), place(0, i / 4, 0), place(0, i / 4, 1));
-    pen.stroke();
-    line(place(0, 0, i / 4), place(0, 1, i / 4), place(1, 1, i / 4));
-    pen.stroke();
-  }
-  const count = Math.min(points, MOST);
-  const index = (i: number) => Math.round((i * (points - 1)) / (count - 1));
-  // From the far corner to the near one, so that near parts cover what is behind them.
-  for (let j = count - 2; j >= 0; j--) {
-    for (let i = 0; i < count - 1; i++) {
-      const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(([a, b]) => [index(a!), index(b!)] as const);
-      const values = corners.map(([a, b]) => shown.cells.values[a * points + b]!);
-      if (values.some(Number.isNaN)) continue;
-      const mean = values.reduce((sum, value) => sum + value, 0) / 4;
-      const at = 3 * Math.round(255 * share(mean, low, high));
-      pen.fillStyle = pen.strokeStyle = `rgb(${colours.scale[at]} ${colours.scale[at + 1]} ${colours.scale[at + 2]})`;
-      line(...corners.map(([a, b], k) => place(a / (points - 1), b / (points - 1), share(values[k]!, low, high))));
-      pen.closePath();
-      pen.fill();
-      pen.stroke();
-    }
-  }
-  const [x, y] = shown.view.axes;
-  if (!x || !y) return;
-  const across = share(shown.point[x.input]!, x.low, x.high);
-  const deep = share(shown.point[y.input]!, y.low, y.high);
-  const value = shown.cells.values[Math.round(across * (points - 1)) * points + Math.round(deep * (points - 1))] ?? NaN;
-  if (!Number.isNaN(value)) dot(pen, ...place(across, deep, share(value, low, high)), ink);
-  pen.fillStyle = ink.ink;
-  pen.textAlign = 'center';
   pen.textBaseline = 'top';
-  const [left, right] = [place(0.5, 0, 0), place(1, 0.5, 0)];
-  pen.fillText(titled(shown.x), left[0], left[1] + 10);
-  pen.textAlign = 'left';
-  pen.fillText(titled(shown.y!), right[0] + 10, right[1] + 6);
+  pen.fillText(titled(shown.output), width - 2, 6);
 }
 
-/** Describes the map in words. */
-function spoken({ output, x, y, view, cells, point }: Shown): string {
+/** The map in words. */
+function spoken({ kind, output, x, y, view, cells, point }: Shown): string {
   const [across, up] = view.axes;
   const cell = (axis: typeof across) => (axis ? Math.round(share(point[axis.input]!, axis.low, axis.high) * (view.points - 1)) : 0);
   const value = cells.values[up ? cell(across) * view.points + cell(up) : cell(across)] ?? NaN;
   const at = [x, ...(y ? [y] : [])].map((variable, i) => `${variable.name} ${short(point[view.axes[i]!.input]!)}`);
-  return `${output.name} over ${x.name}${y ? ` and ${y.name}` : ''}; at ${at.join(', ')}: ${told(value, output.unit)}. Arrow keys move the point.`;
+  return `${output.name} over ${x.name}${y ? ` and ${y.name}` : ''}; at ${at.join(', ')}: ${told(value, output.unit)}. Arrow keys ${kind === 'surface' && y ? 'turn the surface' : 'move the point'}.`;
 }

@@ -2,15 +2,16 @@
  * The rules room: an editor, the findings, the decision map, the explanation of a value, and the shapes of the terms.
  */
 
-import type { About, Diagnostic, Format, Start, View } from 'flagred';
+import type { About, Diagnostic, Edit, Format, Start, View } from 'flagred';
 import type { App, Room } from '../app';
-import { add, fill, h, picture } from '../dom';
+import { add, fill, h } from '../dom';
 import { Trapped } from '../engine';
 import { latest } from '../latest';
 import { backing, type Backing } from './backing';
 import type { Opened, Picture, Place } from './calls';
 import { KINDS, read, settle, view as viewOf, written, type Choice } from './choice';
 import { editor, type Editor } from './editor';
+import { data } from './data';
 import { drawn, opened as openedFile, saved } from './exchange';
 import { explain } from './explanation';
 import { inputs } from './inputs';
@@ -18,7 +19,10 @@ import { decisionMap, type Kind } from './map';
 import { problems } from './problems';
 import { LONGEST, pack, unpack } from './share';
 import { before, keep, kept, setAside } from './store';
+import { table } from './table';
+import { tabs } from './tabs';
 import { terms } from './terms';
+import { viewer } from './viewer';
 
 const ADDRESS_MS = 300;
 const REASON_MS = 80;
@@ -67,9 +71,43 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   });
   const found = problems((from, to) => edit.select(from, to));
   const why = h('div', { class: 'why' });
-  const drawing = h('div', { class: 'drawing' });
-  const details = h('details', { ontoggle: () => illustrate() }, h('summary', {}, 'Picture'), drawing);
-  const stale = h('p', { class: 'stale', hidden: true }, 'The text has errors: this is of the last text without.');
+  const ruleViewer = viewer((input, value) => move(input, value));
+  const rows = data(app, {
+    text: () => edit.text(),
+    replace(text) {
+      const before = edit.text();
+      edit.follow(text);
+      edit.conclude(before);
+      changed(text);
+    },
+    visit: (point) => point.forEach((value, input) => move(input, value)),
+  });
+  const edits = (change: (text: string) => Promise<Edit[]>) => change(edit.text());
+  const forms = table(
+    {
+      rename: (at, name) => edits((text) => engine.call('rulesRename', text, at, name)),
+      addVariable: (...variable) => edits((text) => engine.call('rulesAddVariable', text, ...variable)),
+      addTerm: (...term) => edits((text) => engine.call('rulesAddTerm', text, ...term)),
+      removeNamed: (...named) => edits((text) => engine.call('rulesRemoveNamed', text, ...named)),
+      addRule: (rule) => edits((text) => engine.call('rulesAddRule', text, rule)),
+      changeRule: (...rule) => edits((text) => engine.call('rulesChangeRule', text, ...rule)),
+      removeRule: (rule) => edits((text) => engine.call('rulesRemoveRule', text, rule)),
+    },
+    async (run) => {
+      const text = edit.text();
+      try {
+        if (app.file?.readOnly) throw new Error(`${app.file.name} is read-only`);
+        const change = await run();
+        if (edit.text() !== text) return false;
+        edit.apply(change);
+        return true;
+      } catch (error) {
+        refused(error as Error);
+        return false;
+      }
+    },
+  );
+  const stale = h('p', { class: 'stale', hidden: true }, 'The text has errors. What is shown here belongs to the last text without errors.');
   const legend = h('ul', { class: 'legend rules', hidden: true });
   const selects = {
     output: h('select', { 'aria-label': 'Output', onchange: chosen }),
@@ -105,44 +143,47 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     ),
   );
   const button = (words: string, title: string, run: () => void) => h('button', { type: 'button', title, onclick: run }, words);
-  const undo = button('Undo', 'Undo (Ctrl+Z)', () => edit.undo());
-  const redo = button('Redo', 'Redo (Ctrl+Y)', () => edit.redo());
+  const sign = (sign: string, words: string, key: string, run: () => void) =>
+    h('button', { type: 'button', class: 'sign', title: `${words} (${key})`, 'aria-label': words, onclick: run }, sign);
+  const undo = sign('\u21b6', 'Undo', 'Ctrl+Z', () => edit.undo());
+  const redo = sign('\u21b7', 'Redo', 'Ctrl+Y', () => edit.redo());
+  const group = (...children: HTMLElement[]) => h('div', { class: 'group' }, ...children);
   const bar = h(
     'div',
     { class: 'bar-of-tools', role: 'toolbar', 'aria-label': 'Rule set' },
-    startFrom,
-    button('Open', 'Open a rule set in YAML, FIS, FLL, FCL or FML', () => file.click()),
-    file,
-    save,
-    button('Copy link', 'Copy a link that holds this rule set', () => void share()),
-    undo,
-    redo,
-    button('Format', 'One layout (Shift+Alt+F)', format),
+    group(startFrom, button('Open', 'Open a rule set in YAML, FIS, FLL, FCL or FML', () => file.click()), file, save),
+    group(undo, redo, button('Format', 'One layout (Shift+Alt+F)', format)),
+    group(button('Copy link', 'Copy a link that holds this rule set', () => void share())),
   );
   const paper = h('div', { class: 'editor' });
+  const heading = h('h1', {}, 'Rules');
+  const writing = tabs('Edit as', [['Text', paper], ['Table', forms.element]], () => {
+    if (opened && !forms.element.hidden) forms.show(opened.parts, opened.variables);
+  });
   fill(
     root,
-    h('h1', {}, 'Rules'),
-    bar,
+    h('div', { class: 'head' }, heading, bar),
     h(
       'div',
       { class: 'columns' },
-      h('div', { class: 'writing' }, paper, found.element),
+      h('div', { class: 'writing' }, writing.list, writing.panel, found.element),
       h(
         'div',
         { class: 'seeing' },
         h(
           'section',
           { class: 'map', 'aria-label': 'Decision map' },
-          h('div', { class: 'choices' }, labelled('output', selects.output), labelled('across', selects.x), labelled('up', selects.y), labelled('show', selects.kind), h('label', { class: 'check' }, whole, ' whole ranges')),
+          h('div', { class: 'choices' }, labelled('output', selects.output), labelled('across', selects.x), labelled('up', selects.y), h('span', {}, selects.kind), h('label', { class: 'check' }, whole, ' whole ranges')),
           stale,
           map.element,
           legend,
           sliders.element,
         ),
-        h('section', { class: 'explanation', 'aria-label': 'Explanation' }, h('h2', {}, 'Why'), why, details),
+        h('section', { class: 'explanation', 'aria-label': 'Explanation' }, h('h2', {}, 'Why'), why),
       ),
+      h('section', { class: 'reading', 'aria-label': 'Rule viewer' }, h('h2', {}, 'Rules ', h('span', { class: 'soft' }, 'how far each holds at this point; drag the line of an input')), ruleViewer.element),
       h('section', { class: 'shapes', 'aria-label': 'Terms' }, h('h2', {}, 'Terms ', h('span', { class: 'soft' }, 'drag a point, or move it with the arrow keys')), shapes.element),
+      rows.element,
     ),
   );
 
@@ -172,16 +213,12 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     guarded(good?.text ?? '', async () => {
       const now = good;
       if (!now) return;
-      explain(why, now.about, await engine.call('rulesExplain', now.text, point(now.about)));
-      // Text that changes faster cannot be read, and its layout slows down the animation.
+      const at = point(now.about);
+      const reasons = await engine.call('rulesExplain', now.text, at);
+      explain(why, now.about, reasons.explanation);
+      ruleViewer.show(reasons, at);
+      // Words that change faster are not read, and laying them out takes time from what moves.
       await new Promise((done) => setTimeout(done, REASON_MS));
-    }),
-  );
-  const illustrate = latest(() =>
-    guarded(good?.text ?? '', async () => {
-      const now = view();
-      if (!good || !now || !details.open) return;
-      fill(drawing, picture(await engine.call('rulesPicture', good.text, 'explanation', now), 'Terms, rules and results at this point'));
     }),
   );
 
@@ -208,10 +245,13 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   async function show(next: Opened): Promise<void> {
     opened = next;
     shapes.show(next.variables, choice.isWhole);
+    if (!forms.element.hidden) forms.show(next.parts, next.variables);
     stale.hidden = next.about !== undefined || !good;
     map.element.classList.toggle('old', !stale.hidden);
     if (!next.about) return;
     good = { text: next.text, about: next.about };
+    heading.textContent = next.about.name;
+    rows.show(next.text, next.about.inputs.map(({ name }) => name));
     await hold(good.about);
     options(good.about);
     follow();
@@ -247,7 +287,6 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     sliders.show(about.inputs, axes.map(({ input }) => input), held, choice.isWhole);
     shapes.mark(held);
     reason();
-    illustrate();
     drawMap();
   }
 
@@ -334,6 +373,8 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   function put(text: string, from?: string): void {
     start = from;
     values.clear();
+    // The axes of another rule set mean nothing here.
+    choice.output = choice.x = choice.y = '';
     edit.replace(text);
     if (from) store(text);
   }
@@ -478,7 +519,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     if (!first) return;
     event.preventDefault();
     event.stopPropagation();
-    void take(first);
+    void (/\.(csv|tsv)$/i.test(first.name) ? rows.take(first) : take(first));
   }, true);
   [undo.disabled, redo.disabled] = [true, true];
   refresh(text);

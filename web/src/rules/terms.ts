@@ -5,6 +5,7 @@
 
 import type { Colours, DrawnTerm, DrawnVariable, Handle } from 'flagred';
 import { fill, h } from '../dom';
+import { s, set } from '../svg';
 import type { Place } from './calls';
 import { clamp, short, ticks } from './numbers';
 
@@ -55,18 +56,6 @@ interface Plot {
   mark(value: number): void;
 }
 
-/** Creates an SVG element. */
-function s<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>, ...children: Node[]): SVGElementTagNameMap[K] {
-  const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
-  set(made, attributes);
-  made.append(...children);
-  return made;
-}
-
-function set(element: Element, attributes: Record<string, string | number>): void {
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
-}
-
 function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours, dragging: Dragging): Plot {
   let variable = first;
   let drawn = '';
@@ -99,6 +88,8 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
     ...points.flat().map((point) => point.element),
   );
   const told = h('output', { class: 'soft' });
+  /** The point that was moved last. */
+  let moved: [term: number, handle: number] | undefined;
   const legend = first.terms.map((term, t) => {
     return h('li', {}, coloured(h('span', { class: 'swatch', 'aria-hidden': 'true' }), t), term.name);
   });
@@ -113,7 +104,7 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
   element.querySelector('.picture')!.append(svg);
 
   function handle(t: number, i: number): { element: SVGGElement; show(term: DrawnTerm, handle: Handle): void } {
-    const dot = coloured(s('circle', { class: 'dot', r: 6 }), t);
+    const dot = coloured(s('circle', { class: 'dot', r: 5 }), t);
     const group = s('g', { class: 'handle', tabindex: 0, role: 'slider' }, s('circle', { class: 'reach', r: 16 }), dot);
     const place: Place = { variable: index, term: t, handle: i };
     /** The target position, until it is drawn there. */
@@ -170,7 +161,8 @@ function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours,
         });
         // A handle beyond the shown range cannot be grabbed.
         group.style.display = across(x) < FRAME.left - 1 || across(x) > WIDTH - FRAME.right + 1 ? 'none' : '';
-        if (group.classList.contains('held') || document.activeElement === group) told.textContent = words;
+        if (group.classList.contains('held') || document.activeElement === group) moved = [t, i];
+        if (moved?.[0] === t && moved[1] === i) told.textContent = words;
       },
     };
   }

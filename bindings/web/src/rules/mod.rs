@@ -2,8 +2,10 @@
 //! formats.
 
 pub mod exchange;
+pub mod parts;
 pub mod set;
 pub mod text;
+pub mod viewer;
 
 use flagred::shipped;
 use flagred_authoring::{answers::Checked, starter};

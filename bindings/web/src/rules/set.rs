@@ -27,8 +27,8 @@ const CURVE_POINTS: usize = 401;
 /// A compiled rule set.
 #[wasm_bindgen(js_name = RuleSet)]
 pub struct RuleSet {
-    engine: Engine,
-    /// For a profile: the index of its output, the filling of gaps, and the name of the method.
+    pub(super) engine: Engine,
+    /// Of a profile: its output, what fills the gaps of its rules, and the name of the method.
     profile: Option<(usize, Filling, &'static str)>,
 }
 

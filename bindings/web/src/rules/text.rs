@@ -28,7 +28,7 @@ fn shipped_rules(profile: &Profile) -> Option<String> {
 /// A rule set or a profile in an editor. Offsets are in UTF-16 code units, as in JavaScript strings.
 #[wasm_bindgen(js_name = RuleText)]
 pub struct RuleText {
-    document: Document,
+    pub(super) document: Document,
 }
 
 #[wasm_bindgen(js_class = RuleText)]
@@ -217,7 +217,7 @@ struct Change {
     insert: String,
 }
 
-fn edits(text: &str, edits: Vec<Edit>) -> Result<String, JsError> {
+pub(super) fn edits(text: &str, edits: Vec<Edit>) -> Result<String, JsError> {
     let change = |edit: Edit| Change {
         from: utf16(text, edit.span.start),
         to: utf16(text, edit.span.end),
@@ -323,8 +323,8 @@ fn curve(variable: &Variable, term: &Term) -> Vec<f64> {
         .collect()
 }
 
-/// Converts an offset in bytes to UTF-16 code units.
-fn utf16(text: &str, byte: usize) -> usize {
+/// A place in UTF-16 code units.
+pub(super) fn utf16(text: &str, byte: usize) -> usize {
     let before = text.char_indices().take_while(|(at, _)| *at < byte);
     before.map(|(_, letter)| letter.len_utf16()).sum()
 }
