@@ -24,7 +24,10 @@ use std::{
 };
 
 use flagred::{estimator::Estimator, flight::Verdict};
-use flagred_flightlog::mavlink::{Key, Sender, Skipped, Stream};
+use flagred_flightlog::{
+    Format, known_signals,
+    mavlink::{Key, Sender, Skipped, Stream},
+};
 
 use crate::{
     assess::{FailOn, exit_of},
@@ -98,15 +101,33 @@ pub(crate) struct Arguments {
     record: Option<PathBuf>,
 }
 
+/// The first input whose signal no MAVLink message has and that has no value for this case, and the signal.
+fn not_live(estimator: &Estimator) -> Option<(&str, &str)> {
+    let known = known_signals();
+    let is_live = |signal: &str| {
+        let mut known = known.iter().filter(|known| known.name == signal);
+        known.any(|known| known.formats.contains(&Format::Tlog))
+    };
+    let inputs = estimator.profile().inputs.iter();
+    let needed = inputs.filter(|input| input.if_missing.is_none());
+    let mut signals = needed.flat_map(|input| {
+        let carried = input.source.signal.carried();
+        carried.map(|signal| (input.name.as_str(), signal))
+    });
+    signals.find(|(_, signal)| !is_live(signal))
+}
+
 /// Watches until it is interrupted.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let estimator = profile::load(&arguments.profile)?.estimator;
-    if let Some(signal) = estimator.profile().signals().first() {
+    if let Some((input, signal)) = not_live(&estimator) {
         return Err(Failure::usage(format!(
-            "profile `{}` needs the signal `{signal}`, which is not known live",
+            "profile `{}` needs the signal `{signal}`, which is not in MAVLink messages",
             arguments.profile
         ))
-        .help("watch takes profiles whose inputs come from the motors alone"));
+        .help(format!(
+            "give input `{input}` a value with `if_missing`, or use a signal of tlogs: docs/profiles.md#signals-of-logs"
+        )));
     }
     let (endpoint, others) = match arguments.endpoints.split_first() {
         Some(split) => split,

@@ -23,6 +23,7 @@ mod trust;
 use super::voice;
 pub(crate) use event::{End, Event, Flown, Left, Lost, Silent};
 use flagred_report::finding::numbered;
+use history::Received;
 use speech::Speech;
 pub(crate) use tracked::View;
 use tracked::{Tracked, Watch, tell};
@@ -315,7 +316,9 @@ impl<'e> Session<'e> {
             let system = tracked.telemetry.system();
             out.events.push(Event::GivenUp { system });
         }
-        let telemetry = Telemetry::new(packet, vehicle.clone()).with_range(self.range);
+        let telemetry = Telemetry::new(packet, vehicle.clone())
+            .with_range(self.range)
+            .with_signals(&self.estimator.profile().signals());
         self.tracked = Some(Tracked::new(telemetry, source, now_s, self.history));
         self.candidates.clear();
         self.speech.forget();
@@ -383,9 +386,14 @@ impl<'e> Session<'e> {
         let to = tracked.address();
         let in_air = tracked.telemetry.is_in_air();
         let reported = tracked.telemetry.reported_in_air(now_s);
-        let pulses = tracked.telemetry.pulses();
+        let received = Received {
+            t_s,
+            in_air: reported,
+            pulses: tracked.telemetry.pulses(),
+            signals: tracked.telemetry.signals().collect(),
+        };
         if in_air {
-            tracked.history.push(t_s, reported, pulses);
+            tracked.history.push(received.clone());
         } else {
             tracked.history.clear();
         }
@@ -400,7 +408,7 @@ impl<'e> Session<'e> {
             });
         }
         watch.commands_s = now_s;
-        let update = watch.push(t_s, reported, &pulses);
+        let update = watch.push(&received);
         if update.risk == Err(Unknown::OutOfOrder) {
             return;
         }
@@ -409,6 +417,7 @@ impl<'e> Session<'e> {
         if in_air && !watch.is_flying {
             watch.is_flying = true;
             out.events.push(Event::TookOff { t_s });
+            watch.note_assumed(out);
         } else if !in_air {
             let verdict = watch.end_flight(End::Landed, out);
             add(&mut self.worst, verdict);

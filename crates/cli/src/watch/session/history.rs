@@ -3,14 +3,25 @@
 
 use flagred_flightlog::mavlink::Pulses;
 
-/// Samples that are kept: 20 minutes at 25 Hz, in 2 MB.
+/// Samples that are kept: 20 minutes at 25 Hz, in 3 MB.
 pub(super) const MOST: usize = 30_000;
+
+/// A sample as it was received.
+#[derive(Debug, Clone)]
+pub(super) struct Received {
+    pub(super) t_s: f64,
+    /// What the vehicle reports of being in the air.
+    pub(super) in_air: Option<bool>,
+    pub(super) pulses: Pulses,
+    /// The signals of the profile, in its order; NaN is unknown.
+    pub(super) signals: Vec<f64>,
+}
 
 /// The samples of a flight.
 #[derive(Debug)]
 pub(super) struct History {
     most: usize,
-    samples: Vec<(f64, Option<bool>, Pulses)>,
+    samples: Vec<Received>,
     is_cut: bool,
 }
 
@@ -24,12 +35,12 @@ impl History {
         }
     }
 
-    /// Adds a sample, with what the vehicle reports of being in the air. Of a flight that is too long nothing is kept.
-    pub(super) fn push(&mut self, t_s: f64, in_air: Option<bool>, pulses: Pulses) {
+    /// Adds a sample. Of a flight that is too long nothing is kept.
+    pub(super) fn push(&mut self, received: Received) {
         self.is_cut |= self.samples.len() >= self.most;
         match self.is_cut {
             true => self.samples = Vec::new(),
-            false => self.samples.push((t_s, in_air, pulses)),
+            false => self.samples.push(received),
         }
     }
 
@@ -46,7 +57,7 @@ impl History {
     }
 
     /// The samples since take-off; `None` where not all are kept.
-    pub(super) fn whole(&self) -> Option<&[(f64, Option<bool>, Pulses)]> {
+    pub(super) fn whole(&self) -> Option<&[Received]> {
         (!self.is_cut).then_some(&self.samples[..])
     }
 }

@@ -15,6 +15,7 @@ mod flood;
 mod outputs;
 mod px4;
 mod rates;
+mod signals;
 mod trust;
 
 /// A session, the vehicle's side of the link, and the clock of both.

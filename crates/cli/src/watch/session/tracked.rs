@@ -8,10 +8,14 @@ use flagred::{
 };
 use flagred_flightlog::{
     Gap, Vehicle,
-    mavlink::{Packet, Pulses, Requests, Setup, Telemetry, Version, parameters_known},
+    mavlink::{Packet, Requests, Setup, Telemetry, Version, parameters_known},
 };
+use fuzzy::drawing::number;
 
-use super::{End, Event, Flown, Left, Lost, Out, Silent, Source, history::History};
+use super::{
+    End, Event, Flown, Left, Lost, Out, Silent, Source,
+    history::{History, Received},
+};
 
 /// A link, or the motor commands on it, that are silent for this long are lost.
 const SILENT_S: f64 = 2.0;
@@ -243,8 +247,11 @@ impl Tracked {
             return None;
         }
         let geometry = setup.geometry.as_ref();
-        let craft =
-            Craft::new(found).with_geometry(geometry.map_or(&[], |geometry| &geometry.factors));
+        let signals = estimator.profile().signals();
+        let craft = Craft::new(found)
+            .with_signals(&signals)
+            .with_optional(&signals)
+            .with_geometry(geometry.map_or(&[], |geometry| &geometry.factors));
         let assessor = match Assessor::new(estimator, craft, None) {
             Ok(assessor) => assessor,
             Err(error) => {
@@ -267,8 +274,10 @@ impl Tracked {
         match before {
             Some(before) => watch.risk_sent_s = before.risk_sent_s,
             None => {
-                let first = flown.first().map(|(t_s, ..)| Event::TookOff { t_s: *t_s });
-                out.events.extend(first);
+                if let Some(first) = flown.first() {
+                    out.events.push(Event::TookOff { t_s: first.t_s });
+                    watch.note_assumed(out);
+                }
             }
         }
         self.watch = Some(watch);
@@ -352,20 +361,37 @@ impl Watch {
     }
 
     /// Takes in a sample.
-    pub(super) fn push(&mut self, t_s: f64, in_air: Option<bool>, pulses: &Pulses) -> Update {
-        self.setup.effective_commands(pulses, &mut self.motors);
+    pub(super) fn push(&mut self, received: &Received) -> Update {
+        self.setup
+            .effective_commands(&received.pulses, &mut self.motors);
         self.assessor.push(&Sample {
-            t_s,
+            t_s: received.t_s,
             motors: &self.motors,
-            in_air,
-            signals: &[],
+            in_air: received.in_air,
+            signals: &received.signals,
         })
     }
 
+    /// Reports inputs whose signals have not been received, and that therefore have the value of `if_missing`.
+    pub(super) fn note_assumed(&self, out: &mut Out) {
+        let monitor = self.assessor.monitor();
+        let inputs = &monitor.estimator().profile().inputs;
+        for input in monitor.assumed().filter_map(|index| inputs.get(index)) {
+            let signals: Vec<&str> = input.source.signal.carried().collect();
+            let text = format!(
+                "`{}` is not received yet: input `{}` is assumed to be {} (`if_missing`)",
+                signals.join("` and `"),
+                input.name,
+                number(input.if_missing.unwrap_or(f64::NAN), 6)
+            );
+            out.events.push(Event::Note { text });
+        }
+    }
+
     /// Takes in a flight up to now; its findings are told anew, its levels are not.
-    fn replay(&mut self, flown: &[(f64, Option<bool>, Pulses)], out: &mut Out) {
-        for (t_s, in_air, pulses) in flown {
-            let update = self.push(*t_s, *in_air, pulses);
+    fn replay(&mut self, flown: &[Received], out: &mut Out) {
+        for received in flown {
+            let update = self.push(received);
             self.level = update.level;
             self.latest = Some(update);
             tell(self.assessor.ended(), out);
