@@ -1,9 +1,9 @@
-//! The motor commands of a flight so far. Where motors or limits become known better, the flight is assessed again from its
+//! The motor commands of a flight so far. If motors or limits become known later, the flight is assessed again from its
 //! beginning.
 
 use flagred_flightlog::mavlink::Pulses;
 
-/// Samples that are kept: 20 minutes at 25 Hz, in 2 MB.
+/// Maximum number of stored samples: 20 minutes at 25 Hz, in 2 MB.
 pub(super) const MOST: usize = 30_000;
 
 /// The samples of a flight.
@@ -15,7 +15,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// An empty one for so many samples.
+    /// Creates an empty history for this many samples.
     pub(super) fn new(most: usize) -> History {
         History {
             most,
@@ -24,7 +24,7 @@ impl History {
         }
     }
 
-    /// Adds a sample, with what the vehicle reports of being in the air. Of a flight that is too long nothing is kept.
+    /// Adds a sample, and whether the vehicle reports to be in the air. If a flight is too long, all its samples are dropped.
     pub(super) fn push(&mut self, t_s: f64, in_air: Option<bool>, pulses: Pulses) {
         self.is_cut |= self.samples.len() >= self.most;
         match self.is_cut {
@@ -33,19 +33,19 @@ impl History {
         }
     }
 
-    /// Whether nothing was added.
+    /// Returns whether no sample was added.
     pub(super) fn is_empty(&self) -> bool {
         self.samples.is_empty() && !self.is_cut
     }
 
-    /// Forgets the flight.
+    /// Drops the flight.
     pub(super) fn clear(&mut self) {
         if !self.is_empty() {
             *self = History::new(self.most);
         }
     }
 
-    /// The samples since take-off; `None` where not all are kept.
+    /// The samples since take-off; `None` if the flight was too long.
     pub(super) fn whole(&self) -> Option<&[(f64, Option<bool>, Pulses)]> {
         (!self.is_cut).then_some(&self.samples[..])
     }
