@@ -12,7 +12,7 @@ use flagred::{
 /// use flagred_evaluation::Baseline;
 ///
 /// let lowest = Baseline::all().into_iter().find(|baseline| baseline.name == "lowest_motor").ok_or("gone")?;
-/// The less margin the lowest motor has, the higher the score.
+/// // The less margin the lowest motor has, the higher the score.
 /// assert!(lowest.score(0.01) > lowest.score(0.3));
 /// # Ok::<(), &str>(())
 /// ```

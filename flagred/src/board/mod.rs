@@ -383,7 +383,7 @@ impl<'a> Monitor<'a> {
         is_known.then_some(()).ok_or(Refused::Geometry)
     }
 
-    /// Takes the next sample of the flight.
+    /// Processes the next sample of the flight.
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         let plan = self.plan;
         let mut room = Room {

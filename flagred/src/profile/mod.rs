@@ -22,7 +22,7 @@ pub const SCHEMA: &str = include_str!("../../rules/profile-schema.json");
 
 /// All settings for the assessment of a flight, except the rules.
 ///
-/// # Example: a third input, without a line of code
+/// # Example: an additional input without a change of code
 ///
 /// ```
 /// use flagred::profile::Profile;
