@@ -264,7 +264,7 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
 const LONGEST_WINDOW_S: f64 = 600.0;
 const LONGEST_WAIT_S: f64 = 30.0;
 
-/// Windows and waits so long that they are likely in another unit.
+/// Finds windows and waits so long that they are likely in another unit.
 fn durations(profile: &Profile, at: &Places, found: &mut Vec<Diagnostic>) {
     let mut note = |path: &[&str], message: String, help: &str| {
         found.push(Diagnostic::warning("unit", at.of(path), message).help(help));

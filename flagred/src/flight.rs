@@ -38,7 +38,7 @@ const KNOWN_SHARE: f64 = 0.5;
 const MOST_FINDINGS: usize = 1000;
 /// The number of steps that are kept of a flight: seven hours at 10 Hz.
 pub const MOST_STEPS: usize = 250_000;
-/// Judged risks closer together than this, in seconds, are merged while they can still be taken back by a landing.
+/// Judged risks closer together than this, in seconds, are merged while a landing could still take them back.
 const PENDING_S: f64 = 1e-4;
 
 /// The margin below which a motor counts as saturated.

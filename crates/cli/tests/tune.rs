@@ -361,7 +361,7 @@ fn what_cannot_change_in_place_is_written_anew() {
     assert!(written.starts_with("# A fan for the attic.\nfuzzy: 1\n") && !written.contains("&n"));
 }
 
-/// Files cannot grow beyond 512 bytes, but a pipe can.
+/// Files cannot grow beyond 512 bytes, but a pipe can transfer more.
 #[test]
 #[cfg(unix)]
 fn a_full_disk_keeps_no_other_output_from_being_written() {

@@ -1,4 +1,4 @@
-//! The findings of a flight, with the names of what raised the risk.
+//! The findings of a flight, with the names of their causes.
 
 use alloc::string::{String, ToString};
 use core::{fmt, ops::Deref};

@@ -61,7 +61,7 @@ pub struct Profile {
     pub output: String,
     /// The conditions under which an input counts as known.
     pub sampling: Sampling,
-    /// The filling where no rule applies.
+    /// How gaps of the rules are filled.
     pub gap: GapSettings,
     /// The parameters of the elevated risk.
     pub elevated_risk: AccumulatorSettings,

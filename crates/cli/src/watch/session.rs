@@ -184,7 +184,7 @@ impl<'e> Session<'e> {
         packet.component == 1 && self.tracked.as_ref().is_some_and(is_it)
     }
 
-    /// Counts a packet of the vehicle's system from another sender, except a second sender while the vehicle is silent.
+    /// Counts a doubtful packet of the vehicle's system from another sender, except a second sender while the vehicle is silent.
     fn doubt(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut Out) {
         let Some(tracked) = &self.tracked else {
             return;
