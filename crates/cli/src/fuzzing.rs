@@ -189,7 +189,7 @@ impl<'e> Watch<'e> {
         self.tell(now_s);
     }
 
-    /// Ends the watch.
+    /// Ends the watch and the current flight.
     pub fn finish(&mut self, now_s: f64) {
         self.session.finish(&mut self.out);
         self.tell(now_s);

@@ -182,7 +182,6 @@ impl Output {
         matches!(self.place, Place::Stdout)
     }
 
-    /// Writes a text.
     pub(crate) fn write(&self, text: &str) -> Result<(), Failure> {
         self.write_with(|out| out.write_all(text.as_bytes()))
     }

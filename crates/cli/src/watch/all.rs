@@ -187,7 +187,7 @@ fn follow<'e>(
     }
 }
 
-/// The output.
+/// Prints events in the chosen form.
 struct Shown<'e> {
     face: Face,
     printer: Printer,

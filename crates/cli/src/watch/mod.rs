@@ -279,7 +279,7 @@ impl Totals {
     }
 }
 
-/// The output.
+/// Prints events in the chosen form.
 struct Display {
     face: Face,
     printer: Printer,
@@ -318,7 +318,7 @@ impl Display {
         })
     }
 
-    /// Outputs the events, and clears them.
+    /// Prints the events, and clears the list.
     fn show(
         &mut self,
         at_s: f64,

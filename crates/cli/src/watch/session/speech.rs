@@ -83,7 +83,6 @@ impl Speech {
         self.sender.is_some() && (self.insists || !yields)
     }
 
-    /// Sends a request.
     pub(super) fn ask(
         &mut self,
         (version, system): (Version, u8),

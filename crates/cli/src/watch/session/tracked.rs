@@ -163,7 +163,6 @@ impl Tracked {
         })
     }
 
-    /// The level of the flight.
     pub(super) fn level(&self) -> Option<Level> {
         self.watch.as_ref()?.latest?.level
     }
