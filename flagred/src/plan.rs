@@ -122,7 +122,7 @@ mod tests {
         );
     }
 
-    /// The risk of the paper in an output of its own, which a second output passes on.
+    /// The paper's risk in a separate output, which a second output passes on.
     #[test]
     fn a_chain_is_assessed_and_an_open_output_that_it_reads_makes_no_plan() {
         let profile = shipped::flagred_paper().profile().clone();

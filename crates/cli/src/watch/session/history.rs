@@ -1,4 +1,4 @@
-//! The motor commands of a flight so far. Where motors or limits become known better, the flight is assessed again from its
+//! The motor commands of a flight so far. If motors or limits become known later, the flight is assessed again from its
 //! beginning.
 
 use flagred_flightlog::mavlink::Pulses;
@@ -26,7 +26,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// An empty one for so many samples.
+    /// Creates an empty history for this many samples.
     pub(super) fn new(most: usize) -> History {
         History {
             most,
@@ -44,12 +44,12 @@ impl History {
         }
     }
 
-    /// Whether nothing was added.
+    /// Returns whether no sample was added.
     pub(super) fn is_empty(&self) -> bool {
         self.samples.is_empty() && !self.is_cut
     }
 
-    /// Forgets the flight.
+    /// Drops the flight.
     pub(super) fn clear(&mut self) {
         if !self.is_empty() {
             *self = History::new(self.most);
