@@ -101,7 +101,7 @@ pub(crate) struct Arguments {
     record: Option<PathBuf>,
 }
 
-/// The first input whose signal no MAVLink message has and that has no value for this case, and the signal.
+/// The first input without `if_missing` whose signal is in no MAVLink message, and that signal.
 fn not_live(estimator: &Estimator) -> Option<(&str, &str)> {
     let known = known_signals();
     let is_live = |signal: &str| {
@@ -117,7 +117,7 @@ fn not_live(estimator: &Estimator) -> Option<(&str, &str)> {
     signals.find(|(_, signal)| !is_live(signal))
 }
 
-/// Watches until it is interrupted.
+/// Watches until interrupted.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let estimator = profile::load(&arguments.profile)?.estimator;
     if let Some((input, signal)) = not_live(&estimator) {

@@ -3,14 +3,14 @@
 
 use flagred_flightlog::mavlink::Pulses;
 
-/// Samples that are kept: 20 minutes at 25 Hz, in 3 MB.
+/// Maximum number of stored samples: 20 minutes at 25 Hz, in 3 MB.
 pub(super) const MOST: usize = 30_000;
 
 /// A sample as it was received.
 #[derive(Debug, Clone)]
 pub(super) struct Received {
     pub(super) t_s: f64,
-    /// What the vehicle reports of being in the air.
+    /// Whether the vehicle reports that it is in the air.
     pub(super) in_air: Option<bool>,
     pub(super) pulses: Pulses,
     /// The signals of the profile, in its order; NaN is unknown.
@@ -35,7 +35,7 @@ impl History {
         }
     }
 
-    /// Adds a sample. Of a flight that is too long nothing is kept.
+    /// Adds a sample. A flight that is too long is not stored at all.
     pub(super) fn push(&mut self, received: Received) {
         self.is_cut |= self.samples.len() >= self.most;
         match self.is_cut {
