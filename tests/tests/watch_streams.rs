@@ -181,7 +181,10 @@ fn ardupilot_streams_have_the_verdict_of_assess() {
             continue;
         }
         let bytes = stream(&path);
-        let (replay, (assessed, assumed)) = (Replay::of(&bytes, &shipped::flagred()), assess(&bytes, &shipped::flagred()));
+        let (replay, (assessed, assumed)) = (
+            Replay::of(&bytes, &shipped::flagred()),
+            assess(&bytes, &shipped::flagred()),
+        );
         let watched = replay.verdict();
         eprintln!("{name}: {watched}, {assessed}, assumed {assumed:?}");
         if watched != assessed.to_string() {
