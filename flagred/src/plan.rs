@@ -28,7 +28,7 @@ pub enum NoPlan {
         output: String,
     },
     /// The profile has several risks.
-    #[error("the profile has the risks `{output}` and `{other}`, and what flies on board has one")]
+    #[error("the profile has the risks `{output}` and `{other}`, but exported code has one")]
     SeveralRisks {
         /// The first risk.
         output: String,

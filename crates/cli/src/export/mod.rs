@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     /// Drop what the format cannot express, in Rust and C also `samples`; results may differ
     #[arg(long, conflicts_with = "lua")]
     lossy: bool,
-    /// Profile (Rust, C, Lua) or rule set (all but Lua): `flagred`, `flagred-battery`, `flagred-paper`, or a file
+    /// A profile (for Rust, C, Lua) or a rule set (for all but Lua): `flagred`, `flagred-paper`, `flagred-battery`, or a file
     #[arg(value_name = "FILE", default_value = profile::DEFAULT)]
     file: String,
     /// The file to write [default: standard output]

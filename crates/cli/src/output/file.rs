@@ -161,7 +161,7 @@ impl Files {
                 shown: other, role, ..
             } = other;
             let message = match shown == *other {
-                true => format!("{shown} is to be written, and is {role} as well"),
+                true => format!("{shown} is to be written, and it is {role}, too"),
                 false => format!(
                     "{shown} is to be written, and is the same file as {other}, which is {role}"
                 ),
