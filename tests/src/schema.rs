@@ -184,7 +184,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn what_a_schema_does_not_say_is_found() {
+    fn keys_that_a_schema_does_not_describe_are_found() {
         let schema = json!({
             "type": "object",
             "properties": {

@@ -38,7 +38,7 @@ fn assert_no_allocation(model: &Model) {
 }
 
 #[test]
-fn the_counter_counts() {
+fn the_allocation_counter_counts() {
     let counted = allocation_counter::measure(|| drop(std::hint::black_box(vec![0u8; 10])));
     assert_eq!(counted.count_total, 1);
 }

@@ -62,7 +62,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 }
 
 #[test]
-fn every_package_stands_on_those_below_it_alone() {
+fn every_package_depends_only_on_those_below_it() {
     for (package, below) in [
         ("fuzzy", ""),
         ("crates/flightlog", ""),
@@ -140,7 +140,7 @@ fn named(text: &str) -> BTreeSet<&str> {
 }
 
 #[test]
-fn no_circle_runs_between_the_modules_of_a_package() {
+fn the_modules_of_a_package_form_no_cycle() {
     for package in PACKAGES {
         let files = code(&format!("{package}/src"));
         let module = |name: &str| {
@@ -242,7 +242,7 @@ fn one_folder_names_the_yaml_library_and_one_package_the_bytes_of_logs() {
 
 /// ARCHITECTURE.md lists no modules, because each file says what it is.
 #[test]
-fn every_file_begins_with_what_it_is() {
+fn every_file_begins_with_a_description() {
     for (name, text) in PACKAGES
         .iter()
         .flat_map(|package| sources(&format!("{package}/src")))
@@ -253,7 +253,7 @@ fn every_file_begins_with_what_it_is() {
 }
 
 #[test]
-fn the_map_of_the_house_names_nothing_that_is_gone() {
+fn architecture_md_names_only_files_that_exist() {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let spans: BTreeSet<&str> = text.split('`').skip(1).step_by(2).collect();
     let known: String = PACKAGES
@@ -284,7 +284,7 @@ fn the_map_of_the_house_names_nothing_that_is_gone() {
 
 /// An invariant that nothing holds is a wish.
 #[test]
-fn every_invariant_names_what_holds_it() {
+fn every_invariant_names_its_tests() {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let (_, invariants) = text.split_once("\n## Invariants\n").unwrap();
     let invariants: Vec<&str> = invariants.split("\n- **").skip(1).collect();

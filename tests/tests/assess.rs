@@ -96,7 +96,7 @@ fn csv_has_a_row_for_each_step_of_the_json() {
 }
 
 #[test]
-fn several_logs_are_told_apart_and_one_that_fails_stops_no_other() {
+fn several_logs_are_named_and_a_failure_does_not_stop_the_others() {
     let output = assess(&["--csv", STEADY, "/nowhere.BIN", STEADY]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(3));
@@ -106,7 +106,7 @@ fn several_logs_are_told_apart_and_one_that_fails_stops_no_other() {
 }
 
 #[test]
-fn several_logs_are_a_line_each_and_a_finding_counts_more_than_no_answer() {
+fn each_log_is_one_line_and_a_finding_decides_the_exit_code_before_no_answer() {
     let folder = Folder::new();
     let row = |i: u32, low: f64| format!("{},{low},1,{low},1\n", f64::from(i) * 0.04);
     let head = "t_s,motor1,motor2,motor3,motor4\n";
@@ -161,7 +161,7 @@ fn standard_input_is_read_like_a_file() {
 }
 
 #[test]
-fn what_is_no_log_is_named_for_what_it_is() {
+fn a_file_that_is_not_a_log_is_identified() {
     let folder = Folder::new();
     let picture = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR and so on";
     for (name, bytes, said) in [
@@ -187,7 +187,7 @@ fn what_is_no_log_is_named_for_what_it_is() {
 }
 
 #[test]
-fn a_log_cut_in_the_middle_is_assessed_as_far_as_it_goes() {
+fn a_truncated_log_is_assessed_to_its_end() {
     let bytes = fs::read(STEADY).unwrap();
     let folder = Folder::new();
     let cut = folder.file("cut.bin", &bytes[..bytes.len() / 2]);
@@ -201,7 +201,7 @@ fn a_log_cut_in_the_middle_is_assessed_as_far_as_it_goes() {
 /// Overwriting may hit what defines the messages: then there is no answer, and the reason. Where it does not, the
 /// flight is assessed from the messages that are left.
 #[test]
-fn a_log_with_one_byte_in_a_hundred_overwritten_is_assessed_as_far_as_it_goes_or_says_why_not() {
+fn a_log_with_1_percent_of_its_bytes_overwritten_is_assessed_or_refused_with_a_reason() {
     let intact = fs::read(STEADY).unwrap();
     let folder = Folder::new();
     let mut assessed = 0;
@@ -242,7 +242,7 @@ fn a_log_with_one_byte_in_a_hundred_overwritten_is_assessed_as_far_as_it_goes_or
 }
 
 #[test]
-fn a_rate_too_low_for_a_spread_is_no_answer_and_no_good() {
+fn a_rate_too_low_for_a_spread_gives_no_verdict() {
     let mut rows = String::from("t_s,motor1,motor2,motor3,motor4\n");
     for t in 0..120 {
         rows += &format!("{t},0.4,0.41,0.42,0.4\n");
@@ -255,7 +255,7 @@ fn a_rate_too_low_for_a_spread_is_no_answer_and_no_good() {
 }
 
 #[test]
-fn a_signal_that_the_profile_needs_and_the_log_lacks_is_no_answer() {
+fn a_missing_signal_that_the_profile_needs_gives_no_verdict() {
     let folder = Folder::new();
     let profile = folder.file(
         "wind.yaml",
@@ -334,7 +334,7 @@ fn tlog_without_parameters(to_us: u16) -> Vec<u8> {
 }
 
 #[test]
-fn a_given_range_replaces_the_assumed_one_and_no_other() {
+fn a_given_range_replaces_only_an_assumed_one() {
     let folder = Folder::new();
     let log = folder.file("flight.tlog", tlog_without_parameters(1510));
     let range = |arguments: &[&str]| {
@@ -394,7 +394,7 @@ fn a_given_range_replaces_the_assumed_one_and_no_other() {
 }
 
 #[test]
-fn what_was_given_as_the_range_is_still_said_of_the_converted_log() {
+fn a_converted_log_still_names_the_range_as_given() {
     let folder = Folder::new();
     let log = folder.file("flight.tlog", tlog_without_parameters(1510));
     let csv = folder.at("flight.csv");

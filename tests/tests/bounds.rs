@@ -74,7 +74,7 @@ fn added(log: &mut DataFlash, more: impl FnOnce(&mut DataFlash)) -> Vec<u8> {
 
 #[cfg(unix)]
 #[test]
-fn texts_modes_and_parameters_of_a_log_are_counted_beyond_the_first() {
+fn texts_modes_and_parameters_beyond_the_limit_are_counted() {
     let log = json("inspect", |out| {
         let mut log = copter();
         out.write_all(&log.bytes).unwrap();
@@ -127,7 +127,7 @@ fn flights(out: &mut dyn Write, count: u32) {
 
 #[cfg(unix)]
 #[test]
-fn take_offs_end_the_flight_that_is_kept_and_all_outputs_say_so() {
+fn too_many_take_offs_end_the_flight_and_all_outputs_report_it() {
     let folder = Folder::new();
     let html = folder.at("report.html");
     let log = json("assess", |out| flights(out, 4_000));
@@ -157,7 +157,7 @@ fn take_offs_end_the_flight_that_is_kept_and_all_outputs_say_so() {
 /// Without events the commands tell, and may do so at every row.
 #[cfg(unix)]
 #[test]
-fn changes_that_only_the_commands_tell_are_counted() {
+fn take_offs_seen_only_in_the_commands_are_counted() {
     let log = json("inspect", |out| {
         let mut log = copter();
         out.write_all(&log.bytes).unwrap();
@@ -294,7 +294,7 @@ fn rows_at_one_time_end_the_flight_that_is_kept() {
 
 /// Spin limits that are none are told: with the whole range a motor at its limit may go unseen.
 #[test]
-fn limits_that_are_none_are_told() {
+fn invalid_limits_are_reported() {
     let folder = Folder::new();
     for (low, high) in [(0.9, 0.2), (0.5, 0.55)] {
         let mut log = copter();
@@ -553,7 +553,7 @@ fn a_long_chain_is_drawn_in_time() {
 }
 
 #[test]
-fn wide_tables_are_no_candidates_for_inputs() {
+fn tables_with_too_many_columns_are_not_searched_for_inputs() {
     let folder = Folder::new();
     let names: Vec<String> = (0..50_000).map(|i| format!("c{i}")).collect();
     let row = |i: usize| format!("{i}{}\n", format!(",{}", i * i).repeat(names.len()));

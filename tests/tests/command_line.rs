@@ -3,7 +3,7 @@
 use flagred_tests::{STEADY, flagred};
 
 #[test]
-fn wrong_usage_is_2_and_says_what_is_right() {
+fn wrong_usage_exits_with_2_and_suggests_a_correction() {
     let output = flagred().arg("asses").output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("assess"));
@@ -11,7 +11,7 @@ fn wrong_usage_is_2_and_says_what_is_right() {
 
 /// What a user has in mind is nearly there: what is said leads to it.
 #[test]
-fn what_stands_in_the_wrong_place_is_told_where_it_belongs() {
+fn misplaced_arguments_are_reported_with_their_place() {
     let rules = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred.yaml");
     let profile = concat!(
         env!("CARGO_MANIFEST_DIR"),

@@ -205,7 +205,7 @@ fn standard_output_and_failures() {
 }
 
 #[test]
-fn whether_in_the_air_stays_unknown() {
+fn an_unknown_flight_state_stays_unknown_in_csv() {
     let mut log = ULog::new(1_000_000);
     log.define("actuator_motors:uint64_t timestamp;float[12] control;");
     log.parameter("CA_ROTOR_COUNT", 4.0);

@@ -161,7 +161,7 @@ fn real_flight(vehicle: &str, upset_s: Option<f64>) -> String {
 }
 
 #[test]
-fn alarms_are_counted_where_nothing_happens_and_held_against_upsets() {
+fn false_alarms_and_alarms_before_upsets_are_counted() {
     let folder = Folder::new();
     fs::create_dir_all(folder.path().join("flights/deep")).unwrap();
     folder.file("flights/a.csv", real_flight("board 1", None));
@@ -274,7 +274,7 @@ fn without_a_critical_step_there_is_no_area() {
 }
 
 #[test]
-fn a_file_that_is_no_flight_stops_no_other() {
+fn a_file_that_is_not_a_flight_does_not_stop_the_others() {
     let folder = Folder::new();
     let good = folder.file("good.csv", flight("gusts", true));
     let bad = folder.file("notes.txt", "took off at noon\n");

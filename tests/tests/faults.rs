@@ -25,7 +25,7 @@ struct Told {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn faults_and_upsets_are_told_within_a_second() {
+fn faults_and_upsets_are_reported_within_a_second() {
     let data = reference_data().join("sitl3");
     let rows = |name: &str| {
         let mut table = csv::Reader::from_path(data.join(name)).unwrap();

@@ -105,7 +105,7 @@ fn a_log_in_the_place_of_a_report_is_not_replaced() {
 }
 
 #[test]
-fn no_output_replaces_another() {
+fn two_outputs_cannot_be_the_same_file() {
     let folder = Folder::new();
     let same = folder.at("same");
     symlink("same", folder.at("link")).unwrap();
@@ -126,7 +126,7 @@ fn no_output_replaces_another() {
 
 /// `flagred convert log.csv -o - >> log.csv` would never end.
 #[test]
-fn standard_output_is_no_input_and_no_other_output() {
+fn standard_output_that_is_also_an_input_or_output_is_refused() {
     let folder = Folder::new();
     let log = folder.file("log.csv", wild_flight(30));
     let html = folder.file("page.html", "");
@@ -191,7 +191,7 @@ fn a_replaced_file_keeps_its_mode_and_links_keep_leading_to_it() {
 }
 
 #[test]
-fn special_files_are_written_to_and_stay() {
+fn special_files_are_written_to_and_not_replaced() {
     let folder = Folder::new();
     let fifo = folder.at("fifo");
     assert!(
@@ -236,7 +236,7 @@ fn special_files_are_written_to_and_stay() {
 
 /// Rule sets may be written by hand: `new` and `learn` replace none unless told to.
 #[test]
-fn what_may_be_written_by_hand_is_replaced_by_force_alone() {
+fn files_that_may_be_edited_are_replaced_only_with_force() {
     let folder = Folder::new();
     for writing in commands(&folder) {
         if !writing
@@ -264,7 +264,7 @@ fn what_may_be_written_by_hand_is_replaced_by_force_alone() {
 
 /// The old file is whole, what is wrong is said, and no draft is left.
 #[test]
-fn a_full_disk_leaves_the_old_file_and_is_2() {
+fn a_full_disk_leaves_the_old_file_and_exits_with_2() {
     let folder = Folder::new();
     for writing in commands(&folder) {
         for file in &writing.files {
@@ -295,7 +295,7 @@ fn a_full_disk_leaves_the_old_file_and_is_2() {
 
 /// A table that ends in the middle must not pass for a whole one.
 #[test]
-fn a_full_disk_behind_standard_output_is_2() {
+fn a_full_disk_behind_standard_output_exits_with_2() {
     for arguments in [
         vec!["convert", STEADY, "-o", "-"],
         vec!["assess", STEADY],
@@ -324,7 +324,7 @@ fn a_full_disk_behind_standard_output_is_2() {
 }
 
 #[test]
-fn a_watch_whose_recording_fails_says_so_and_goes_on() {
+fn a_watch_reports_a_failed_recording_and_continues() {
     let folder = Folder::new();
     let file = folder.at("recorded.tlog");
     let flight = flight(Path::new(STEADY));
@@ -443,13 +443,13 @@ fn old_or_new(seed: u64, count: usize) {
 }
 
 #[test]
-fn whatever_fails_a_file_is_the_old_one_or_the_new_one() {
+fn a_failed_write_leaves_the_old_or_the_new_file() {
     old_or_new(16, 40);
 }
 
 #[test]
 #[ignore = "takes half a minute"]
-fn whatever_fails_a_file_is_the_old_one_or_the_new_one_many_times() {
+fn a_failed_write_leaves_the_old_or_the_new_file_many_times() {
     for seed in 0..4 {
         old_or_new(seed, 250);
     }

@@ -42,7 +42,7 @@ fn row(words: &Words) -> String {
 }
 
 #[test]
-fn the_document_has_the_words_of_every_finding() {
+fn the_document_lists_the_words_of_every_finding() {
     let document = include_str!("../../docs/findings.md");
     let expected: BTreeSet<String> = estimators().iter().flat_map(all).map(|w| row(&w)).collect();
     let missing: Vec<&String> = expected

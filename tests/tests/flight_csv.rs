@@ -41,7 +41,7 @@ fn verdict(csv: &str) -> String {
 }
 
 #[test]
-fn the_flight_that_is_changed_is_good() {
+fn the_flight_is_good_before_it_is_changed() {
     assert_eq!(verdict(&flight("", |_, _| None)), "GOOD");
 }
 
@@ -81,7 +81,7 @@ fn a_frame_with_fewer_motors_than_columns_is_refused() {
 }
 
 #[test]
-fn a_row_without_a_time_is_refused_and_not_left_out() {
+fn a_row_without_a_time_is_refused() {
     for (time, said) in [
         ("", "line 1004: `t_s` is empty"),
         ("inf", "line 1004: `t_s` is `inf`, not a time in seconds"),
@@ -133,7 +133,7 @@ fn a_row_with_too_few_cells_is_refused() {
 
 /// Without the column, idle motors end a flight; with it, they are a fall. The flight says so when it is written again.
 #[test]
-fn a_time_in_the_air_that_is_assumed_is_not_believed_over_idle_motors() {
+fn idle_motors_override_an_assumed_time_in_the_air() {
     let idle = |i: usize, t_s: f64, air: &str| {
         let pwm = if i > 1300 { 1030 } else { 1500 + i % 7 };
         format!("{t_s},{pwm},{pwm},{pwm},{pwm}{air}")
@@ -152,7 +152,7 @@ fn a_time_in_the_air_that_is_assumed_is_not_believed_over_idle_motors() {
 }
 
 #[test]
-fn a_vehicle_is_in_the_air_or_not() {
+fn the_column_for_in_the_air_accepts_only_0_and_1() {
     for state in ["2", "0.5", "-1", "True", "inf"] {
         let csv = flight("", |i, t_s| {
             (i == 10).then(|| format!("{t_s},1500,1500,1500,1500,{state}"))
@@ -237,7 +237,7 @@ fn a_clock_of_whole_numbers_is_named() {
 
 /// A damaged log may hold what no flight CSV of a user may; it is converted and read back.
 #[test]
-fn what_convert_wrote_is_read_whatever_it_holds() {
+fn files_of_convert_are_read_whatever_they_contain() {
     let rows = "t_s,pwm1,pwm2,pwm3,pwm4,in_air\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n\
                 1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n";
     let head = "# pwm_low_us: 1000\n# pwm_high_us: 2000\n";
@@ -259,7 +259,7 @@ fn what_convert_wrote_is_read_whatever_it_holds() {
 }
 
 #[test]
-fn quotes_around_names_are_dropped_however_many() {
+fn any_number_of_quotes_around_names_is_dropped() {
     let text = "t_s, \"\"\"a\"\"\",motor1\n0,1,0.5\n0.1,2,0.5\n";
     let flight =
         flagred_flightlog::read(text.as_bytes(), &flagred_flightlog::Options::default()).unwrap();
@@ -267,7 +267,7 @@ fn quotes_around_names_are_dropped_however_many() {
 }
 
 #[test]
-fn times_of_a_clock_that_starts_again_far_below_never_go_back() {
+fn times_stay_in_order_after_a_clock_restarts_far_below() {
     let row = |t_s: &str| format!("{t_s},0.5,0.5,0.5,0.5\n");
     let rows: String = ["-1e9", "0.0158", "-1e9", "-1e9", "0.5", "1"]
         .map(row)

@@ -28,7 +28,7 @@ fn learn(arguments: &[&str]) -> Output {
 
 /// Each reason why rules cannot be learned has a help of its own.
 #[test]
-fn a_rule_set_that_cannot_be_learned_into_is_refused_with_what_to_do() {
+fn an_unsuitable_template_is_refused_with_help() {
     let folder = Folder::new();
     let data = folder.file("data.csv", "margin,spread,risk\n0.1,0.2,50\n");
     let output = "  risk: {range: [0, 100], partition: [very_low, low, medium, high, very_high]}";
@@ -61,7 +61,7 @@ fn a_rule_set_that_cannot_be_learned_into_is_refused_with_what_to_do() {
 
 /// A column without a name is none that an option or a message can name.
 #[test]
-fn columns_without_a_name_are_not_taken() {
+fn columns_without_a_name_are_ignored() {
     let folder = Folder::new();
     let model = folder.file("model.yaml", VARIABLES);
     let data = folder.file("data.csv", "margin,,spread\n0.1,5,0.2\n");
@@ -199,7 +199,7 @@ fn rows_become_a_rule_set_with_its_provenance() {
 }
 
 #[test]
-fn bad_data_is_told_with_its_place_and_nothing_is_written() {
+fn bad_data_is_reported_with_its_position_and_nothing_is_written() {
     let folder = Folder::new();
     let model = folder.file("model.yaml", VARIABLES);
     let out = folder.at("out.yaml");
@@ -402,7 +402,7 @@ fn the_shipped_rules_are_what_the_documented_command_learns() {
 
 #[cfg(unix)]
 #[test]
-fn the_battery_adds_to_the_shipped_rules_and_changes_nothing_of_them() {
+fn the_battery_rules_extend_the_shipped_rules_unchanged() {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let output = Command::new(workspace.join("scripts/add-battery"))
         .arg(workspace.join("rules/flagred.yaml"))
@@ -418,7 +418,7 @@ fn the_battery_adds_to_the_shipped_rules_and_changes_nothing_of_them() {
 
 /// What `learn` says of the directions is what `check --rising` finds.
 #[test]
-fn directions_hold_or_are_refuted_with_the_place() {
+fn directions_are_confirmed_or_refuted_at_a_position() {
     let folder = Folder::new();
     let rows = "margin,spread,risk\n0,0.2,90\n0,0,20\n0.1,0.1,75\n0.1,0.2,25\n0.2,0,60\n0.3,0,0\n0.3,0.2,30\n";
     let data = folder.file("data.csv", rows);
@@ -475,7 +475,7 @@ fn directions_hold_or_are_refuted_with_the_place() {
 
 /// A map of 20 inputs has more cells than any memory.
 #[test]
-fn many_inputs_are_learned_without_their_map() {
+fn rules_of_many_inputs_are_learned_without_a_map() {
     let folder = Folder::new();
     let names = |format: &dyn Fn(usize) -> String| (0..20).map(format).collect::<String>();
     let inputs = names(&|i| format!("  x{i}: {{range: [0, 1], partition: [low, high]}}\n"));
@@ -506,7 +506,7 @@ fn many_inputs_are_learned_without_their_map() {
 }
 
 #[test]
-fn an_error_on_no_rows_is_unknown_and_not_nought() {
+fn an_error_over_no_rows_is_unknown() {
     let folder = Folder::new();
     let model = folder.file("model.yaml", VARIABLES);
     // One row makes one rule, and without that one there is nothing to fill its gap from.

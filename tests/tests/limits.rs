@@ -209,7 +209,7 @@ fn rows_headers_and_columns_of_a_flight_csv_are_bounded() {
 
 /// One damaged time must not make all later ones go back.
 #[test]
-fn a_time_of_another_millennium_costs_its_row_alone() {
+fn a_time_of_another_millennium_loses_only_its_row() {
     let folder = Folder::new();
     let log = folder.file(
         "far.csv",

@@ -10,7 +10,7 @@ use flagred_tests::{
 
 /// What is damaged is whole before.
 #[test]
-fn the_logs_that_are_damaged_are_whole() {
+fn the_logs_are_intact_before_they_are_damaged() {
     for log in seeds::logs() {
         let flight = flagred_flightlog::read(&log[..], &Options::default()).unwrap();
         assert!(flight.report.is_clean(), "{:?}", flight.report);
@@ -48,7 +48,7 @@ fn damaged_real_logs() {
 
 /// What a tenth of the damage leaves must still be read: a hole costs the records it hits.
 #[test]
-fn a_hole_costs_what_it_hits() {
+fn a_hole_loses_only_the_rows_in_it() {
     let logs = [
         seeds::data_flash().bytes,
         seeds::ulog(),

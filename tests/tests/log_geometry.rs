@@ -31,7 +31,7 @@ fn told(flight: &Flight) -> Option<(Option<&str>, Basis, &str)> {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn logs_tell_their_geometry() {
+fn the_geometry_of_logs_is_read() {
     let data = reference_data();
     for (log, frame, source) in [
         (
@@ -108,7 +108,7 @@ fn logs_tell_their_geometry() {
 /// taken for another one, and where a wrong frame is declared, that is told.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn layouts_of_six_and_eight_motors_are_found_and_wrong_ones_told() {
+fn layouts_of_six_and_eight_motors_are_found_and_contradictions_reported() {
     let data = reference_data();
     let (mut found, mut all, mut told_wrong) = (0, 0, 0);
     for folder in ["sitl2/timeseries", "sitl3/timeseries"] {

@@ -146,7 +146,7 @@ fn a_function_that_changes_in_flight_does_not_move_the_motor() {
 }
 
 #[test]
-fn a_second_boot_goes_on_with_the_clock() {
+fn a_second_boot_continues_the_clock() {
     let mut log = quad("C", "TimeUS", &RADIO);
     let second = quad("C", "TimeUS", &RADIO);
     log.bytes.extend(second.bytes);
@@ -194,7 +194,7 @@ fn motors_beyond_output_14_and_motor_8() {
 }
 
 #[test]
-fn definitions_that_cannot_be_are_no_trap() {
+fn impossible_definitions_do_not_cause_a_panic() {
     let good = quad("C", "TimeUS", &RADIO);
     for length in [0, 1, 2, 3, 255] {
         let mut bytes = good.bytes.clone();
@@ -276,7 +276,7 @@ fn parameter(name: &str, value: f32) -> Vec<u8> {
 /// Versions 1 and 2 mixed, parameters stored under component 190, a ground station whose
 /// heartbeat carries the armed bit, and a gimbal on the vehicle's system.
 #[test]
-fn telemetry_of_one_vehicle_among_others() {
+fn telemetry_of_other_vehicles_is_ignored() {
     const QUAD: (u8, u8) = (7, 1);
     const START_US: u64 = 1_700_000_000_000_000;
     let heartbeat = |mav_type: u8, armed: bool, status: u8| {

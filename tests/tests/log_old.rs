@@ -69,7 +69,7 @@ fn without_a_frame_the_outputs_that_move_together_are_the_motors() {
 }
 
 #[test]
-fn landings_of_less_than_a_second_are_chatter() {
+fn landings_of_less_than_a_second_are_ignored() {
     let flight = read(&copter(4, 1800.0, &[]).bytes);
     let in_air = flight.in_air.unwrap();
     let spans: Vec<_> = in_air.spans.iter().map(|s| (s.start_s, s.end_s)).collect();
@@ -129,7 +129,7 @@ fn static_mixers_have_the_range_of_their_bank() {
 }
 
 #[test]
-fn a_log_of_px4_before_ulog_is_told_as_what_it_is() {
+fn a_px4_log_older_than_ulog_is_identified() {
     let mut log = DataFlash::new();
     log.define(129, "TIME", "Q", "StartTime");
     log.define(2, "ATT", "ffff", "qw,qx,qy,qz");
@@ -166,7 +166,7 @@ fn the_report_is_the_same_whatever_is_kept() {
 
 /// ArduCopter 3.1 describes MOT messages in every log, and writes them where bit 10 of LOG_BITMASK is set.
 #[test]
-fn motors_that_were_not_logged_are_told_by_the_bitmask() {
+fn the_bitmask_reports_motors_that_were_not_logged() {
     let gap = |mask: f64| {
         let mut log = DataFlash::new();
         log.define(129, "PARM", "Nf", "Name,Value");

@@ -165,7 +165,7 @@ fn ardupilot() -> Vehicle {
 }
 
 #[test]
-fn an_ardupilot_vehicle_by_its_heartbeats() {
+fn an_ardupilot_vehicle_is_found_by_its_heartbeats() {
     let mut vehicle = ardupilot();
     // Standby, active, critical, emergency, terminating, standby, disarmed.
     let states = [
@@ -201,7 +201,7 @@ fn an_ardupilot_vehicle_by_its_heartbeats() {
 
 /// The id of the board is that which PX4 writes into its own logs.
 #[test]
-fn a_vehicle_is_told_from_others() {
+fn packets_of_other_vehicles_are_ignored() {
     let mut vehicle = Vehicle::default();
     vehicle.heartbeat(0.0, PX4, false, 3);
     vehicle.parameter("STAT_BOOTCNT", 81_i32.to_le_bytes(), 6);

@@ -282,7 +282,7 @@ fn public_logs_are_as_in_their_reference() {
 /// Every row that pyulog recovers from the damaged log is there, and more.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn a_damaged_log_gives_at_least_what_its_reference_does() {
+fn a_damaged_log_gives_at_least_as_much_as_its_reference() {
     let data = reference_data();
     let log = data.join("logs/x_corrupt_px_quadlocal.ulg");
     let flight = open(&log);
@@ -317,7 +317,7 @@ fn a_damaged_log_gives_at_least_what_its_reference_does() {
 /// Each log that cannot be assessed says why, and none of them gives a number.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn logs_without_an_answer_say_why() {
+fn logs_without_a_verdict_report_the_reason() {
     let data = reference_data();
     for (log, why) in [
         (
@@ -353,7 +353,7 @@ fn logs_without_an_answer_say_why() {
 /// with it go two rows that are not later than those before.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn telemetry_is_as_pymavlink_reads_it() {
+fn telemetry_agrees_with_the_pymavlink_reference() {
     let data = reference_data();
     let flight = open(&data.join("logs/tl_vtol.tlog"));
     assert!(flight.report.is_clean());
@@ -382,7 +382,7 @@ fn telemetry_is_as_pymavlink_reads_it() {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn flight_csv_series_are_read_whole() {
+fn flight_csv_series_are_read_completely() {
     let data = reference_data();
     let flight = open(&data.join("sitl2/timeseries/f000.csv.gz"));
     assert!(flight.report.is_clean(), "{:?}", flight.report);

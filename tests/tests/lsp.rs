@@ -145,7 +145,7 @@ fn place(uri: &str, line: usize, character: usize) -> Value {
 }
 
 #[test]
-fn mistakes_are_told_as_one_types() {
+fn mistakes_are_reported_while_typing() {
     let mut editor = Editor::new(&["utf-16"]);
     let uri = "file:///tmp/fan.yaml";
     let found = editor.open(uri, RULES);
@@ -194,7 +194,7 @@ fn a_profile_is_checked_with_the_rule_set_beside_it() {
 }
 
 #[test]
-fn what_can_be_written_is_offered() {
+fn completions_are_offered() {
     let mut editor = Editor::new(&[]);
     let with = |rule: &str| format!("{}  - {rule}", RULES);
     for (text, expected) in [
@@ -344,7 +344,7 @@ fn the_layout_is_that_of_fmt() {
 }
 
 #[test]
-fn an_editor_that_leaves_without_a_word_leaves_nothing_behind() {
+fn the_server_ends_when_the_editor_disconnects() {
     let Editor {
         mut server,
         to,
@@ -357,7 +357,7 @@ fn an_editor_that_leaves_without_a_word_leaves_nothing_behind() {
 
 /// Findings alone: nothing changes the text of another program.
 #[test]
-fn a_rule_set_of_another_program_has_findings_and_stays_as_it_is() {
+fn a_rule_set_of_another_program_has_findings_and_is_not_formatted() {
     let text = "FUNCTION_BLOCK fan\nVAR_INPUT\n  heat : REAL;\nEND_VAR\nVAR_OUTPUT\n  speed : REAL;\nEND_VAR\n\
         FUZZIFY heat\n  RANGE := (0 .. 100);\n  TERM low := (0, 1) (100, 0);\nEND_FUZZIFY\n\
         DEFUZZIFY speed\n  RANGE := (0 .. 9);\n  TERM slow := (0, 0) (2, 1) (4, 0);\n  METHOD : COGG;\nEND_DEFUZZIFY\n\
@@ -387,7 +387,7 @@ fn a_rule_set_of_another_program_has_findings_and_stays_as_it_is() {
 
 /// A length that no memory holds, a message that is too long, one that is none: the next one is read all the same.
 #[test]
-fn a_message_that_is_too_long_is_passed_over() {
+fn a_message_that_is_too_long_is_skipped() {
     let mut editor = Editor::new(&[]);
     let long = format!("Content-Length: 20000000\r\n\r\n{}", " ".repeat(20_000_000));
     editor.to.write_all(long.as_bytes()).unwrap();

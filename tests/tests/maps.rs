@@ -75,7 +75,7 @@ fn a_map_in_the_terminal_marks_what_was_filled() {
 
 /// The middles of all ranges lie where every motor is at a limit: a picture of nothing but danger.
 #[test]
-fn without_a_word_the_picture_shows_where_the_rules_to_fly_with_decide() {
+fn the_default_picture_is_that_of_the_default_rule_set() {
     let (code, text, notes) = map(&[FLAGRED, "--points", "26"]);
     assert_eq!(code, Some(0));
     insta::assert_snapshot!(format!("{text}\n{notes}"));
@@ -361,7 +361,7 @@ fn values_are_tables_of_each_slice_of_what_the_last_output_reads() {
 }
 
 #[test]
-fn a_table_written_before_is_compared_with_the_outputs_now() {
+fn an_earlier_table_is_compared_with_the_current_outputs() {
     let folder = flagred_tests::Folder::new();
     let model = folder.file("chain.yaml", CHAIN);
     let changed = folder.file(

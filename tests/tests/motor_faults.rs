@@ -117,7 +117,7 @@ fn a_lasting_fault_stays_reported_and_its_motor_is_named() {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn wind_and_manoeuvres_are_no_weak_motor() {
+fn wind_and_manoeuvres_are_not_reported_as_a_weak_motor() {
     for id in [
         "batt_quad",
         "calm_quad",
@@ -257,7 +257,7 @@ fn levels(updates: &[Update], span_s: core::ops::Range<f64>) -> Vec<Option<Level
 }
 
 #[test]
-fn a_weak_motor_is_the_one_above_its_trim_and_stays_reported() {
+fn a_weak_motor_is_the_one_above_its_trim_and_remains_reported() {
     let faults: [(&[Factors], &[f64], usize); 4] = [
         // 75 % of the thrust.
         (&QUAD, &[0.24, 0.0, 0.0, 0.0], 0),
@@ -299,7 +299,7 @@ fn a_weak_motor_is_the_one_above_its_trim_and_stays_reported() {
 }
 
 #[test]
-fn a_turn_and_a_lean_are_no_weak_motor() {
+fn a_turn_and_a_lean_are_not_reported_as_a_weak_motor() {
     let others: [(&[Factors], &[f64]); 4] = [
         // Turning.
         (&QUAD, &[0.2, 0.2, -0.2, -0.2]),
@@ -351,7 +351,7 @@ fn an_alarm_ends_when_the_motors_work_as_before() {
 }
 
 #[test]
-fn a_gap_ends_no_alarm() {
+fn a_gap_does_not_end_an_alarm() {
     let shifts = [0.24, 0.0, 0.0, 0.0];
     let (_, updates) = fly(&QUAD, &[(40.0, &shifts)], 55.0..61.0, 120.0);
     let after = levels(&updates, 60.0..120.0);
@@ -464,7 +464,7 @@ const FALL: [[u16; 4]; 48] = [
 ];
 
 #[test]
-fn a_fall_is_not_the_ground() {
+fn a_fall_is_not_taken_for_a_landing() {
     let estimator = shipped::flagred();
     let craft = Craft::new(4).with_geometry(&QUAD);
     let mut assessor = Assessor::new(&estimator, craft, None).unwrap();
@@ -505,7 +505,7 @@ const LANDINGS: [(&str, f64); 4] = [
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn a_touch_down_raises_no_fail() {
+fn a_touchdown_raises_no_fail() {
     for (name, from_s) in LANDINGS {
         let flight = follow(&reference_data().join("sitl5").join(name));
         let late = flight.levels.iter().filter(|(t_s, _)| *t_s >= from_s);

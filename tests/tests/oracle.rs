@@ -152,14 +152,14 @@ fn assert_right(tally: &Tally) {
 }
 
 #[test]
-fn two_thousand_models() {
+fn two_thousand_models_agree_with_the_reference() {
     assert_right(&compare(1_000_000, 2000));
 }
 
 /// Fails today: in 55 of 59,945 values one of the two is wrong (docs/validation.md, The engine).
 #[test]
 #[ignore = "minutes, and some values differ"]
-fn twenty_thousand_models() {
+fn twenty_thousand_models_agree_with_the_reference() {
     assert_right(&compare(2_000_000, 20_000));
 }
 

@@ -42,7 +42,7 @@ fn ended(arguments: &[&str], read: Option<usize>) -> (Option<i32>, String) {
 }
 
 #[test]
-fn a_closed_pipe_changes_no_exit_code() {
+fn a_closed_pipe_does_not_change_the_exit_code() {
     let folder = Folder::new();
     let log = &folder.file("log.csv", wild_flight(40));
     let still = &folder.file("still.csv", "t_s,motor1,in_air\n0,0.5,0\n1,0.5,0\n");
@@ -99,7 +99,7 @@ fn a_closed_pipe_changes_no_exit_code() {
 
 /// `flagred assess x --html report.html | true`
 #[test]
-fn a_closed_pipe_keeps_no_report_from_being_written() {
+fn reports_are_written_despite_a_closed_pipe() {
     let folder = Folder::new();
     let log = &folder.file("log.csv", wild_flight(40));
     let (html, svg) = (&folder.at("report.html"), &folder.at("risk.svg"));
@@ -158,7 +158,7 @@ fn reports_are_written_before_a_full_pipe_blocks() {
 
 /// A report on standard output is a whole document: the words stand on standard error.
 #[test]
-fn a_report_on_standard_output_stands_alone() {
+fn only_the_report_is_written_to_standard_output() {
     let output = flagred()
         .args(["assess", STEADY, "--html", "-"])
         .output()
@@ -171,7 +171,7 @@ fn a_report_on_standard_output_stands_alone() {
 
 /// A stream has no end: the evaluation of one ends with its reader.
 #[test]
-fn an_endless_evaluation_ends_with_its_reader() {
+fn an_endless_evaluation_ends_when_its_reader_closes() {
     let mut child = flagred()
         .args(["eval", RULES, "-"])
         .stdin(Stdio::piped())
@@ -192,7 +192,7 @@ fn an_endless_evaluation_ends_with_its_reader() {
 
 /// Who is warned, or reads the recording, still needs it.
 #[test]
-fn a_watch_that_nobody_reads_goes_on_recording() {
+fn a_watch_without_a_reader_continues_recording() {
     let folder = Folder::new();
     let file = folder.at("recorded.tlog");
     let mut child = flagred()
@@ -231,7 +231,7 @@ fn a_watch_that_nobody_reads_goes_on_recording() {
 }
 
 #[test]
-fn a_watch_that_serves_nobody_ends() {
+fn a_watch_without_any_purpose_ends() {
     let mut child = flagred()
         .args(["watch", "udpin:127.0.0.1:0", "--no-send"])
         .stdout(Stdio::piped())

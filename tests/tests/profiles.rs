@@ -70,7 +70,7 @@ fn the_shipped_profiles_and_the_template_have_no_findings() {
 }
 
 #[test]
-fn the_schema_takes_what_the_reader_takes() {
+fn the_schema_accepts_what_the_reader_accepts() {
     let schema = schema::schema("profile");
     let valid = |text: &str| {
         let profile: Value = serde_yaml::from_str(text).unwrap();
@@ -122,7 +122,7 @@ fn the_schema_takes_what_the_reader_takes() {
 }
 
 #[test]
-fn what_does_not_fit_is_told_by_every_command_and_an_impossible_verdict_is_refused() {
+fn every_command_reports_a_profile_that_does_not_fit_and_refuses_an_impossible_verdict() {
     let folder = Folder::new();
     folder.file("rules.yaml", RULES);
     let profile = folder.file("mine.yaml", PROFILE.replace("risk: 80", "risk: 84"));
@@ -233,7 +233,7 @@ fn hover(battery: impl Fn(f64) -> Option<f64>) -> String {
 }
 
 #[test]
-fn an_empty_battery_decides_with_the_shipped_profile() {
+fn an_empty_battery_determines_the_risk_of_the_shipped_profile() {
     let folder = Folder::new();
     let assess = |battery: &dyn Fn(f64) -> Option<f64>| {
         let log = folder.file("hover.csv", hover(battery));
@@ -360,7 +360,7 @@ fn voting(folder: &Folder, rule: &str) -> String {
 }
 
 #[test]
-fn an_input_that_is_outvoted_is_a_warning_of_check() {
+fn check_warns_about_an_input_that_is_outvoted() {
     let folder = Folder::new();
     let profile = voting(&folder, "IF battery IS empty THEN risk IS very_high");
     let (code, told, _) = run(&["check", &profile]);
@@ -431,7 +431,7 @@ fn forklift(folder: &Folder, last_kg: f64, step_s: f64) -> [String; 2] {
 }
 
 #[test]
-fn a_profile_that_reads_no_motor_assesses_a_table_without_a_word_about_rotors() {
+fn a_profile_that_reads_no_motor_does_not_mention_rotors() {
     let folder = Folder::new();
     let [profile, table] = forklift(&folder, 1500.0, 0.1);
     let (code, told, _) = run(&["check", "--deny", "notes", &profile]);
@@ -506,7 +506,7 @@ fn a_profile_that_reads_no_motor_assesses_a_table_without_a_word_about_rotors() 
 }
 
 #[test]
-fn a_missing_signal_is_assumed_and_every_reader_is_told() {
+fn every_output_reports_an_assumed_signal() {
     let folder = Folder::new();
     let battery =
         fs::read_to_string(format!("{ROOT}/rules/profiles/flagred-battery.yaml")).unwrap();

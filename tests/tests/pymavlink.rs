@@ -29,7 +29,7 @@ impl Drop for Running {
 /// Every line of scripts/try-against-sitl runs, and every check holds with a simulator that does as it is told.
 #[test]
 #[ignore = "needs Python with pymavlink, and takes two minutes: tests/peer/run.sh"]
-fn what_is_tried_against_the_simulator_holds_with_a_stand_in() {
+fn watch_works_against_a_stand_in_for_the_simulator() {
     const SPEED: &str = "3";
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
     let stand_in = python()
@@ -79,7 +79,7 @@ fn what_is_tried_against_the_simulator_holds_with_a_stand_in() {
 /// names the simulator and `SITL_PARAMS` the folder of its default parameters; without them nothing is flown.
 #[test]
 #[ignore = "flies ArduCopter's simulator for half an hour: docs/live.md"]
-fn what_is_tried_against_the_simulator_holds() {
+fn watch_works_against_the_simulator() {
     if std::env::var_os("SITL_BIN").is_none() {
         return;
     }

@@ -24,7 +24,7 @@ use flagred_tests::{
 const ROUNDING: f64 = 1e-9;
 
 #[test]
-fn the_shipped_flight_is_what_the_documents_say() {
+fn the_shipped_flight_agrees_with_the_documents() {
     let troubles = compare_log(&open(STEADY));
     assert_eq!(troubles, []);
 }
@@ -94,7 +94,7 @@ fn eventful(rate_hz: f64, length_s: f64, late_s: f64) -> Vec<Sample> {
 }
 
 #[test]
-fn an_eventful_flight_is_what_the_documents_say() {
+fn an_eventful_flight_agrees_with_the_documents() {
     let text = include_str!("../../rules/profiles/multirotor.yaml");
     let with_noise = text.replace("std_less_noise", "std");
     // How long the vehicle is shaken before it lands, and the number of findings: a landing takes back a late WARN.
@@ -121,7 +121,7 @@ fn an_eventful_flight_is_what_the_documents_say() {
 
 /// The motors fall from a calm hover to 3 % in the air.
 #[test]
-fn a_fall_is_what_the_documents_say() {
+fn a_fall_agrees_with_the_documents() {
     let text = include_str!("../../rules/profiles/multirotor.yaml");
     let samples: Vec<Sample> = (0..1300)
         .map(|i| {
@@ -236,7 +236,7 @@ fn of_sources() -> Estimator {
 }
 
 #[test]
-fn every_statistic_of_every_source_is_what_the_documents_say() {
+fn every_statistic_of_every_source_agrees_with_the_documents() {
     let estimator = of_sources();
     let names = estimator.profile().signals();
     assert_eq!(names, ["yaw_des_deg", "yaw_deg", "battery_v", "cells_v"]);
@@ -278,7 +278,7 @@ const FLIGHTS: [(&str, usize, Option<Level>); 12] = [
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn flights_are_what_the_documents_say() {
+fn flights_agree_with_the_documents() {
     let mut inferred = 0;
     for (name, motors, worst) in FLIGHTS {
         let flight = open(reference_data().join(name));

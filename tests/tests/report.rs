@@ -43,7 +43,7 @@ fn curve(html: &str, class: &str) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn the_curves_hold_the_values_of_the_json_document() {
+fn the_curves_have_the_values_of_the_json_document() {
     let folder = Folder::new();
     let html = report(&[STEADY], &folder);
     let document: Value = serde_json::from_slice(&assess(&[STEADY], &["--json"]).stdout).unwrap();
@@ -185,7 +185,7 @@ fn saturating_log() -> String {
 }
 
 #[test]
-fn the_gravest_finding_is_on_top_and_scales_have_units() {
+fn the_most_severe_finding_is_on_top_and_scales_have_units() {
     let folder = Folder::new();
     let log = folder.file("log.csv", saturating_log());
     let html = report(&[&log, "--profile", "flagred-paper"], &folder);
@@ -226,7 +226,7 @@ fn several_flights_are_compared_on_one_scale() {
 }
 
 #[test]
-fn a_report_that_cannot_be_written_says_so_and_leaves_nothing() {
+fn a_report_that_cannot_be_written_fails_and_leaves_no_file() {
     let folder = Folder::new();
     let file = folder.at("missing/report.html");
     let output = assess(&[STEADY], &["--html", &file]);
@@ -257,7 +257,7 @@ fn a_report_that_cannot_be_written_says_so_and_leaves_nothing() {
 
 /// A log without an answer still shows what was read, and why there is none.
 #[test]
-fn no_answer_is_reported_as_none() {
+fn a_flight_without_a_verdict_is_reported_as_such() {
     let folder = Folder::new();
     let log = folder.at("ground.csv");
     let text = long_log(20, 10).replace(",1\n", ",0\n");

@@ -55,7 +55,7 @@ fn hexa(frame: &str, known: &[usize]) -> String {
 }
 
 #[test]
-fn a_motor_without_commands_is_the_reason_for_no_verdict() {
+fn a_motor_without_commands_prevents_a_verdict() {
     for frame in ["", "# frame: HEXA/X\n", "# frame: HEXA/PLUS\n"] {
         for profile in ["flagred", "flagred-paper"] {
             let more = ["--profile", profile];
@@ -81,7 +81,7 @@ fn a_motor_without_commands_is_the_reason_for_no_verdict() {
 }
 
 #[test]
-fn a_motor_without_commands_for_a_while_is_the_reason_unless_it_fails_elsewhere() {
+fn a_motor_without_commands_for_a_while_prevents_a_verdict_unless_the_flight_fails() {
     let whole = hexa("", &[0, 1, 2, 3, 4, 5]);
     let without = |from_s: f64, to_s: f64| -> String {
         let rows = whole.lines().map(|row| {
@@ -150,7 +150,7 @@ fn dataflash(outputs: impl Fn(f64) -> [u16; 6], clock_back: Option<(f64, f64)>) 
 }
 
 #[test]
-fn outputs_that_are_no_pulses_are_the_reason_for_no_verdict() {
+fn outputs_that_are_not_pulses_prevent_a_verdict() {
     let outputs = |t_s: f64| {
         let high = if t_s > 30.0 { 2000 } else { 1500 };
         [1500, u16::MAX, high, 1500, u16::MAX, high]
@@ -171,7 +171,7 @@ fn outputs_that_are_no_pulses_are_the_reason_for_no_verdict() {
 
 /// Live, the same is `lost_in_air`: docs/live.md.
 #[test]
-fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
+fn a_clock_that_goes_back_in_the_air_prevents_a_verdict() {
     let calm = |_| [1500; 6];
     let estimator = shipped::flagred();
     let read = |bytes: &[u8]| flagred_flightlog::read(bytes, &Options::default()).unwrap();
@@ -226,7 +226,7 @@ fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
 }
 
 #[test]
-fn a_clock_of_px4_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
+fn a_clock_of_px4_that_goes_back_in_the_air_prevents_a_verdict() {
     let fly = |back_at: u64, back_by: u64| {
         let mut log = ULog::new(1_000_000);
         log.define("actuator_motors:uint64_t timestamp;float[12] control;");
@@ -285,7 +285,7 @@ fn a_flight_csv_whose_clock_starts_again_in_the_air_has_no_verdict() {
 }
 
 #[test]
-fn a_rate_below_that_of_the_windows_is_the_reason_for_no_verdict() {
+fn a_rate_too_low_for_the_windows_prevents_a_verdict() {
     for step_s in [1.0, 1.5, 2.5, 4.0] {
         let row = |i: u32| format!("{},0.4,0.41,0.42,0.4\n", 0.5 + f64::from(i) * step_s);
         let rows: String = (0..200).map(row).collect();

@@ -264,7 +264,7 @@ fn check(watched: &Watched, seconds: u32) -> f64 {
 }
 
 #[test]
-fn five_hundred_vehicles_are_followed_and_the_one_in_trouble_stands_first() {
+fn five_hundred_vehicles_are_followed_and_the_one_in_trouble_is_listed_first() {
     let watched = fly(16);
     check(&watched, 16);
     let (of_all, of_one) = (schema("watch-all"), schema("watch"));
@@ -288,7 +288,7 @@ fn five_hundred_vehicles_for_ten_minutes() {
 }
 
 #[test]
-fn several_endpoints_need_all_and_nothing_is_sent() {
+fn several_endpoints_require_the_option_all_and_send_nothing() {
     for (arguments, said) in [
         (
             &["udpin:127.0.0.1:0", "udpin:127.0.0.1:0"][..],

@@ -60,13 +60,13 @@ fn a_recording_gives_assess_what_watch_said(log: &Path) {
 }
 
 #[test]
-fn the_recording_of_the_shipped_flight_gives_assess_what_watch_said() {
+fn assess_of_the_recorded_shipped_flight_agrees_with_watch() {
     a_recording_gives_assess_what_watch_said(Path::new(STEADY));
 }
 
 /// Nobody asks for a parameter: both assume the same limits, and say so.
 #[test]
-fn a_recording_without_parameters_gives_assess_what_watch_said() {
+fn assess_of_a_recording_without_parameters_agrees_with_watch() {
     let flight = flight(Path::new(STEADY));
     let folder = Folder::new();
     let path = folder.path().join("flight.tlog");
@@ -88,7 +88,7 @@ fn a_recording_without_parameters_gives_assess_what_watch_said() {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn the_recording_of_a_flight_that_nearly_crashed_gives_assess_what_watch_said() {
+fn assess_of_the_recorded_near_crash_agrees_with_watch() {
     let data = reference_data();
     a_recording_gives_assess_what_watch_said(&data.join("flights/octoquad.BIN"));
 }

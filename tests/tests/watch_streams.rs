@@ -109,7 +109,7 @@ fn px4(name: &str) -> Vec<u8> {
 /// PX4's simulator does not report the limits of its outputs.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn px4_streams_have_the_verdict_of_assess_on_the_same_assumptions() {
+fn px4_streams_get_the_verdict_of_assess_with_the_same_assumptions() {
     for (name, verdict) in [
         ("c1", "GOOD"),
         ("w1", "GOOD"),
@@ -153,7 +153,7 @@ fn px4_streams_have_the_verdict_of_assess_on_the_same_assumptions() {
 /// In the streams of ArduPilot's simulator everything is known, but for those without a parameter.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn ardupilot_streams_have_the_verdict_of_assess() {
+fn ardupilot_streams_get_the_verdict_of_assess() {
     let mut streams: Vec<_> = fs::read_dir(reference_data().join("sitl5/streams"))
         .unwrap()
         .map(|entry| entry.unwrap().path())

@@ -17,7 +17,7 @@ use flagred_tests::{
 use serde_json::json;
 
 #[test]
-fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
+fn a_silent_link_and_a_reboot_are_reported_and_discard_the_old_risk() {
     let flight = flight(Path::new(STEADY));
     let watch = Watch::udp(&[]);
     let mut vehicle = watch.vehicle(&flight, Link::default());
@@ -230,7 +230,7 @@ fn wild(vehicle: &mut StandIn, t_us: u32) {
 
 /// The checksum of these tests is that of the library, so that wild values arrive and are not skipped as damaged.
 #[test]
-fn wild_packets_are_packets() {
+fn packets_with_extreme_values_are_valid_packets() {
     use flagred_flightlog::mavlink::{Next, next_packet};
     for (message, extra, payload, _) in messages_read(1) {
         let bytes = packet(message, extra, &payload);
@@ -242,7 +242,7 @@ fn wild_packets_are_packets() {
 }
 
 #[test]
-fn ports_that_cannot_be_had_are_told_with_what_to_do() {
+fn unavailable_ports_are_reported_with_a_remedy() {
     let taken = UdpSocket::bind("127.0.0.1:0").unwrap();
     let (code, told) = refused(&format!("udpin:{}", taken.local_addr().unwrap()), &[]);
     assert_eq!(code, Some(3));
@@ -282,7 +282,7 @@ fn ports_that_cannot_be_had_are_told_with_what_to_do() {
 /// As a user whom the port does not belong to.
 #[test]
 #[cfg(unix)]
-fn a_serial_port_without_permission_is_told_with_what_to_do() {
+fn a_serial_port_without_permission_is_reported_with_a_remedy() {
     use std::os::unix::{fs::PermissionsExt, process::CommandExt};
     let path = std::env::temp_dir().join(format!("flagred-port-{}", std::process::id()));
     std::fs::write(&path, "").unwrap();
@@ -341,7 +341,7 @@ fn an_endpoint_that_is_not_there_yet_is_waited_for() {
 }
 
 #[test]
-fn a_connection_that_breaks_is_opened_again() {
+fn a_broken_connection_is_reopened() {
     let flight = flight(Path::new(STEADY));
     let watch = Watch::start("tcpin:127.0.0.1:0", &[]);
     for round in 0..2 {
@@ -365,7 +365,7 @@ fn a_connection_that_breaks_is_opened_again() {
 }
 
 #[test]
-fn nothing_known_is_no_good() {
+fn an_unknown_risk_is_not_good() {
     let watch = Watch::udp(&[]);
     let said = watch.end();
     let ended = said.one("ended");
@@ -378,7 +378,7 @@ fn nothing_known_is_no_good() {
 
 /// A link that is killed in the air is no landing; a watch that is ended there is none either, but has seen all.
 #[test]
-fn a_flight_whose_end_nobody_saw_is_not_landed() {
+fn a_flight_whose_end_was_not_received_is_not_reported_as_landed() {
     let flight = flight(Path::new(STEADY));
     let air = flight.in_air.as_ref().unwrap().spans[0];
     for (silent_ms, event, why, verdict, code) in [

@@ -55,7 +55,7 @@ fn maximum(value_us: f32) -> MavMessage {
 }
 
 #[test]
-fn a_second_sender_is_told_and_neither_believed_nor_answered() {
+fn a_second_sender_is_reported_and_ignored() {
     let (flight, start_s) = steady();
     let folder = Folder::new();
     let file = folder.at("flight.tlog");
@@ -113,7 +113,7 @@ fn a_vehicle_that_comes_back_from_another_address_is_followed_after_a_silence() 
 }
 
 #[test]
-fn of_two_watches_one_speaks() {
+fn only_one_of_two_watches_sends() {
     let (flight, start_s) = steady();
     let first = Watch::udp(&[]);
     // Their ages differ by more than a tenth of a second.
@@ -150,7 +150,7 @@ fn of_two_watches_one_speaks() {
 }
 
 #[test]
-fn with_a_key_only_signed_packets_are_believed_and_those_sent_are_signed() {
+fn with_a_key_only_signed_packets_are_accepted_and_sent() {
     let (flight, start_s) = steady();
     let folder = Folder::new();
     let file = folder.file("key", "0b".repeat(32));

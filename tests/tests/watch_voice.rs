@@ -61,7 +61,7 @@ fn all_but_one_percent_of_risks_are_on_the_wire_within_5_ms() {
 }
 
 #[test]
-fn it_is_an_onboard_controller_of_the_vehicle_and_tells_values_once_in_half_a_second() {
+fn watch_is_an_onboard_controller_and_sends_values_every_half_second() {
     let flight = flight(Path::new(STEADY));
     let (_, vehicle) = fly_udp(
         &flight,

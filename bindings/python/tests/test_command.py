@@ -41,7 +41,7 @@ def run(*arguments: str, program: str = COMMAND, **more) -> subprocess.Completed
         (["explain", str(ROOT / "rules/tipper.yaml"), "service=8", "food=9"], 0),
     ],
 )
-def test_it_prints_and_returns_what_the_program_does(arguments, code):
+def test_the_command_prints_and_returns_the_same_as_the_program(arguments, code):
     ours = run(*arguments)
     assert ours.returncode == code, ours.stderr
     assert "Traceback" not in ours.stderr
@@ -57,7 +57,7 @@ def test_names_that_are_not_unicode_reach_the_command(tmp_path):
     assert b"flagred-assess.1" in os.listdir(folder)
 
 
-def test_it_starts_without_numpy_and_fast():
+def test_the_command_starts_without_numpy_and_fast():
     seconds = []
     for _ in range(5):
         start = time.perf_counter()
@@ -87,7 +87,7 @@ def test_ctrl_c_ends_a_watch():
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of Unix")
-def test_ctrl_c_ends_what_handles_no_signals():
+def test_ctrl_c_ends_commands_that_handle_no_signals():
     # Waits for its standard input.
     waiting = subprocess.Popen([COMMAND, "assess", "-"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     time.sleep(1)

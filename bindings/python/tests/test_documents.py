@@ -34,7 +34,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize(
     ("document", "least", "needs"), [("docs/python.md", 40, "sklearn"), ("README.md", 3, "sklearn"), ("docs/fleet.md", 8, "distributed")]
 )
-def test_a_document_is_true(desk, document, least, needs):
+def test_the_code_of_a_document_runs_as_printed(desk, document, least, needs):
     pytest.importorskip(needs, reason=f"{needs} is not installed: `pip install flagred[sklearn,fleet]`")
     parts = blocks(document, "pycon")
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE, verbose=False)

@@ -71,7 +71,7 @@ def test_logs_are_evaluated_as_by_the_command_line(folder, evaluation):
     assert flagred.evaluate(folder, "flagred", threads=1).to_json() == evaluation.to_json()
 
 
-def test_what_an_evaluation_holds(evaluation):
+def test_the_content_of_an_evaluation(evaluation):
     assert (evaluation.cases, evaluation.horizon_s, len(evaluation.flights)) == ("steps", 5, 4)
     assert list(evaluation.estimators)[:2] == ["flagred", "flagred-paper"] and len(evaluation.estimators) == 11
     assert repr(evaluation).startswith("Evaluation(11 estimators on ")

@@ -140,7 +140,7 @@ def test_motors_have_their_mean_margin(logs, tmp_path, here):
     assert flights(out)["noise.bin"]["motor_margins"] is None
 
 
-def test_only_what_is_missing_or_changed(logs, tmp_path, here):
+def test_only_missing_or_changed_logs_are_assessed(logs, tmp_path, here):
     out = tmp_path / "out"
     fleet.assess([str(logs)], str(out))
     assert len(flights(out)) == 3
@@ -173,7 +173,7 @@ def test_a_log_of_the_same_content(logs, tmp_path, here):
     assert len(flights(out)) == 3
 
 
-def test_other_settings_are_another_answer(logs, tmp_path, here):
+def test_other_settings_assess_logs_again(logs, tmp_path, here):
     out = tmp_path / "out"
     fleet.assess([str(logs)], str(out))
     assert fleet.assess([str(logs)], str(out), profile="flagred-paper").assessed == 3
@@ -207,7 +207,7 @@ class Killed(BaseException):
     """What ends a process."""
 
 
-def test_every_write_can_be_the_last(logs, tmp_path, here, monkeypatch):
+def test_an_interruption_after_any_write_is_repaired(logs, tmp_path, here, monkeypatch):
     """A run that is killed at its nth write, and then one that is not, give the dataset of an undisturbed run."""
     whole = tmp_path / "whole"
     fleet.assess([str(logs)], str(whole), recursive=True)
@@ -241,7 +241,7 @@ def change_some(logs: Path) -> None:
     (logs / "vehicle=v5" / "5.csv").unlink()
 
 
-def test_what_replaces_rows_can_be_interrupted(logs, tmp_path, here, monkeypatch):
+def test_commands_that_replace_rows_can_be_interrupted(logs, tmp_path, here, monkeypatch):
     """As above, with changed and deleted logs and small files joined, killed at writes and at deletions."""
     first = tmp_path / "first"
     fleet.assess([str(logs)], str(first), recursive=True)
@@ -285,7 +285,7 @@ def test_what_replaces_rows_can_be_interrupted(logs, tmp_path, here, monkeypatch
     assert last > 10, "the run ended before it was killed"
 
 
-def test_a_worker_of_a_run_before_commits_nothing(logs, tmp_path):
+def test_a_worker_of_an_earlier_run_commits_nothing(logs, tmp_path):
     out = tmp_path / "out"
     place = open_place(str(out))
     job = fleet.Job.of(str(out), flagred.Profile(), 1.0, False).of_run(takeover.take_over(place))
@@ -311,7 +311,7 @@ def test_two_rows_of_a_log_become_one(logs, tmp_path, here):
     assert content(out) == before
 
 
-def test_a_vanished_log_is_no_row_and_a_busy_storage_is_asked_again(logs, tmp_path, monkeypatch):
+def test_a_vanished_log_has_no_row_and_a_busy_storage_is_retried(logs, tmp_path, monkeypatch):
     out = tmp_path / "out"
     place = open_place(str(out))
     job = fleet.Job.of(str(out), flagred.Profile(), 1.0, True).of_run(takeover.take_over(place))
@@ -360,7 +360,7 @@ def test_shards_are_cut_by_size_and_source():
     assert one.halves()[0].logs + one.halves()[1].logs == one.logs
 
 
-def test_a_small_fleet_employs_all_cores():
+def test_a_small_fleet_uses_all_cores():
     logs = [("a", fleet.Log(str(i), 3_000_000, 0)) for i in range(108)]
     parts = list(shards(logs, *largest(108, 324_000_000, 16)))
     assert len(parts) >= 54 and max(len(part.logs) for part in parts) <= 2
@@ -456,7 +456,7 @@ def test_a_disk_without_space_is_noticed_before_logs_are_read(logs, tmp_path, mo
         fleet.process(shard, job)
 
 
-def test_a_worker_that_dask_gave_up_is_replaced(monkeypatch):
+def test_a_worker_that_dask_lost_is_replaced(monkeypatch):
     monkeypatch.setattr(engine, "LONGEST_RESTART_S", 1.0)
     with engine.cluster(None, 1) as client:
         client.wait_for_workers(1)
@@ -496,7 +496,7 @@ def odd_folder(tmp_path: Path) -> Path:
     return folder
 
 
-def test_each_file_counts_once_and_what_is_no_file_is_passed_over(tmp_path, here, capsys):
+def test_each_file_counts_once_and_other_entries_are_skipped(tmp_path, here, capsys):
     folder, out = odd_folder(tmp_path), tmp_path / "out"
     done = fleet.assess([str(folder)], str(out), recursive=True)
     assert (done.listed, done.assessed, done.passed_over) == (2, 2, 4)
@@ -539,7 +539,7 @@ def test_hard_links_to_one_file_that_are_sources_count_once(tmp_path, here):
     assert fleet.assess(sources, str(tmp_path / "out"), dry_run=True).listed == 1
 
 
-def test_without_its_extras_the_command_names_what_to_install(tmp_path):
+def test_without_extras_the_command_names_the_packages_to_install(tmp_path):
     (tmp_path / "dask.py").write_text("raise ModuleNotFoundError('no dask', name='dask')")
     paths = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
     environment = {**os.environ, "PYTHONPATH": paths}

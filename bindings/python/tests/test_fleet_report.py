@@ -79,7 +79,7 @@ def test_causes_are_words_for_a_pilot(dataset):
         assert cause["flights"] == cause["findings"] and 1 <= cause["vehicles"] <= 40
 
 
-def test_what_is_rare_is_found(dataset):
+def test_rare_findings_are_listed(dataset):
     asked = {question: fleet.ask(str(dataset), question).to_pylist() for question in fleet.QUESTIONS}
     assert all(asked.values()), [question for question, rows in asked.items() if not rows]
     worst = asked["worst"][0]

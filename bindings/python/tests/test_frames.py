@@ -105,7 +105,7 @@ def test_our_own_table():
     assert isinstance(again(table), flagred.types.Table)
 
 
-def test_a_kept_value_crosses_batches():
+def test_a_previous_value_is_kept_across_batches():
     polars = library("polars")
     keeps = flagred.loads(KEEPS)
     part = polars.DataFrame({"heat": [30.0, 22.0]})

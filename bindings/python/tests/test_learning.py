@@ -70,7 +70,7 @@ def test_all_frames_give_the_same_bits(fan):
     assert len(texts) == 1
 
 
-def test_settings_of_tuning_hold(fan):
+def test_settings_of_tuning_are_used(fan):
     data = {"heat": HEAT, "flow": SPEED}
     tuned = flagred.tune(fan, data, only=["speed"], columns={"speed": "flow"}, digits=2)
     assert tuned.model.inputs["heat"].terms == fan.inputs["heat"].terms
@@ -100,7 +100,7 @@ def test_rules_are_learned(fan):
     assert len(kept.model.rules) == 3 and kept.validation is None
 
 
-def test_learned_rules_that_do_not_rise_are_told(fan):
+def test_learned_rules_that_do_not_rise_are_reported(fan):
     data = {"heat": [1, 2, 38, 39], "speed": [8, 8, 2, 2]}
     learned = flagred.learn(fan, data, resolve="mean", rising=["heat"], validation=False)
     assert learned.counterexamples == [] and learned.moved > 0
@@ -212,7 +212,7 @@ def test_identifying_finds_what_matters_in_any_frame():
 
 @pytest.mark.parametrize("antecedents", ["partitions", "clusters"])
 @pytest.mark.parametrize("consequents", ["constants", "lines"])
-def test_identifying_is_judged_beside_a_line(antecedents, consequents):
+def test_identifying_is_compared_with_a_line(antecedents, consequents):
     found = flagred.identify(cars(), "mpg", antecedents=antecedents, consequents=consequents)
     worth = found.validation
     assert worth.ratio.value == pytest.approx(worth.identified.value / worth.linear.value)
@@ -284,7 +284,7 @@ def test_tuned_numbers_are_short_and_rows_must_count():
         flagred.tune(fan, rows | {"speed": np.append(rows["speed"][:-1], 1e308)})
 
 
-def test_what_data_made_is_written_into_the_rule_set():
+def test_the_provenance_is_written_into_the_rule_set():
     text = """# The fan.
 fuzzy: 1
 name: fan
@@ -336,7 +336,7 @@ def test_terms_from_data_by_c_means():
             call()
 
 
-def test_options_of_another_type_are_told_in_plain_words():
+def test_options_of_another_type_are_reported_in_plain_words():
     fan = flagred.load("flagred-paper")
     rows = {"margin": [0.1, 0.5], "spread": [0.1, 0.2], "risk": [50, 10]}
     for call, message in (

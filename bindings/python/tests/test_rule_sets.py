@@ -38,7 +38,7 @@ def test_numbers_by_place_and_by_name(tip):
     assert repr(outcome).startswith("Outcome(value=18.39")
 
 
-def test_unknown_is_no_number(tip, gaps):
+def test_unknown_is_not_a_number(tip, gaps):
     for unknown in (None, math.nan, math.inf):
         assert math.isnan(tip(8, unknown))
         assert tip.evaluate(8, unknown).value is None
@@ -69,13 +69,13 @@ def test_unknown_is_no_number(tip, gaps):
         (lambda tip: tip.check(rising=3), "3 is not a list of inputs"),
     ],
 )
-def test_mistakes_are_told(tip, ask, message):
+def test_mistakes_are_reported(tip, ask, message):
     with pytest.raises(flagred.DataError) as error:
         ask(tip)
     assert message in str(error.value)
 
 
-def test_a_model_that_must_fire_says_where_it_does_not():
+def test_a_model_that_must_fire_reports_where_it_does_not():
     model = flagred.loads(TIP.replace("high]}\nrules", "high], when_no_rule_fires: error}\nrules"))
     model.rules[1] = "IF service IS good AND food IS delicious THEN tip IS medium"
     del model.rules[2]
@@ -216,7 +216,7 @@ def test_findings_of_a_check(tip):
     assert "not-monotone" in [finding.code for finding in tip.check(falling="service")]
 
 
-def test_copies_are_apart(tip):
+def test_copies_are_independent(tip):
     for other in (copy.copy(tip), copy.deepcopy(tip), tip.copy(), pickle.loads(pickle.dumps(tip))):
         assert other == tip and type(other) is flagred.Model
         other.rules[0].weight = 0.5
@@ -386,7 +386,7 @@ def test_formats_are_those_of_the_command(tip, tmp_path):
         assert run.stdout == tip.to_text(format), run.stderr
 
 
-def test_what_a_format_cannot_say_is_refused_or_dropped_with_a_warning(tmp_path):
+def test_unsupported_features_of_a_format_are_refused_or_dropped_with_a_warning(tmp_path):
     lost = flagred.loads(COMMENTED.replace("name: fan # short", "name: fan")
                          .replace("partition: [slow, fast]}", "partition: [slow, fast], when_no_rule_fires: previous}"))
     refusing = []
@@ -457,7 +457,7 @@ def test_surface(tip):
         tip.surface(figure.add_subplot())
 
 
-def test_help_names_what_matters_and_types_have_the_rest():
+def test_help_lists_the_main_names_and_types_the_rest():
     assert len(flagred.__all__) <= 22
     assert not {"Cause", "Peak", "Share", "Step"} & set(flagred.__all__)
     for name in flagred.types.__all__:

@@ -112,7 +112,7 @@ def test_a_grid_is_searched():
     assert search.best_score_ > 0.3
 
 
-def test_weights_count(wave):
+def test_weights_are_used(wave):
     X, y = wave
     one = FuzzyRegressor(tune=False).fit(X, y, sample_weight=np.where(X[:, 0] < 3, 1, 0))
     two = FuzzyRegressor(tune=False).fit(X[X[:, 0] < 3], y[X[:, 0] < 3])

@@ -18,7 +18,7 @@ rules:
 ";
 
 #[test]
-fn mistakes_get_advice_that_helps() {
+fn the_advice_for_mistakes_works() {
     let folder = folder(&[
         ("fan.yaml", FAN),
         ("profile.yaml", "flagred: 1\nname: mine\n"),

@@ -67,7 +67,7 @@ fn commands_take_the_files_of_other_programs_as_they_are() {
 }
 
 #[test]
-fn what_a_format_cannot_say_is_refused_or_told() {
+fn features_that_a_format_lacks_are_refused_or_reported() {
     let refused = flagred(&["export", "--fis", "tests/onboard/blocks.yaml"]);
     assert_eq!(refused.status.code(), Some(3));
     assert!(refused.stdout.is_empty());
@@ -88,7 +88,7 @@ fn what_a_format_cannot_say_is_refused_or_told() {
 }
 
 #[test]
-fn what_is_no_such_file_is_told() {
+fn files_of_the_wrong_format_are_reported() {
     let output = flagred(&["import", "rules/tipper.yaml"]);
     assert_eq!(output.status.code(), Some(3));
     assert!(

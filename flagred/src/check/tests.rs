@@ -67,7 +67,7 @@ fn a_profile_that_fits_its_rule_set_has_no_finding() {
 }
 
 #[test]
-fn what_does_not_fit_is_told_at_its_place() {
+fn misfits_are_reported_at_their_positions() {
     let cases = [
         ("  battery: {last: battery_remaining_pct}\n", ""),
         ("  battery: {last", "  batery: {last"),
@@ -140,7 +140,7 @@ fn what_does_not_fit_is_told_at_its_place() {
 }
 
 #[test]
-fn a_mistake_in_the_profile_is_told_first() {
+fn a_mistake_in_the_profile_is_reported_first() {
     let (findings, estimator) = fit("flagred: 1\nname: x", RULES);
     assert!(estimator.is_none());
     assert!(findings.0.iter().all(|one| one.code == "missing-key"));

@@ -98,7 +98,7 @@ fn a_known_time_in_the_air_decides_what_is_enough() {
 }
 
 #[test]
-fn a_second_flight_begins_anew() {
+fn a_second_flight_starts_without_the_state_of_the_first() {
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
     let mut fly = |from_s: f64, motors: [f64; 4]| {
         for i in 0..1000 {

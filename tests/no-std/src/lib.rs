@@ -71,7 +71,7 @@ pub fn map(engine: &Engine) -> Option<DecisionMap> {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn it_runs() {
+    fn rules_run_without_the_standard_library() {
         let engine = super::engine().unwrap();
         let mut scratch = engine.scratch();
         let map = super::map(&engine).unwrap();

@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_of_a_profile_are_replaced_and_nothing_else() {
+    fn only_the_rows_of_a_profile_are_replaced() {
         let share = |moments, followed| Share { moments, followed };
         let profile = "a: 1\nreliability:  # measured\n  - {old: 1}\n  - {old: 2}\nb: 2\n";
         let text = with_shares(

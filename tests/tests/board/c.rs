@@ -162,7 +162,7 @@ pub(crate) fn written(mut program: Command, doubles: &[f64]) -> Vec<String> {
 }
 
 #[test]
-fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs() {
+fn exported_c_agrees_with_the_monitor_on_flights_and_with_the_estimator_on_a_grid() {
     for (profile, (name, _)) in PROFILES.iter().zip(exported()) {
         let (_, folder) = program("tests/c/follow.c", name, (profile, name));
         let estimator = estimator(profile);
@@ -334,7 +334,7 @@ fn two_profiles_in_one_program_have_memory_sizes_of_their_own() {
 }
 
 #[test]
-fn mistakes_in_c_are_told_and_nothing_is_written() {
+fn mistakes_in_c_are_reported_and_write_nothing() {
     let (mut program, _folder) = program("tests/c/mistakes.c", "mistakes", FLAGRED);
     let output = program.output().unwrap();
     let text = String::from_utf8_lossy(&output.stdout);
@@ -344,7 +344,7 @@ fn mistakes_in_c_are_told_and_nothing_is_written() {
 /// The module for PX4, with stand-ins for the parts of PX4 that it uses.
 #[test]
 #[ignore = "needs a compiler of C++"]
-fn the_module_for_px4_says_the_risk_and_the_level() {
+fn the_module_for_px4_reports_the_risk_and_the_level() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let example = root.join("bindings/c/examples/px4");
     let folder = Folder::new();

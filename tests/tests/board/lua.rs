@@ -96,7 +96,7 @@ fn script(profile: &str, folder: &Folder) -> String {
 }
 
 #[test]
-fn the_script_says_what_the_monitor_says_of_every_flight() {
+fn the_script_agrees_with_the_monitor_on_every_flight() {
     let folder = Folder::new();
     for profile in PROFILES {
         let estimator = estimator(profile);
@@ -235,7 +235,7 @@ fn in_short(line: &str) -> String {
 }
 
 #[test]
-fn the_script_tells_levels_and_causes_of_any_frame() {
+fn the_script_reports_levels_and_causes_of_any_frame() {
     let folder = Folder::new();
     let estimator = estimator("flagred");
     let script = script("flagred", &folder);
@@ -326,7 +326,7 @@ fn the_script_obeys_its_parameters_and_survives_an_error() {
 
 /// The motors that are not known may be those at their limit.
 #[test]
-fn a_frame_with_more_motors_than_outputs_is_not_judged() {
+fn a_frame_with_more_motors_than_outputs_is_not_assessed() {
     let folder = Folder::new();
     let four = Vehicle::named("QUAD/X");
     let records = &eventful(&four)[..2000];
@@ -511,7 +511,7 @@ fn the_script_does_not_drift_in_a_long_flight() {
 }
 
 #[test]
-fn what_a_script_cannot_do_is_refused_with_what_it_can() {
+fn unsupported_features_of_a_script_are_refused_with_alternatives() {
     let folder = Folder::new();
     let rules = include_str!("../../../rules/flagred-paper.yaml");
     let profile = include_str!("../../../rules/profiles/flagred-paper.yaml");

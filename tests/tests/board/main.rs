@@ -131,7 +131,7 @@ fn exported_files_are_what_export_writes() {
 }
 
 #[test]
-fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs() {
+fn plans_agree_with_the_estimator_on_a_grid_of_inputs() {
     for (profile, (name, plan)) in PROFILES.iter().zip(exported()) {
         let estimator = estimator(profile);
         let lent = estimator.plan().unwrap();
@@ -165,7 +165,7 @@ fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs()
 }
 
 #[test]
-fn a_plan_and_an_exported_plan_say_what_the_monitor_says_of_every_flight() {
+fn plans_agree_with_the_monitor_on_every_flight() {
     for (profile, (name, plan)) in PROFILES.iter().zip(exported()) {
         let estimator = estimator(profile);
         let lent = estimator.plan().unwrap();
@@ -183,7 +183,7 @@ fn a_plan_and_an_exported_plan_say_what_the_monitor_says_of_every_flight() {
 
 /// An action on a strength before those of its output raises nothing, and is no panic.
 #[test]
-fn an_action_on_a_strength_of_no_output_raises_nothing() {
+fn an_action_without_an_output_raises_nothing() {
     let estimator = estimator("flagred-paper");
     let plan = estimator.plan().unwrap();
     let mut outputs = plan.rules.table.outputs.to_vec();
@@ -286,7 +286,7 @@ fn profile_of(folder: &Folder, of: &[&str]) -> (Estimator, String) {
 }
 
 #[test]
-fn every_signal_and_notice_is_the_same_lent_and_in_c() {
+fn every_signal_and_notice_is_the_same_in_borrowed_memory_and_in_c() {
     let folder = Folder::new();
     let measures = same_lent_and_in_c(profile_of_every_signal(&folder));
     // In the shipped flights an alarm stands before trims are known: there is no imbalance against them.
@@ -296,13 +296,13 @@ fn every_signal_and_notice_is_the_same_lent_and_in_c() {
 }
 
 #[test]
-fn every_statistic_is_the_same_lent_and_in_c() {
+fn every_statistic_is_the_same_in_borrowed_memory_and_in_c() {
     let folder = Folder::new();
     same_lent_and_in_c(profile_of_every_statistic(&folder));
 }
 
 #[test]
-fn a_profile_that_reads_no_motor_is_the_same_with_none_lent_and_in_c() {
+fn a_profile_without_motors_is_the_same_in_borrowed_memory_and_in_c() {
     let folder = Folder::new();
     let rules = "fuzzy: 1\nname: loads\ninputs:\n  load: {range: [0, 2], partition: {rated: 1, over: 1.5}}\n\
                  outputs:\n  risk: {range: [0, 100], partition: [low, medium, high]}\nrules:\n\
@@ -379,7 +379,7 @@ fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String
 }
 
 #[test]
-fn a_geometry_that_tells_nothing_apart_is_refused_and_changes_nothing() {
+fn an_ambiguous_geometry_is_refused_and_changes_nothing() {
     let estimator = estimator("flagred");
     let plan = estimator.plan().unwrap();
     let log = &logs()[0];
@@ -404,7 +404,7 @@ fn a_geometry_that_tells_nothing_apart_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn a_storage_has_the_sizes_of_its_plan_and_refuses_others() {
+fn a_storage_refuses_plans_of_other_sizes() {
     let mut storage = exported::flagred::Storage::<8>::new();
     assert!(storage.monitor(&exported::flagred::PLAN).is_ok());
     let other = storage.monitor(&exported::flagred_battery::PLAN);
@@ -431,7 +431,7 @@ fn a_sample_on_board_allocates_nothing() {
 }
 
 #[test]
-fn what_has_no_closed_form_is_refused_with_what_has() {
+fn outputs_without_a_closed_form_are_refused_with_alternatives() {
     let folder = Folder::new();
     let rules = include_str!("../../../rules/flagred-paper.yaml")
         .replace("defuzzifier: centroid", "samples: {midpoint: 100}");
@@ -476,7 +476,7 @@ fn profiles_of_every_kind(folder: &Folder) -> Vec<(String, Estimator, String)> {
 }
 
 #[test]
-fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
+fn tables_of_every_kind_agree_with_the_estimator_in_borrowed_memory_and_in_c() {
     let folder = Folder::new();
     let mut used = Vec::new();
     for (name, estimator, file) in profiles_of_every_kind(&folder) {
@@ -519,7 +519,7 @@ fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
 }
 
 #[test]
-fn every_compiled_table_is_whole() {
+fn every_compiled_table_is_valid() {
     for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/conformance")).unwrap() {
         let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
         let (rule_set, _) = text.split_once("\n---\n").unwrap();

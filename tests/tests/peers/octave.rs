@@ -68,7 +68,7 @@ fn random(seed: u64) -> Model {
 
 #[test]
 #[ignore = "needs Octave with the fuzzy-logic-toolkit: tests/peer/octave.sh"]
-fn octave_computes_the_values_of_what_is_written_for_it() {
+fn octave_computes_the_same_values_from_exported_files() {
     let folder = Folder::new();
     // Octave takes a tenth of a second for a point.
     for (name, text) in SHIPPED {

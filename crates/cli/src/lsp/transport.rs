@@ -85,7 +85,7 @@ mod tests {
     const EXIT: &str = "{\"jsonrpc\":\"2.0\",\"method\":\"exit\"}";
 
     #[test]
-    fn what_is_too_long_or_damaged_is_passed_over() {
+    fn messages_that_are_too_long_or_damaged_are_skipped() {
         let long = message(&" ".repeat(LONGEST as usize + 1));
         let all = format!("{long}{}{}", message("{"), message(EXIT));
         let mut all = all.as_bytes();

@@ -44,7 +44,7 @@ fn names(variable: &Variable) -> Vec<&str> {
 }
 
 #[test]
-fn zeros_are_the_model_itself() {
+fn zeros_give_the_original_model() {
     let settings = Settings {
         weights: true,
         ..Settings::default()
@@ -72,7 +72,7 @@ fn a_vertical_edge_stays_one() {
 }
 
 #[test]
-fn what_is_named_moves_and_what_is_fixed_stays() {
+fn named_parameters_move_and_fixed_ones_stay() {
     let settings = Settings {
         only: vec!["heat".into(), "food.d".into()],
         fix: vec!["heat.hot".into()],

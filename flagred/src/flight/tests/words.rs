@@ -105,7 +105,7 @@ fn a_motor_is_named_as_it_is_known() {
 }
 
 #[test]
-fn no_number_is_left_out() {
+fn findings_contain_all_numbers() {
     let estimator = shipped::flagred();
     for measure in Measure::ALL {
         let mut finding = finding(measure, 50.0);
