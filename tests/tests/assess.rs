@@ -1,4 +1,4 @@
-//! `flagred assess` as its users meet it: on the shipped flight, on what is no log, on damaged logs.
+//! `flagred assess` from a user's point of view: on the shipped flight, other files and damaged logs.
 
 use std::{fs, path::Path, process::Output};
 
@@ -41,7 +41,7 @@ fn the_shipped_flight_as_json() {
     assert_eq!(document["verdict"], "GOOD");
     assert_eq!(document["vehicle"]["motors"][2]["output"], "C3");
     let steps = document["steps"].as_array().unwrap();
-    // 129 s in the air, a step every 0.1 s, and the log's samples are 0.04 s apart.
+    // 129 s in the air with a step every 0.1 s; the samples of the log are 0.04 s apart.
     assert!((1250..1300).contains(&steps.len()), "{}", steps.len());
     let step = &steps[600];
     for key in [
@@ -69,7 +69,7 @@ fn csv_has_a_row_for_each_step_of_the_json() {
     let (_, document) = json(STEADY);
     let steps = document["steps"].as_array().unwrap();
     assert_eq!(rows.lines().count(), steps.len());
-    // An input has a column of its own beside that of the summary: the names are those of the JSON.
+    // An input has its own column beside that of the summary; the names are those of the JSON document.
     let names: Vec<&str> = head.split(',').collect();
     let step = &steps[800];
     let of_csv = |name: &str| {
@@ -87,7 +87,7 @@ fn csv_has_a_row_for_each_step_of_the_json() {
     assert!((of_csv("spread") - step["spread"].as_f64().unwrap()).abs() < 1e-12);
     for (row, step) in rows.lines().zip(steps) {
         let risk = row.split(',').nth(5).unwrap();
-        // The last digit is JSON's to round.
+        // JSON rounds the last digit.
         match (risk.parse::<f64>().ok(), step["risk"].as_f64()) {
             (Some(a), Some(b)) => assert!((a - b).abs() < 1e-12, "{row}"),
             (a, b) => assert_eq!(a, b, "{row}"),
@@ -198,8 +198,8 @@ fn a_truncated_log_is_assessed_to_its_end() {
     assert!((400..1000).contains(&steps.len()), "{}", steps.len());
 }
 
-/// Overwriting may hit what defines the messages: then there is no answer, and the reason. Where it does not, the
-/// flight is assessed from the messages that are left.
+/// Overwriting may hit the definitions of messages: then there is no verdict, with a reason. Otherwise the flight is assessed
+/// from the remaining messages.
 #[test]
 fn a_log_with_1_percent_of_its_bytes_overwritten_is_assessed_or_refused_with_a_reason() {
     let intact = fs::read(STEADY).unwrap();
@@ -278,7 +278,7 @@ fn a_missing_signal_that_the_profile_needs_gives_no_verdict() {
     assert!(text.contains("`anemometer_m_s`"), "{text}");
 }
 
-/// Every flight that comes with a record of what happened in it.
+/// Every flight with a record of its events.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_simulated_flights_are_all_assessed() {

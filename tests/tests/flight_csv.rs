@@ -1,4 +1,4 @@
-//! What a flight CSV says that cannot be: refused where it stands, never a shorter or another flight.
+//! Impossible contents of a flight CSV: refused at their position, never a shorter or another flight.
 
 use std::fmt::Write as _;
 
@@ -73,7 +73,7 @@ fn a_frame_with_fewer_motors_than_columns_is_refused() {
         "line 1: `frame` is `QUAD/X`, which has 4 motors",
         "correct it",
     );
-    // Factors of every motor replace the table of the frame.
+    // Factors of all motors replace the table of the frame.
     let factors: String = (1..=6)
         .map(|motor| format!("# motor{motor}_factors: 1 1 1\n"))
         .collect();
@@ -93,7 +93,7 @@ fn a_row_without_a_time_is_refused() {
         });
         refused(&csv, said, "give every row a time");
     }
-    // Spreadsheets leave rows of empty cells at the end.
+    // Spreadsheets append rows of empty cells.
     let csv = flight("", |_, _| None) + ",,,,,\n,,,,,\n";
     assert_eq!(verdict(&csv), "GOOD");
     assert_eq!(read(&csv).unwrap().report.bad_messages, 2);
@@ -125,13 +125,13 @@ fn a_row_with_too_few_cells_is_refused() {
         "line 14: 3 of 6 columns",
         "give every row a cell",
     );
-    // The last row is that of a file that is cut off.
+    // The last row is that of a truncated file.
     let flight = read(&short(1499)).unwrap();
     assert!(flight.report.truncated);
     assert_eq!(flight.report.bad_messages, 1);
 }
 
-/// Without the column, idle motors end a flight; with it, they are a fall. The flight says so when it is written again.
+/// Without the column, idle motors end a flight; with it, they are a fall. A written flight keeps this.
 #[test]
 fn idle_motors_override_an_assumed_time_in_the_air() {
     let idle = |i: usize, t_s: f64, air: &str| {
@@ -179,7 +179,7 @@ fn pulse_widths_in_another_unit_are_refused() {
         let csv = flight("", |_, t_s| Some(format!("{t_s},1500,1500,{third},1500,1")));
         let said = format!("line 4: `pwm3` is {shown}, not a pulse width in us");
         refused(&csv, &said, "name fractions from 0 to 1 `motor1`");
-        // Without limits there is no verdict in any case; `convert` writes such commands.
+        // Without limits there is no verdict anyway; `convert` writes such commands.
         assert!(read(csv.strip_prefix(HEAD).unwrap()).is_ok());
     }
     // Outputs that are off, and a damaged cell.
@@ -213,7 +213,7 @@ fn a_clock_of_whole_numbers_is_named() {
             Some(format!("{},1500,1500,1500,1500,1", time(i)))
         })
     };
-    // 1 kHz in milliseconds, with the jitter of the clock, and a clock of seconds.
+    // 1 kHz in milliseconds, with jitter of the clock, and a clock of seconds.
     for csv in [
         at(&|i| format!("{}", i * 10 / 11)),
         at(&|i| format!("{}", i / 25)),
@@ -230,12 +230,12 @@ fn a_clock_of_whole_numbers_is_named() {
         "line 7: `t_s` goes from 0 to 5 in one row",
         "divide milliseconds by 1000",
     );
-    // Fractions that repeat are judged.
+    // Repeated fractions are assessed.
     let csv = at(&|i| format!("{}", i / 3 * 2) + "e-2");
     assert_eq!(verdict(&csv), "GOOD");
 }
 
-/// A damaged log may hold what no flight CSV of a user may; it is converted and read back.
+/// A damaged log may contain values that a flight CSV of a user may not; it is converted and read back.
 #[test]
 fn files_of_convert_are_read_whatever_they_contain() {
     let rows = "t_s,pwm1,pwm2,pwm3,pwm4,in_air\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n\

@@ -1,4 +1,4 @@
-//! `flagred inspect` as its users meet it.
+//! `flagred inspect` from a user's point of view.
 
 use std::io::Write;
 use std::process::Stdio;
@@ -55,7 +55,7 @@ fn the_document_contains_values_and_their_sources() {
     assert_eq!(document["in_air"]["spans"][0]["start_s"], 0.04);
     assert_eq!(document["signals"][0]["unit"], "deg");
     assert_eq!(document["read"]["messages"], 4);
-    // In the air the commands on the effective range are 0.5, 0.5, 1 and 0.
+    // In the air, the commands on the effective range are 0.5, 0.5, 1 and 0.
     let statistics = &document["statistics"];
     for (name, expected) in [
         ("margin_mean", 0.25),
@@ -97,7 +97,7 @@ fn a_file_that_is_not_a_log_exits_with_3() {
     }
 }
 
-/// Terminal commands in the texts of a log do not reach the terminal.
+/// Control sequences in the texts of a log do not reach the terminal.
 #[test]
 fn control_characters_are_shown_as_such() {
     let (code, stdout, _) = inspect(&[], &format!("# note: \u{1b}[31mred\u{202e}\u{7}\n{LOG}"));
@@ -155,8 +155,8 @@ fn impossible_limits_are_refused() {
     }
 }
 
-/// Half a number is a number too: a last row without its line end is not believed. Every command
-/// says that the end is missing.
+/// A truncated number is a number too: a last row without its line end is not used. Every command
+/// reports that the end is missing.
 #[test]
 fn an_incomplete_last_row_counts_as_truncation() {
     let whole =
@@ -170,7 +170,7 @@ fn an_incomplete_last_row_counts_as_truncation() {
         let flight = read(whole, signals.clone());
         assert!(flight.report.is_clean());
         assert_eq!(flight.commands.len(), 2);
-        // A comment without a line end, and carriage returns, cut no row.
+        // A comment without a line end, and carriage returns, do not truncate a row.
         for log in [format!("{whole}# end"), whole.replace('\n', "\r\n")] {
             assert!(read(&log, signals.clone()).report.is_clean());
         }

@@ -1,4 +1,4 @@
-//! Damaged logs are read as far as they go. `mutations.rs` damages many more.
+//! Damaged logs are read as far as possible. `mutations.rs` damages many more.
 
 use flagred::{flight::Verdict, log::assess, shipped};
 use flagred_flightlog::Options;
@@ -8,7 +8,7 @@ use flagred_tests::{
     reference_data,
 };
 
-/// What is damaged is whole before.
+/// The logs are intact before the tests damage them.
 #[test]
 fn the_logs_are_intact_before_they_are_damaged() {
     for log in seeds::logs() {
@@ -19,7 +19,7 @@ fn the_logs_are_intact_before_they_are_damaged() {
     }
 }
 
-/// Real logs hold messages and definitions that the written ones do not.
+/// Real logs contain messages and definitions that the generated ones do not.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn damaged_real_logs() {
@@ -46,7 +46,7 @@ fn damaged_real_logs() {
     }
 }
 
-/// What a tenth of the damage leaves must still be read: a hole costs the records it hits.
+/// The rows that damage to a tenth of the file leaves intact must be read: a hole loses only the records in it.
 #[test]
 fn a_hole_loses_only_the_rows_in_it() {
     let logs = [
@@ -71,13 +71,13 @@ fn a_hole_loses_only_the_rows_in_it() {
         );
         let report = &flight.report;
         assert!(report.skipped_bytes + report.bad_messages > 0, "{report:?}");
-        // Cut in the middle, all rows before are there.
+        // Of a log cut in the middle, all rows before the cut are read.
         let flight = flagred_flightlog::read(&log[..middle], &Options::default()).unwrap();
         assert!(flight.commands.len() >= rows / 3, "{}", flight.format);
     }
 }
 
-/// They would be a flight of 292,000 years, on whose clock seconds are too small to be told apart.
+/// They would be a flight of 292,000 years, in which seconds are below the precision of the clock.
 #[test]
 fn seconds_of_wild_time_stamps_are_left_out() {
     let log = |wild_us: Option<f64>| {

@@ -1,4 +1,4 @@
-//! `flagred lsp` as an editor meets it: messages over a pipe.
+//! `flagred lsp` from an editor's point of view: messages over a pipe.
 
 use std::{
     io::{BufRead, BufReader, Read, Write},
@@ -94,7 +94,7 @@ impl Editor {
         serde_json::from_slice(&text).unwrap()
     }
 
-    /// Opens a text, and gives the messages of its diagnostics.
+    /// Opens a text and returns the messages of its diagnostics.
     fn open(&mut self, uri: &str, text: &str) -> Vec<String> {
         let document = json!({"uri": uri, "languageId": "yaml", "version": 1, "text": text});
         self.tell("textDocument/didOpen", json!({"textDocument": document}));
@@ -119,7 +119,8 @@ impl Editor {
         found.iter().map(shown).collect()
     }
 
-    /// What is offered where `|` stands in a text.
+    /// The completions at `
+    /// ` in a text.
     fn offered(&mut self, text: &str) -> Vec<String> {
         let offset = text.find('|').unwrap();
         let (uri, text) = ("file:///tmp/offered.yaml", text.replacen('|', "", 1));
@@ -355,7 +356,7 @@ fn the_server_ends_when_the_editor_disconnects() {
     server.wait().unwrap();
 }
 
-/// Findings alone: nothing changes the text of another program.
+/// Only findings: nothing changes the text of another program.
 #[test]
 fn a_rule_set_of_another_program_has_findings_and_is_not_formatted() {
     let text = "FUNCTION_BLOCK fan\nVAR_INPUT\n  heat : REAL;\nEND_VAR\nVAR_OUTPUT\n  speed : REAL;\nEND_VAR\n\
@@ -385,7 +386,7 @@ fn a_rule_set_of_another_program_has_findings_and_is_not_formatted() {
     editor.end();
 }
 
-/// A length that no memory holds, a message that is too long, one that is none: the next one is read all the same.
+/// A length that exceeds any memory, a message that is too long, and an invalid one: the next message is read anyway.
 #[test]
 fn a_message_that_is_too_long_is_skipped() {
     let mut editor = Editor::new(&[]);

@@ -1,6 +1,6 @@
-//! The rule sets and profiles that are shipped are those in `rules/`.
+//! The shipped rule sets and profiles equal those in `rules/`.
 //!
-//! A package holds only files below its own folder, so `flagred/rules/` has a copy of each. Edit the file in `rules/`, then
+//! A package can contain only files below its own folder, so `flagred/rules/` has a copy of each. Edit the file in `rules/`, then
 //! run `UPDATE_DOCUMENTS=1 cargo test --workspace --test shipped`, which copies it.
 
 use std::{env, fs, path::Path};

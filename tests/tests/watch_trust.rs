@@ -1,4 +1,4 @@
-//! `flagred watch` where others speak in the name of the vehicle, or watch it too.
+//! `flagred watch` with other senders that use the vehicle's identity, or with other watches.
 
 use std::{net::TcpStream, path::Path, time::Duration};
 
@@ -25,7 +25,7 @@ fn steady() -> (Flight, f64) {
     (flight, start_s)
 }
 
-/// Every line is one that `flagred schema watch` describes.
+/// Asserts that every line matches `flagred schema watch`.
 fn valid(said: &Said) {
     let schema = schema::schema("watch");
     for line in &said.events {
@@ -33,7 +33,7 @@ fn valid(said: &Said) {
     }
 }
 
-/// Motors at their limits, a landing and a parameter, in the name of the vehicle.
+/// Sends motors at their limits, a landing and a parameter, with the identity of the vehicle.
 fn lie(liar: &mut StandIn, t_s: f64) {
     liar.beat(false, false);
     liar.send(&servo((t_s * 1e6) as u32, &[2000; 16]));
@@ -86,11 +86,11 @@ fn a_second_sender_is_reported_and_ignored() {
     assert!(!vehicle.heard.values("FR_RISK").is_empty());
     assert!(liar.heard.messages.is_empty(), "{:?}", liar.heard);
     valid(&said);
-    // Nor is it believed when the recording is assessed.
+    // Nor is it used when the recording is assessed.
     let assessed = assess(Path::new(&file));
     assert_eq!(assessed["verdict"], "GOOD");
     let (share, difference) = compare(&said, &assessed);
-    // One sample of 475 is in one of them only.
+    // One sample of 475 is in only one of them.
     assert!(share > 0.99 && difference < 0.5, "{share}, {difference}");
 }
 
@@ -116,7 +116,7 @@ fn a_vehicle_that_comes_back_from_another_address_is_followed_after_a_silence() 
 fn only_one_of_two_watches_sends() {
     let (flight, start_s) = steady();
     let first = Watch::udp(&[]);
-    // Their ages differ by more than a tenth of a second.
+    // Ages that differ by more than a tenth of a second.
     std::thread::sleep(Duration::from_millis(400));
     let second = Watch::udp(&[]);
     let mut vehicle = first.vehicle(&flight, Link::default());
@@ -142,7 +142,7 @@ fn only_one_of_two_watches_sends() {
     );
     assert!(vehicle.heard.values("FR_RISK").len() > 2);
     assert_eq!(vehicle.heard_elsewhere.values("FR_RISK").len(), 0);
-    // Both know the risk.
+    // Both report the risk.
     for said in [&first, &second] {
         assert_eq!(said.one("left_in_air")["verdict"], "GOOD");
         valid(said);
@@ -159,7 +159,7 @@ fn with_a_key_only_signed_packets_are_accepted_and_sent() {
     let mut liar = watch.vehicle(&flight, Link::default());
     let mut vehicle = watch.vehicle(&flight, Link::default());
     vehicle.sign(&key);
-    // First, and with the wrong key: even so the vehicle is not locked out.
+    // First, and with the wrong key: the vehicle is not locked out.
     for _ in 0..5 {
         lie(&mut liar, 1.0);
     }

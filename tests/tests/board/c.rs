@@ -1,4 +1,4 @@
-//! The same in C: exported profiles, the examples, and what C can do wrong.
+//! The monitor in C: exported profiles, the examples, and mistakes of a caller.
 
 use std::{
     collections::BTreeMap,
@@ -56,7 +56,7 @@ pub(crate) fn program(
     compiled(source, name, profile, &[("PLAN", &plan)])
 }
 
-/// The same with the export of any file. The compiler is `cc`, with which Rust links too.
+/// The same with the export of any file. The compiler is `cc`, which Rust requires for linking too.
 pub(crate) fn compiled(
     source: &str,
     name: &str,
@@ -95,7 +95,7 @@ pub(crate) fn compiled(
     (Command::new(binary), folder)
 }
 
-/// The C initialisers name their fields, so the compiler holds the structures equal.
+/// The C initialisers name their fields, so the compiler verifies that the structures agree.
 #[test]
 fn the_header_has_the_arrays_of_a_table() {
     macro_rules! list {
@@ -119,7 +119,7 @@ fn the_header_has_the_arrays_of_a_table() {
         .take(arrays.len())
         .collect();
     assert_eq!(arrays[..], listed);
-    // Where a stage ends in each.
+    // The ends of stages in each array.
     macro_rules! names {
         ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => { [$(stringify!($array)),*].join(", ") };
     }
@@ -291,7 +291,7 @@ fn the_pages_in_c_run() {
     }
 }
 
-/// With one name for both, the size of the profile that was included last would count.
+/// With the same names, the size of the profile included last would apply to both.
 #[test]
 fn two_profiles_in_one_program_have_memory_sizes_of_their_own() {
     let folder = Folder::new();
@@ -341,7 +341,7 @@ fn mistakes_in_c_are_reported_and_write_nothing() {
     assert!(output.status.success(), "{text}");
 }
 
-/// The module for PX4, with stand-ins for the parts of PX4 that it uses.
+/// The module for PX4, with replacements for the parts of PX4 that it uses.
 #[test]
 #[ignore = "needs a compiler of C++"]
 fn the_module_for_px4_reports_the_risk_and_the_level() {

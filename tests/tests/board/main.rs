@@ -1,5 +1,5 @@
-//! On-board monitors have the bits of the monitor, with a lent plan, with exported Rust and with exported C, over grids of
-//! inputs and over every flight.
+//! On-board monitors have the bits of the monitor, with a plan in borrowed memory, with exported Rust and with exported C, over
+//! grids of inputs and over every flight.
 
 mod autopilot;
 mod c;
@@ -85,7 +85,7 @@ fn on_board(plan: &Plan<'_>, geometry: &[Factors], flight: &[Moment]) -> Vec<Str
     })
 }
 
-/// Shows the first difference only: a whole flight is too long to print.
+/// Shows only the first difference: a whole flight is too long to print.
 fn assert_same(expected: &[String], found: &[String], what: &str) {
     assert_eq!(expected.len(), found.len(), "{what}");
     for (i, (expected, found)) in expected.iter().zip(found).enumerate() {
@@ -93,7 +93,7 @@ fn assert_same(expected: &[String], found: &[String], what: &str) {
     }
 }
 
-/// The points on each axis of a grid that is dense and takes little time.
+/// The number of points on each axis of a grid that is dense and fast enough.
 fn along(estimator: &Estimator) -> usize {
     match estimator.profile().inputs.len() {
         0..=2 => 203,
@@ -108,7 +108,7 @@ fn along(estimator: &Estimator) -> usize {
 fn exported_files_are_what_export_writes() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("exported");
     for (profile, (file, _)) in PROFILES.iter().zip(exported()) {
-        // One script is enough: those of other profiles differ in their data alone, and `lua.rs` runs them.
+        // One script is enough: other profiles differ only in their data, and `lua.rs` runs their scripts.
         let lua = (file == "flagred").then_some(("--lua", "lua"));
         for (option, ending) in [("--rust", "rs")].into_iter().chain(lua) {
             let output = flagred()
@@ -135,7 +135,7 @@ fn plans_agree_with_the_estimator_on_a_grid_of_inputs() {
     for (profile, (name, plan)) in PROFILES.iter().zip(exported()) {
         let estimator = estimator(profile);
         let lent = estimator.plan().unwrap();
-        // As text, in which NaN equals NaN.
+        // Compared as text, in which NaN equals NaN.
         let table = |plan: &Plan<'_>| format!("{:?}", plan.rules.table);
         assert!(table(plan) == table(&lent), "{name}");
         let (mut known, mut filled) = (0, 0);
@@ -181,7 +181,7 @@ fn plans_agree_with_the_monitor_on_every_flight() {
     }
 }
 
-/// An action on a strength before those of its output raises nothing, and is no panic.
+/// An action on a strength before those of its output raises nothing and does not panic.
 #[test]
 fn an_action_without_an_output_raises_nothing() {
     let estimator = estimator("flagred-paper");
@@ -212,7 +212,7 @@ fn an_action_without_an_output_raises_nothing() {
     assert_eq!(high, None);
 }
 
-/// A profile with every signal of motors, every statistic that a script has, and every notice, and the file of it.
+/// A profile with every signal of motors, every statistic that a script supports, and every notice, with its file.
 pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
     const SOURCES: [&str; 13] = [
         "{std_less_noise: {std: motor_command_less_yaw}, per: x9, at_least: 0.02}",
@@ -232,7 +232,7 @@ pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
     profile_of(folder, &SOURCES)
 }
 
-/// A profile with every statistic that only plans have.
+/// A profile with every statistic that only plans support.
 fn profile_of_every_statistic(folder: &Folder) -> (Estimator, String) {
     const SOURCES: [&str; 16] = [
         "{rate: {max: motor_command}}",
@@ -289,7 +289,7 @@ fn profile_of(folder: &Folder, of: &[&str]) -> (Estimator, String) {
 fn every_signal_and_notice_is_the_same_in_borrowed_memory_and_in_c() {
     let folder = Folder::new();
     let measures = same_lent_and_in_c(profile_of_every_signal(&folder));
-    // In the shipped flights an alarm stands before trims are known: there is no imbalance against them.
+    // In the shipped flights, an alarm is raised before trims are known, so there is no imbalance relative to them.
     for expected in ["command noise", "pair imbalance", "reserve", "risk"] {
         assert!(measures.contains(expected), "{measures:?}");
     }
@@ -335,7 +335,7 @@ fn a_profile_without_motors_is_the_same_in_borrowed_memory_and_in_c() {
     );
 }
 
-/// Holds the bits of a plan and of its export to C against those of the monitor; gives what was found of the flights.
+/// Asserts that a plan and its export to C have the bits of the monitor; returns the kinds of findings.
 fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String> {
     let signals = estimator.profile().signals();
     let plan = estimator.plan().unwrap();

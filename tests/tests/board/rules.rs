@@ -1,4 +1,4 @@
-//! Rule sets without a profile, lent and exported to Rust and C: their outcomes have the bits of the engine.
+//! Rule sets without a profile, in borrowed memory and exported to Rust and C: their outcomes have the bits of the engine.
 
 use std::path::{Path, PathBuf};
 
@@ -55,7 +55,7 @@ fn rule_sets() -> Vec<(String, String)> {
     found
 }
 
-/// Points all over the ranges of the inputs and beyond, and values that are not finite.
+/// Points in and beyond the ranges of the inputs, and values that are not finite.
 fn points(model: &Model) -> Vec<Vec<f64>> {
     let mut random = fastrand::Rng::with_seed(19);
     let mut points: Vec<Vec<f64>> = (0..1500)
@@ -105,7 +105,7 @@ fn by_the_engine(engine: &Engine, points: &[Vec<f64>]) -> Vec<String> {
     let (mut scratch, outputs) = (engine.scratch(), engine.output_names().len());
     let outcomes = points.iter().map(|point| {
         let mut outcomes = vec![Outcome::default(); outputs];
-        // That an output must have a value is an error of the engine, and a state here.
+        // An output without a required value is an error of the engine, and a state here.
         let _ = engine.evaluate_with(&mut scratch, point, &mut outcomes);
         told(&outcomes)
     });

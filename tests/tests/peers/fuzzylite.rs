@@ -116,7 +116,7 @@ fn random(seed: u64) -> Model {
     model(&text)
 }
 
-/// `FLAGRED_PYTHON` names a Python that has pyfuzzylite.
+/// `FLAGRED_PYTHON` names a Python with pyfuzzylite.
 #[test]
 #[ignore = "needs Python with pyfuzzylite: tests/peer/fuzzylite.sh"]
 fn pyfuzzylite_computes_the_same_values_from_exported_files() {

@@ -1,4 +1,4 @@
-//! PyIT2FLS and FCL: it reads points, AND and `COG`.
+//! PyIT2FLS and FCL: it supports points, AND and `COG`.
 
 use std::fmt::Write;
 
