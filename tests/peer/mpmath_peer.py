@@ -11,14 +11,14 @@ from multiprocessing import Pool
 from mpmath import cos, exp, mp, mpf, pi, sqrt
 from mpmath.calculus.quadrature import GaussLegendre
 
-mp.dps = 80  # beside the middle of a flat bell, degrees differ by their sixth power
+mp.dps = 80  # near the middle of a flat bell, degrees differ by the sixth power of the distance
 LARGEST = mpf("1e-9")  # difference, of an output's range
-LEAST = mpf("1e-12")  # strength that fires; rounding of operators with a step; ties of maxima
-GRID = 48  # stretches of a piece in which roots are looked for
+LEAST = mpf("1e-12")  # minimum strength that fires; tolerance of operators with a step, and of ties of maxima
+GRID = 48  # intervals of a piece that are searched for roots
 NODES = GaussLegendre(mp).calc_nodes(3, 200)  # 12 nodes on [-1, 1]
 
 
-# Membership functions: the degree at x, and the places at which it is not smooth.
+# Membership functions: the degree at x, and the positions at which it is not smooth.
 
 
 def polyline(points):
@@ -146,7 +146,7 @@ def shape(name, p):
         return polyline([(x, mpf(y)) for x, y in straight[name](*p)])
     degree, kinks = curved[name](*p)
     if name in ("gaussian", "bell", "cosine", "spike", "semi_ellipse", "sigmoid", "sigmoid_difference", "sigmoid_product"):
-        # 1 at a single place at most; beside it, 80 digits would round to 1.
+        # 1 at a single position at most; near it, 80 digits would round to 1.
         return lambda x: min(degree(x), 1 - mpf("1e-78")), kinks
     return degree, kinks
 
@@ -179,7 +179,7 @@ AND = {
     "nilpotent_minimum": nilpotent_minimum,
 }
 IMPLICATION = AND | {
-    # Of a term that it cuts, it leaves where the degree is 1 on a stretch.
+    # Of a term that it cuts off, it keeps only intervals with the degree 1.
     "drastic": lambda h, m: m if h >= 1 - LEAST else h if m == 1 else mpf(0),
 }
 OR = {
@@ -188,7 +188,7 @@ OR = {
     "bounded_sum": lambda a, b: min(mpf(1), a + b),
     "drastic": lambda a, b: max(a, b) if min(a, b) <= LEAST else mpf(1),
     "einstein": lambda a, b: (a + b) / (1 + a * b),
-    # Without the cancellation of (a + b - 2 a b) / (1 - a b) near 1.
+    # Avoids the cancellation of (a + b - 2 a b) / (1 - a b) near 1.
     "hamacher": lambda a, b: (a * (1 - b) + b * (1 - a)) / (1 - a * b) if max(a, b) < 1 else mpf(1),
     "nilpotent_maximum": nilpotent_maximum,
     "sum": lambda a, b: a + b,
@@ -250,7 +250,7 @@ class AggregatedSet:
         for switches in [self.levels(implication), self.crossings(aggregation)]:
             new = [root(f, a, b) for f in switches for a, b in self.grid(f)]
             self.cuts = sorted({*self.cuts, *new})
-        # Two roots of one place, apart by their last digits.
+        # Two roots at one position, which differ in their last digits.
         narrow = (high - low) * mpf("1e-38")
         self.cuts = [low, *(b for a, b in zip(self.cuts, self.cuts[1:]) if b - a > narrow)]
         self.pieces = list(zip(self.cuts, self.cuts[1:]))
@@ -362,7 +362,7 @@ class AggregatedSet:
 
     def tops(self):
         """Peaks, and stretches with their least degree: (from, to, degree)."""
-        tops, before = [], (-1, False)  # the degree at the end of the piece before, and whether it rises to it
+        tops, before = [], (-1, False)  # the degree at the end of the preceding piece, and whether it rises to it
         for from_, to in self.pieces:
             inside = (to - from_) * mpf("1e-30")
             xs = [from_ + inside + (to - from_ - 2 * inside) * i / GRID for i in range(GRID + 1)]
@@ -472,7 +472,7 @@ def compare(line):
         if not differ(ours, exact):
             continue
         if differ(exact, evaluate(model, point, 1 - mpf("1e-15"))):
-            ill_conditioned += 1  # hangs on the last digit of the firing strengths
+            ill_conditioned += 1  # depends on the last digit of the firing strengths
             continue
         told = exact and float(exact)
         wrong.append(f"seed {case['seed']} at {point}: {ours}, not {told}, {defuzzifier} {model['operators']}")

@@ -37,7 +37,7 @@ options = ["--key", key_file.name] if is_signed else []
 watch = subprocess.Popen(
     [flagred, "watch", "udpin:127.0.0.1:0", "--jsonl", *options], stdout=subprocess.PIPE, text=True
 )
-atexit.register(watch.kill)  # a watch left behind would hold the pipes of whoever runs this
+atexit.register(watch.kill)  # a remaining watch would keep the pipes of the caller open
 started = json.loads(watch.stdout.readline())
 address = started["endpoint"].removeprefix("listening at ")
 link = mavutil.mavlink_connection(f"udpout:{address}", source_system=3, source_component=1)
