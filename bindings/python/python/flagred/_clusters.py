@@ -63,9 +63,9 @@ def c_means(
     fuzzifier
         Above 1; the larger, the softer the clusters.
     iterations
-        The most iterations of a start.
+        The maximum number of iterations of a start.
     starts
-        How often the search starts, each time from other rows. The start with the lowest loss counts.
+        The number of starts, each from other rows. The start with the lowest loss is the result.
     seed
         The random seed of the rows that the search starts from.
 

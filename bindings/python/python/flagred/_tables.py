@@ -12,19 +12,19 @@ from numpy.typing import NDArray
 from ._errors import DataError
 
 
-# Options that count something.
+# Options that are counts.
 _WHOLE = {
     "clusters", "digits", "folds", "iterations", "max_inputs", "max_rules", "max_terms", "min_support", "seed", "starts"
 }  # fmt: skip
 
 
 def names_of(names: Iterable[str]) -> list[str]:
-    """A list of names; one name is a list of one."""
+    """A list of names; a single name becomes a list of one."""
     return [names] if isinstance(names, str) else list(names)
 
 
 def whole_numbers(options: dict[str, Any]) -> dict[str, Any]:
-    """Options as they are. Those that count something are refused unless they are whole numbers from 0."""
+    """Returns options unchanged. Counts must be whole numbers from 0."""
     for key in sorted(_WHOLE & options.keys()):
         value = options[key]
         if value is not None and (isinstance(value, bool) or not isinstance(value, Integral) or value < 0):
@@ -33,7 +33,7 @@ def whole_numbers(options: dict[str, Any]) -> dict[str, Any]:
 
 
 def table_of(data: Any) -> Any:
-    """What gives columns by their names."""
+    """An object that returns columns by their names."""
     if hasattr(data, "fetchnumpy"):
         return data.fetchnumpy()
     if hasattr(data, "collect"):
@@ -42,7 +42,7 @@ def table_of(data: Any) -> Any:
 
 
 def column_names(data: Any) -> list[str]:
-    """The names of its columns."""
+    """The names of the columns."""
     if hasattr(data, "schema") and hasattr(data.schema, "names") and not callable(data.schema.names):
         return [str(name) for name in data.schema.names]
     if isinstance(getattr(data, "columns", None), Iterable):
@@ -53,7 +53,7 @@ def column_names(data: Any) -> list[str]:
 
 
 def column_of(data: Any, name: str) -> Any:
-    """The column of a name."""
+    """The column with this name."""
     there = column_names(data)
     if name not in there:
         listed = ", ".join(f"`{column}`" for column in there)
@@ -64,12 +64,12 @@ def column_of(data: Any, name: str) -> Any:
 
 
 def groups_of(data: Any, name: str) -> NDArray[np.uint32]:
-    """A number for each value of a column."""
+    """An integer for each distinct value of a column."""
     return np.unique(np.asarray(column_of(data, name)).astype(str), return_inverse=True)[1].astype(np.uint32)
 
 
 def same_length(columns: list[NDArray[Any]]) -> None:
-    """Refuses columns that make no table."""
+    """Refuses columns of different lengths."""
     if any(column.ndim != 1 for column in columns):
         raise DataError("a column has no rows, or several columns have one name")
     lengths = sorted({len(column) for column in columns})
