@@ -1,4 +1,4 @@
-"""Computes rule sets a second time, from the formulas of docs/rule-sets.md, with numbers of 80 digits.
+"""A second implementation of rule sets, from the formulas of docs/rule-sets.md, with numbers of 80 digits.
 
 python mpmath_peer.py FILE: each line of the file is an object with a rule set, points, and the values there.
 """
@@ -196,7 +196,7 @@ OR = {
 
 
 def condition(words, is_so, join, loosest="OR"):
-    """The degree of a condition in words, which it takes from the list."""
+    """The degree of a condition in words, which are removed from the list."""
     if loosest is None:
         if words[0] == "NOT":
             words.pop(0)
@@ -220,7 +220,7 @@ def condition(words, is_so, join, loosest="OR"):
 
 
 def root(f, a, b):
-    """Where a function changes its sign: bisection, and regula falsi between."""
+    """A root of a function that changes its sign, by bisection and regula falsi."""
     fa, fb = f(a), f(b)
     if (fa > 0) == (fb > 0):
         return a if abs(fa) < abs(fb) else b
@@ -256,7 +256,7 @@ class AggregatedSet:
         self.pieces = list(zip(self.cuts, self.cuts[1:]))
 
     def is_whole(self, strength, term, implication):
-        """Whether a strength is the highest degree of a term, or higher, but for rounding."""
+        """Whether a strength is at least the highest degree of a term, except for rounding."""
         if implication not in ("minimum", "nilpotent_minimum"):
             return False
         degree, kinks = term
@@ -270,7 +270,7 @@ class AggregatedSet:
         return strength >= max(y for *_, y in tops) * (1 - LEAST)
 
     def grid(self, f):
-        """Stretches in which a function changes its sign."""
+        """Intervals in which a function changes its sign."""
         for from_, to in zip(self.cuts, self.cuts[1:]):
             inside = (to - from_) * mpf("1e-30")
             xs = [from_ + inside + (to - from_ - 2 * inside) * i / GRID for i in range(GRID + 1)]
@@ -361,7 +361,7 @@ class AggregatedSet:
         return self.high
 
     def tops(self):
-        """Peaks, and stretches with their least degree: (from, to, degree)."""
+        """Peaks, and intervals with their lowest degree: (from, to, degree)."""
         tops, before = [], (-1, False)  # the degree at the end of the preceding piece, and whether it rises to it
         for from_, to in self.pieces:
             inside = (to - from_) * mpf("1e-30")
@@ -445,7 +445,7 @@ def evaluate(model, point, rounding=mpf(1)):
 
 
 def by_name(part):
-    """Lists of named entries, which keep the order of names where a format sorts them, as dictionaries."""
+    """Converts lists of named entries, which keep the order of names in formats that sort them, to dictionaries."""
     if isinstance(part, dict):
         return {key: by_name(value) for key, value in part.items()}
     if isinstance(part, list) and part and all(isinstance(entry, dict) and "name" in entry for entry in part):
@@ -454,7 +454,8 @@ def by_name(part):
 
 
 def compare(line):
-    """Compares the values of one line. Returns how many there are, what is wrong, and how many hang on rounding."""
+    """Compares the values of one line. Returns the number of values, the errors, and the number of values that depend on
+    rounding."""
     case = json.loads(line)
     model = by_name(case["model"])
     ((_, output),) = model["outputs"].items()

@@ -1,4 +1,4 @@
-"""NumPy arrays: any shape, any strides, any type of number."""
+"""NumPy arrays: any shape, any strides, any numeric type."""
 
 import os
 import pathlib

@@ -18,7 +18,7 @@ from conftest import ROOT
 
 COMMAND = os.path.join(sysconfig.get_path("scripts"), "flagred")
 FLIGHT = str(ROOT / "examples/flights/steady.BIN")
-# The program of crates/cli, which does the same.
+# The program of crates/cli, whose output must be the same.
 PROGRAM = os.environ.get("FLAGRED_COMMAND")
 
 
@@ -82,13 +82,13 @@ def test_ctrl_c_ends_a_watch():
     assert f"127.0.0.1:{port}" in watch.stdout.readline()
     watch.send_signal(signal.SIGINT)
     _, err = watch.communicate(timeout=20)
-    # 3, since no vehicle was heard.
+    # Exit code 3, since no vehicle was received.
     assert (watch.returncode, err) == (3, "")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of Unix")
 def test_ctrl_c_ends_commands_that_handle_no_signals():
-    # Waits for its standard input.
+    # Blocks on its standard input.
     waiting = subprocess.Popen([COMMAND, "assess", "-"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     time.sleep(1)
     waiting.send_signal(signal.SIGINT)

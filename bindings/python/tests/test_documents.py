@@ -1,4 +1,4 @@
-"""The Python of the documents runs and prints what they say."""
+"""The Python code of the documents runs and prints the documented output."""
 
 import doctest
 import os
@@ -24,7 +24,7 @@ def blocks(document: str, language: str) -> list[tuple[str, int]]:
 
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder that looks like the repository, in which documents may write."""
+    """A copy of the repository's files, in which documents may write."""
     for shared in ("examples", "rules"):
         os.symlink(ROOT / shared, tmp_path / shared)
     monkeypatch.chdir(tmp_path)
@@ -49,7 +49,7 @@ def test_the_code_of_a_document_runs_as_printed(desk, document, least, needs):
 
 
 def printed(program: str, python: str) -> str:
-    """What a program prints, after comparing it with the comment behind its last line."""
+    """The output of a program, after comparing it with the comment after its last line."""
     done = subprocess.run([python, "-c", program], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == program.strip().rpartition("# ")[2]

@@ -1,4 +1,4 @@
-"""Profiles on many flights, held against the command line."""
+"""Profiles on many flights, compared with the command line."""
 
 import gzip
 import json
@@ -22,7 +22,7 @@ HEADER = "t_s,motor1,motor2,motor3,motor4,roll_des_deg,roll_deg,pitch_des_deg,pi
 
 
 def log(vehicle: str, kind: str, upset_s: float | None) -> bytes:
-    """A minute in the air; some seconds before the upset the motors reach their limits, then it rolls over."""
+    """A minute in the air; some seconds before the upset, the motors reach their limits, then it rolls over."""
     lines = [f"# vehicle: {vehicle}\n# kind: {kind}\n", HEADER]
     for i in range(1600):
         t_s = i / 25
@@ -51,7 +51,7 @@ def evaluation(folder) -> flagred.types.Evaluation:
 
 
 def command(*arguments: object) -> str:
-    """What `flagred validate` prints."""
+    """The output of `flagred validate`."""
     if COMMAND is None or shutil.which(COMMAND) is None:
         pytest.skip("FLAGRED_COMMAND names no command `flagred`")
     done = subprocess.run([COMMAND, "validate", *map(str, arguments)], capture_output=True, text=True, timeout=300)

@@ -207,7 +207,7 @@ def test_a_monitor_clamps_rounding_and_refuses_other_units():
     for command in [1500, 50.0, -1.0, float("inf")]:
         with pytest.raises(flagred.DataError, match="the command of motor 2 is `.*`, and a command is a fraction from 0 to 1"):
             monitor.push(0.0, [0.5, command, 0.5, 0.5])
-    # What was refused left nothing behind.
+    # A refused sample leaves no state behind.
     fresh = flagred.Monitor("flagred-paper")
     assert [monitor.push(i * 0.04, [0.5] * 4).risk for i in range(500)] == [fresh.push(i * 0.04, [0.5] * 4).risk for i in range(500)]
 

@@ -32,7 +32,7 @@ def fan() -> flagred.Model:
 
 
 def frames(columns: dict) -> list:
-    """The columns in each library that is there."""
+    """The columns in each installed library."""
     made = [columns]
     for name, make in [
         ("pandas", lambda module: module.DataFrame(columns)),
@@ -300,7 +300,7 @@ rules:
     assert (step["command"], step["rows"], step["seed"]) == ("flagred.tune", len(HEAT), 0)
     assert step["loss"]["after"] == pytest.approx(tuned.after, rel=1e-5, abs=1e-12)
     assert len(step["moved"]) == len(tuned.moved) > 0 and "in 3 parts" in step["note"]
-    # Only numbers moved, so that comments stay.
+    # Only numbers changed, so comments stay.
     assert "# sensor 1" in tuned.model.text and "# quiet" in tuned.model.text
     assert not [finding for finding in tuned.model.check() if finding.code == "edited-since"]
     learned = flagred.learn(flagred.loads(text), rows)

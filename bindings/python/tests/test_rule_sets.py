@@ -1,4 +1,4 @@
-"""Rule sets: reading, asking, explaining, maps, copies."""
+"""Rule sets: reading, evaluation, explanations, maps, copies."""
 
 import copy
 import math
@@ -435,7 +435,7 @@ def test_degrees_of_a_term(tip):
     assert good(2.5) == 0.5 and isinstance(good(2.5), float)
     assert good([[0, 2.5], [5, 10]]).tolist() == [[0, 0.5], [1, 0]]
     assert math.isnan(good(None))
-    # Outside the range the ends count, as in an evaluation.
+    # Values outside the range are clamped, as in an evaluation.
     assert tip.inputs["service"]["excellent"](99) == tip.inputs["service"]["excellent"](10) == 1
     why = tip.explain(3.25, 9)
     assert why.inputs[0].terms == {term: tip.inputs["service"][term](3.25) for term in tip.inputs["service"]}

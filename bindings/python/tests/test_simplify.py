@@ -1,4 +1,4 @@
-"""The same said with fewer rules."""
+"""Simplification of rule sets."""
 
 import numpy as np
 import pytest

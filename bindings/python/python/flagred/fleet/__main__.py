@@ -24,7 +24,7 @@ MOST_REPORTS = 1000
 
 
 class Progress:
-    """One line on a terminal: logs, bytes, rate, time left, failures; in a file a line each half minute."""
+    """One line on a terminal: logs, bytes, rate, time left, failures; in a file, a line every half minute."""
 
     def __init__(self) -> None:
         self._counts = Counts(0, 0, 0, 0, 0)
@@ -119,7 +119,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs a command. Returns its exit code: 0, 1 for an alert, 2 if it failed, 3 if a file of the dataset is damaged."""
+    """Runs a command. Returns its exit code: 0, 1 for an alert, 2 for a failure, 3 if a file of the dataset is damaged."""
     given = parser().parse_args(arguments)
     try:
         return COMMANDS[given.command](given)
