@@ -100,7 +100,7 @@ def check(given: argparse.Namespace) -> int:
     assert [log for log, row in rows.items() if row["deleted"]] == ["s3://fleet/logs/vehicle=2/000002.csv"]
     same = next(row for log, row in rows.items() if log.endswith("000009.csv"))
     assert rows["s3://fleet/logs/vehicle=1/000001.csv"]["etag"] == same["etag"]
-    print(f"{fleet.compact(out)} files less by joining")
+    print(f"{fleet.compact(out)} fewer files after joining")
     assert flights(out) == rows and run().assessed == 0
     assert fleet.ask(out, "verdicts").num_rows >= 1
     page = given.folder / "fleet.html"

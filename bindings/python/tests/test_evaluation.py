@@ -213,7 +213,7 @@ def test_rows_that_cannot_be_used():
         flagred.evaluate(rows={**columns(), "att_rmse_deg": [1, None, 2, 3]})
     with pytest.raises(flagred.DataError, match="row 0, column `c_mean`: no finite number"):
         flagred.evaluate(rows={**columns(), "c_mean": ["a", "b", "c", "d"]})
-    with pytest.raises(flagred.DataError, match="not of one length"):
+    with pytest.raises(flagred.DataError, match="different lengths"):
         flagred.evaluate(rows={**columns(), "c_mean": [1.0]})
 
 

@@ -178,7 +178,7 @@ def test_other_settings_assess_logs_again(logs, tmp_path, here):
     fleet.assess([str(logs)], str(out))
     assert fleet.assess([str(logs)], str(out), profile="flagred-paper").assessed == 3
     assert {row["profile"] for row in flights(out).values()} == {"flagred-paper"}
-    with pytest.raises(fleet.FleetError, match="a step of 0 s is none"):
+    with pytest.raises(fleet.FleetError, match="a step of 0 s is not possible"):
         fleet.assess([str(logs)], str(out), step_s=0)
 
 
@@ -383,10 +383,10 @@ def test_the_command_line_on_all_cores(logs, tmp_path, capsys):
     arguments = ["assess", str(logs), "--recursive", "--out", str(out), "--workers", "2"]
     assert main(arguments) == 0
     said = capsys.readouterr()
-    assert said.out == "9 logs read, 0 of them as before, 2 not assessed\n" and "dashboard: http://127.0.0.1" in said.err
+    assert said.out == "9 logs read, 0 of them unchanged, 2 not assessed\n" and "dashboard: http://127.0.0.1" in said.err
     assert len(flights(out)) == 9
     assert main(arguments) == 0
-    assert capsys.readouterr().out == "0 logs read, 0 of them as before, 0 not assessed\n"
+    assert capsys.readouterr().out == "0 logs read, 0 of them unchanged, 0 not assessed\n"
     assert main(["assess", str(tmp_path / "none"), "--out", str(out)]) == 2
     assert "there is no" in capsys.readouterr().err
 
@@ -506,7 +506,7 @@ def test_each_file_counts_once_and_other_entries_are_skipped(tmp_path, here, cap
     sources = [str(folder), str(folder / "below"), str(tmp_path / "link")]
     assert fleet.assess(sources, str(out), recursive=True, dry_run=True).listed == 2
     assert main(["assess", str(folder), "--out", str(out), "--dry-run"]) == 0
-    assert "4 passed over: names that are not UTF-8, or not of files" in capsys.readouterr().err
+    assert "4 skipped: names that are not UTF-8, or not of files" in capsys.readouterr().err
 
 
 def test_a_link_to_a_log_elsewhere_counts(tmp_path, here):

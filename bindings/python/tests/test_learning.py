@@ -124,8 +124,8 @@ def test_bad_rows_are_refused_or_left_out(fan):
 @pytest.mark.parametrize(
     ("data", "options", "message"),
     [
-        ({"heat": [1]}, {}, "no column `speed`\n  help: there are `heat`"),
-        ({"heat": [1, 2], "speed": [1]}, {}, "not of one length: 1, 2"),
+        ({"heat": [1]}, {}, "no column `speed`\n  help: the columns are `heat`"),
+        ({"heat": [1, 2], "speed": [1]}, {}, "different lengths: 1, 2"),
         ({"heat": ["a"], "speed": [1]}, {}, "text is not a number"),
         (7, {}, "`int` is not a table"),
         ({"heat": [1], "speed": [1]}, {"columns": {"spede": "x"}}, "not a variable of the rule set"),

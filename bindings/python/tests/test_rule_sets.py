@@ -58,7 +58,7 @@ def test_unknown_is_not_a_number(tip, gaps):
         (lambda tip: tip(service=1), "input `food` has no value"),
         (lambda tip: tip(1, food=2), "values are given by place and by name"),
         (lambda tip: tip("a", "b"), "text is not a number"),
-        (lambda tip: tip([1, 2], [1, 2, 3]), "do not go together"),
+        (lambda tip: tip([1, 2], [1, 2, 3]), "cannot be broadcast together"),
         (lambda tip: tip([1], [2], threads=0), "at least 1"),
         (lambda tip: tip.map(bill=3), "there is no input `bill`"),
         (lambda tip: tip.map(points=1), "at least 2 points"),
@@ -401,7 +401,7 @@ def test_unsupported_features_of_a_format_are_refused_or_dropped_with_a_warning(
     with pytest.raises(flagred.RuleSetError):
         lost.save(tmp_path / "lost.fis")
     assert not (tmp_path / "lost.fis").exists()
-    with pytest.raises(flagred.DataError, match="the endings are `.yaml`"):
+    with pytest.raises(flagred.DataError, match="the extensions are `.yaml`"):
         lost.save(tmp_path / "lost.txt")
     with pytest.raises(flagred.DataError, match="`doc` is not a format"):
         lost.to_text("doc")

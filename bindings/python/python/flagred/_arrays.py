@@ -28,7 +28,7 @@ def array(value: Any) -> NDArray[np.float64]:
     except DataError:
         raise
     except (TypeError, ValueError) as error:
-        raise DataError(f"an array of objects holds something that is not a number: {error}") from None
+        raise DataError(f"an array of objects contains a value that is not a number: {error}") from None
 
 
 def alike(values: list[Any]) -> list[NDArray[np.float64]]:
@@ -38,7 +38,7 @@ def alike(values: list[Any]) -> list[NDArray[np.float64]]:
         arrays = list(np.broadcast_arrays(*arrays))
     except ValueError:
         shapes = ", ".join(str(one.shape) for one in arrays)
-        raise DataError(f"arrays of the shapes {shapes} do not go together") from None
+        raise DataError(f"arrays of the shapes {shapes} cannot be broadcast together") from None
     # Not `ascontiguousarray`, which would add an axis to a number.
     return [np.asarray(one, dtype=np.float64, order="C") for one in arrays]
 

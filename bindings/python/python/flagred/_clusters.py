@@ -37,9 +37,9 @@ class Clusters(NamedTuple):
             The names of the terms, in ascending order of their peaks.
         """
         if self.centers.ndim != 1:
-            raise DataError("terms are of one input, and these clusters are of several columns")
+            raise DataError("terms are for one input, but these clusters have several columns")
         if len(names) != len(self.centers):
-            raise DataError(f"there are {len(self.centers)} clusters, and {len(names)} names were given")
+            raise DataError(f"there are {len(self.centers)} clusters but {len(names)} names")
         return {name: float(center) for name, center in zip(names, self.centers)}
 
 

@@ -37,7 +37,7 @@ def edit(model: RuleSet, change: Callable[[Document], None]) -> None:
     try:
         changed = json.dumps(document, allow_nan=False)
     except ValueError:
-        raise DataError("a number is NaN or infinite\n  help: a rule set takes finite numbers") from None
+        raise DataError("a number is NaN or infinite\n  help: numbers of a rule set must be finite") from None
     model._edit(changed)
 
 
@@ -276,12 +276,12 @@ class Variable:
     def __contains__(self, term: object) -> bool:
         return term in self._model._term_names(self.name)
 
-    range: Any = _key("range", "The least and the greatest value.")
-    unit: Any = _key("unit", "The unit of its values, for people.")
-    description: Any = _key("description", "What it means.")
-    partition: Any = _key("partition", "Terms side by side: a list, or a dict of their peaks. In place of ``terms``.")
-    steps: Any = _key("steps", "Terms that divide the range: a dict of their limits, None for the last. In place of ``terms``.")
-    terms: Any = _key("terms", "The terms: a membership function for each name. In place of ``partition``.")
+    range: Any = _key("range", "The minimum and the maximum.")
+    unit: Any = _key("unit", "The unit of its values, for readers.")
+    description: Any = _key("description", "Its meaning.")
+    partition: Any = _key("partition", "Adjacent terms: a list, or a dict of their peaks. Instead of ``terms``.")
+    steps: Any = _key("steps", "Terms that divide the range: a dict of their limits, None for the last. Instead of ``terms``.")
+    terms: Any = _key("terms", "The terms: a membership function for each name. Instead of ``partition``.")
 
     def _set(self, key: str, value: Any) -> None:
         def change(document: Document) -> None:
@@ -310,7 +310,7 @@ class Output(Variable):
         "when_no_rule_fires", "``undefined``, ``error``, ``previous``, ``{'value': 50}`` or ``{'previous': 50}``."
     )
     aggregation: Any = _key("aggregation", "How the consequents of this output are combined.")
-    clamp: Any = _key("clamp", "Whether a value outside the range is moved to it.")
+    clamp: Any = _key("clamp", "Whether a value outside the range is clamped to it.")
 
 
 _V = TypeVar("_V", bound=Variable)

@@ -124,7 +124,7 @@ class Signals(Mapping[str, Signal]):
             raise DataError("a table needs the name of a signal")
         for name in names:
             if name not in self._all:
-                raise DataError(f"the flight has no signal `{name}`\n  help: there are {', '.join(self._all)}")
+                raise DataError(f"the flight has no signal `{name}`\n  help: its signals are {', '.join(self._all)}")
         times = self[names[0]].t_s if t_s is None else np.asarray(t_s, dtype=np.float64)
         columns = {"t_s": times}
         for name in names:
@@ -144,7 +144,7 @@ class Flight(FlightData):
     """
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Flight:
-        raise TypeError("a flight is read by `flagred.read_log`")
+        raise TypeError("a flight is returned by `flagred.read_log`")
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled_flight, self._parts()
@@ -290,7 +290,7 @@ class Assessment(AssessmentData):
     """
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Assessment:
-        raise TypeError("an assessment is made by `flagred.assess`")
+        raise TypeError("an assessment is returned by `flagred.assess`")
 
     flight: Flight
     """The flight."""

@@ -99,7 +99,7 @@ def _pandas(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: bo
     for name in rule_set._input_names():
         if name not in frame.columns:
             there = ", ".join(f"`{column}`" for column in frame.columns)
-            raise DataError(f"the frame has no column `{name}`\n  help: there are {there}")
+            raise DataError(f"the frame has no column `{name}`\n  help: its columns are {there}")
         columns.append(frame[name])
         if columns[-1].ndim != 1:
             raise DataError(f"the frame has the column `{name}` more than once\n  help: rename all but the one that is meant")

@@ -140,7 +140,7 @@ def identify(
         if not np.isfinite(column).all():
             row = int(np.argmin(np.isfinite(column)))
             help_text = "leave such rows out with `skip_bad_rows=True`, or the column with `ignore`"
-            raise DataError(f"column `{name}`, row {row}: the value is not known\n  help: {help_text}")
+            raise DataError(f"column `{name}`, row {row}: the value is unknown\n  help: {help_text}")
     options = {
         "antecedents": antecedents,
         "consequents": consequents,

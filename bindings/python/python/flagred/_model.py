@@ -297,7 +297,7 @@ class Model(RuleSet):
         ending = os.path.splitext(os.fspath(path))[1].lower()
         if ending not in _ENDINGS:
             known = ", ".join(f"`{known}`" for known in _ENDINGS)
-            raise DataError(f"`{os.fspath(path)}` does not end like a rule set\n  help: the endings are {known}")
+            raise DataError(f"`{os.fspath(path)}` does not have the extension of a rule set\n  help: the extensions are {known}")
         text = self.to_text(_ENDINGS[ending], lossy=lossy)
         # Line breaks are those of the text that was read.
         with open(path, "w", encoding="utf-8", newline="") as file:

@@ -49,7 +49,7 @@ def column_names(data: Any) -> list[str]:
         return [str(name) for name in data.columns]
     if hasattr(data, "keys"):
         return [str(name) for name in data.keys()]
-    raise DataError(f"`{type(data).__name__}` is not a table\n  help: give a frame, or a dict of columns by their names")
+    raise DataError(f"`{type(data).__name__}` is not a table\n  help: pass a frame, or a dict of columns by their names")
 
 
 def column_of(data: Any, name: str) -> Any:
@@ -57,7 +57,7 @@ def column_of(data: Any, name: str) -> Any:
     there = column_names(data)
     if name not in there:
         listed = ", ".join(f"`{column}`" for column in there)
-        raise DataError(f"the data have no column `{name}`\n  help: {f'there are {listed}' if there else 'they have no columns'}")
+        raise DataError(f"the data have no column `{name}`\n  help: {f'the columns are {listed}' if there else 'they have no columns'}")
     if there.count(name) > 1:
         raise DataError(f"the data have the column `{name}` more than once\n  help: rename all but the one that is meant")
     return data[name]
@@ -74,4 +74,4 @@ def same_length(columns: list[NDArray[Any]]) -> None:
         raise DataError("a column has no rows, or several columns have one name")
     lengths = sorted({len(column) for column in columns})
     if len(lengths) > 1:
-        raise DataError(f"the columns are not of one length: {', '.join(map(str, lengths))}")
+        raise DataError(f"the columns have different lengths: {', '.join(map(str, lengths))}")

@@ -303,7 +303,7 @@ class Evaluation(EvaluationData):
     """The validation over many flights, returned by :func:`evaluate`. ``str()`` is the output of ``flagred validate``."""
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Evaluation:
-        raise TypeError("an evaluation is made by `flagred.evaluate`")
+        raise TypeError("an evaluation is returned by `flagred.evaluate`")
 
     @cached_property
     def _data(self) -> dict[str, Any]:
@@ -368,7 +368,7 @@ class Evaluation(EvaluationData):
         names = list(self.estimators)
         if estimator not in names:
             there = ", ".join(f"`{name}`" for name in names)
-            raise DataError(f"there is no estimator `{estimator}`\n  help: there are {there}")
+            raise DataError(f"there is no estimator `{estimator}`\n  help: the estimators are {there}")
         return self._roc(names.index(estimator))
 
     def to_dict(self) -> dict[str, Any]:
@@ -442,7 +442,7 @@ def evaluate(
     """
     if rows is not None:
         if not isinstance(logs, tuple) or logs:
-            raise DataError("logs and rows are given\n  help: evaluate one after the other")
+            raise DataError("both logs and rows are given\n  help: evaluate them separately")
         rows = _rows(rows)
     asked = [profiles] if isinstance(profiles, (Profile, str, os.PathLike)) else list(profiles)
     loaded = [profile if isinstance(profile, Profile) else Profile(os.fspath(profile)) for profile in asked]

@@ -148,7 +148,7 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
         else:
             signs = list(given)
         if len(signs) != len(names) or any(sign not in (-1, 0, 1) for sign in signs):
-            raise ValueError(f"monotonic_cst must hold -1, 0 or 1 for each of the {len(names)} features")
+            raise ValueError(f"monotonic_cst must contain -1, 0 or 1 for each of the {len(names)} features")
         signed = list(zip(names, signs, strict=True))
         return [name for name, sign in signed if sign == 1], [name for name, sign in signed if sign == -1]
 

@@ -99,7 +99,7 @@ def run(client: Client, shards: Iterator[Shard], job: Job, wait: Callable[[int],
         if isinstance(result, Outcome):
             yield result
         elif shard.crashed:
-            raise FleetError(f"a log that is not even read ends its worker: {result}") from result
+            raise FleetError(f"a worker ended on a log that it does not read: {result}") from result
         elif len(shard.logs) == 1:
             suspects.appendleft(replace(shard, crashed=True))
         else:
@@ -195,10 +195,10 @@ def _result(future: Future) -> Outcome | BaseException:
     except Superseded:
         raise
     except OSError as error:
-        raise FleetError(f"the dataset cannot be written: {error}", "run the same command again when it can be") from error
+        raise FleetError(f"the dataset cannot be written: {error}", "make it writable, then run the same command again") from error
     except Exception as error:  # KilledWorker, or a bug that one log triggers: the log is found.
         if not isinstance(error, KilledWorker):
-            logging.getLogger(__name__).warning("a shard failed and is taken apart: %r", error)
+            logging.getLogger(__name__).warning("a shard failed and is split: %r", error)
         return error
 
 

@@ -170,7 +170,7 @@ def plan(
     Parameters and errors are those of :func:`assess`.
     """
     if not step_s > 0:
-        raise FleetError(f"a step of {step_s} s is none", "write a number of seconds above 0")
+        raise FleetError(f"a step of {step_s} s is not possible", "choose a number of seconds above 0")
     profile = profile if isinstance(profile, Profile) else Profile(profile)
     include = tuple(include)
     places = [open_place(absolute(source)) for source in sources]
