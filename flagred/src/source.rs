@@ -623,7 +623,7 @@ mod tests {
     ];
 
     #[test]
-    fn turning_the_nose_of_a_quad_leaves_the_spread_without_yaw_as_it_is() {
+    fn yaw_of_a_quad_does_not_change_the_spread_without_yaw() {
         let sources = ["motor_command_less_yaw", "motor_command"]
             .map(|signal| source(Statistic::Mean, Motors::Std, signal));
         let spread = |geometry, yaw: f64| {

@@ -239,7 +239,7 @@ rules: [IF x IS very low THEN y IS a, IF x IS high THEN y IS b]
 }
 
 #[test]
-fn an_output_of_singletons_is_a_few_places() {
+fn an_output_of_singletons_has_a_few_positions() {
     let of = |defuzzifier: &str, operators: &str, x: f64| {
         let text = format!(
             "{{fuzzy: 1, name: t, inputs: {{x: {{range: [0, 1], partition: [low, high]}}}}, outputs: {{y: {{range: [0, 10], defuzzifier: {defuzzifier}, terms: {{a: {{singleton: 2}}, b: {{singleton: 8}}, c: {{singleton: 9, height: 0.5}}, d: {{singleton: 2}}}}}}}}, operators: {{{operators}}}, rules: [IF x IS low THEN y IS a, IF x IS high THEN y IS b, IF x IS high THEN y IS c, IF x IS high THEN y IS d WITH 0.5]}}"

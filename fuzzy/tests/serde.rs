@@ -314,7 +314,7 @@ fn mappings_that_were_sorted_are_read_as_before() {
 }
 
 #[test]
-fn steps_survive_formats_without_a_word_for_nothing_and_with_sorted_keys() {
+fn steps_survive_formats_without_null_and_with_sorted_keys() {
     let text = "fuzzy: 1\nname: credit\n\
                 inputs: {dti: {range: [-10, 100], steps: {zero: 0, fine: 36, over: }}}\n\
                 outputs: {risk: {range: [0, 1], partition: [low, high]}}\n\

@@ -173,7 +173,7 @@ fn the_modules_of_a_package_form_no_cycle() {
 }
 
 #[test]
-fn the_engine_does_no_input_or_output_and_knows_no_drone() {
+fn the_engine_does_no_io_and_contains_nothing_about_drones() {
     const SUBJECTS: [&str; 7] = [
         "drone", "copter", "motor", "pwm", "mavlink", "flight", "flagred",
     ];

@@ -11,7 +11,7 @@ fn wrong_usage_exits_with_2_and_suggests_a_correction() {
 
 /// The messages for arguments that are nearly right lead to the correct command.
 #[test]
-fn misplaced_arguments_are_reported_with_their_place() {
+fn misplaced_arguments_are_reported_with_their_correct_position() {
     let rules = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred.yaml");
     let profile = concat!(
         env!("CARGO_MANIFEST_DIR"),

@@ -89,7 +89,7 @@ fn no_output_replaces_an_input() {
 
 /// `assess --html *.BIN` takes the first log as the name of the report.
 #[test]
-fn a_log_in_the_place_of_a_report_is_not_replaced() {
+fn a_log_named_as_the_report_is_not_replaced() {
     let folder = Folder::new();
     let first = folder.file("first.BIN", fs::read(STEADY).unwrap());
     for arguments in [

@@ -360,7 +360,7 @@ fn a_flight_becomes_rows() {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn the_shipped_rules_are_what_the_documented_command_learns() {
+fn the_documented_command_learns_the_shipped_rules() {
     let data = reference_data();
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let folder = Folder::new();

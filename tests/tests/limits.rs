@@ -280,7 +280,7 @@ fn a_report_shows_the_first_flight_modes_and_counts_the_rest() {
 }
 
 #[test]
-fn a_file_that_is_no_rule_set_is_not_quoted() {
+fn a_file_that_is_not_a_rule_set_is_not_quoted() {
     let folder = Folder::new();
     folder.file(
         "secret.txt",
@@ -332,7 +332,7 @@ fn a_file_that_is_no_rule_set_is_not_quoted() {
 
 #[cfg(unix)]
 #[test]
-fn a_rule_set_comes_through_a_pipe_and_waiting_for_one_can_be_interrupted() {
+fn a_rule_set_is_read_from_a_pipe_and_waiting_can_be_interrupted() {
     let folder = Folder::new();
     let pipe = folder.at("pipe");
     let made = std::process::Command::new("mkfifo").arg(&pipe).status();

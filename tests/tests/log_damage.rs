@@ -79,7 +79,7 @@ fn a_hole_loses_only_the_rows_in_it() {
 
 /// They would be a flight of 292,000 years, in which seconds are below the precision of the clock.
 #[test]
-fn seconds_of_wild_time_stamps_are_left_out() {
+fn seconds_of_invalid_timestamps_are_skipped() {
     let log = |wild_us: Option<f64>| {
         let mut log = seeds::hovering();
         for row in 0..1000 {

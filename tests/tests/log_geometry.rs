@@ -143,7 +143,7 @@ fn layouts_of_six_and_eight_motors_are_found_and_contradictions_reported() {
 /// On quadrotors, only the attitude indicates the frame: a correct frame is not doubted, a wrong one often is.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn frames_of_quadrotors_are_doubted_by_their_attitude() {
+fn wrong_frames_of_quadrotors_are_detected_by_their_attitude() {
     let data = reference_data();
     let (mut all, mut told) = (0, 0);
     for entry in fs::read_dir(data.join("sitl2/timeseries")).unwrap() {

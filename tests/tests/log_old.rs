@@ -142,7 +142,7 @@ fn a_px4_log_older_than_ulog_is_identified() {
 
 /// The number of bad messages does not depend on the selected signals.
 #[test]
-fn the_report_is_the_same_whatever_is_kept() {
+fn the_report_does_not_depend_on_the_kept_signals() {
     let mut log = copter(4, 1800.0, &[]);
     log.define(133, "ATT", "Qcccc", "TimeUS,DesRoll,Roll,DesPitch,Pitch");
     for time_us in [12.0e6, 12.1e6, 12.2e6, 12.05e6, 12.07e6, 12.3e6] {

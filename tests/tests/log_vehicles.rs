@@ -224,7 +224,7 @@ fn packets_of_other_vehicles_are_ignored() {
 }
 
 #[test]
-fn the_landed_state_wins_over_the_heartbeat_while_it_is_known() {
+fn the_landed_state_takes_precedence_over_the_heartbeat_while_it_is_known() {
     let mut vehicle = ardupilot();
     vehicle.heartbeat(1.0, ARDUPILOT, true, 4);
     // On the ground, taking off, in the air, landing, unknown (the heartbeat is active), on the ground.

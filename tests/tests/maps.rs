@@ -65,7 +65,7 @@ fn map(arguments: &[&str]) -> (Option<i32>, String, String) {
 }
 
 #[test]
-fn a_map_in_the_terminal_marks_what_was_filled() {
+fn a_map_in_the_terminal_marks_filled_cells() {
     let (code, text, _) = map(&[PROFILE]);
     assert_eq!(code, Some(0));
     insta::assert_snapshot!(text);
@@ -132,7 +132,7 @@ fn a_table_of_all_cells() {
 
 /// Without a profile, a map has the values of `flagred eval`, cell by cell, also where the rules hardly fire.
 #[test]
-fn the_map_of_a_rule_set_is_what_eval_gives() {
+fn the_map_of_a_rule_set_agrees_with_eval() {
     let shown = map(&[PAPER, "--csv"]).1;
     let points: String = shown
         .lines()
@@ -336,7 +336,7 @@ rules:
 ";
 
 #[test]
-fn values_are_tables_of_each_slice_of_what_the_last_output_reads() {
+fn map_values_prints_a_table_for_each_slice() {
     let folder = flagred_tests::Folder::new();
     let model = folder.file("chain.yaml", CHAIN);
     let (code, text, notes) = map(&[&model, "--values", "--points", "3"]);

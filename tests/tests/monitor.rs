@@ -19,7 +19,7 @@ fn sample(i: u32, motors: &mut [f64; 8]) -> (f64, bool) {
 }
 
 #[test]
-fn a_sample_allocates_nothing_whatever_happens() {
+fn a_sample_never_allocates() {
     for estimator in [shipped::flagred(), shipped::flagred_paper()] {
         let name = &estimator.profile().name;
         let mut monitor = Monitor::new(&estimator, Craft::new(8)).unwrap();

@@ -8,7 +8,7 @@ use std::{env, fs, path::Path};
 use flagred::shipped::{PROFILES, RULE_SETS};
 
 #[test]
-fn the_package_has_the_files_of_rules() {
+fn the_package_contains_the_files_of_rules() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let files = RULE_SETS
         .iter()

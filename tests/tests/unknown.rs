@@ -303,7 +303,7 @@ fn a_rate_too_low_for_the_windows_prevents_a_verdict() {
 }
 
 #[test]
-fn cells_with_another_unit_are_refused_where_they_stand() {
+fn cells_with_another_unit_are_refused_with_their_position() {
     for (motor, t_step, said) in [
         (
             "1500",

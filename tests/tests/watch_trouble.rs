@@ -108,7 +108,7 @@ fn other_vehicles_and_ground_stations_are_not_followed() {
 
 /// The flight is assessed as if nothing else had been received.
 #[test]
-fn garbage_and_wild_values_are_counted_and_raise_no_alarm() {
+fn garbage_and_extreme_values_are_counted_and_raise_no_alarm() {
     let flight = flight(Path::new(STEADY));
     let watch = Watch::udp(&[]);
     let mut vehicle = watch.vehicle(&flight, Link::default());
@@ -312,7 +312,7 @@ fn a_serial_port_without_permission_is_reported_with_a_remedy() {
 
 /// A watch is often started before the vehicle, its network and its cable.
 #[test]
-fn an_endpoint_that_is_not_there_yet_is_waited_for() {
+fn watch_waits_for_an_endpoint_that_does_not_exist_yet() {
     let flight = flight(Path::new(STEADY));
     let free = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = free.local_addr().unwrap();

@@ -197,7 +197,7 @@ fn with_a_key_only_signed_packets_are_accepted_and_sent() {
 }
 
 #[test]
-fn a_silent_client_does_not_keep_a_second_one_out() {
+fn a_silent_client_does_not_block_a_second_one() {
     let (flight, _) = steady();
     let watch = Watch::start("tcpin:127.0.0.1:0", &[]);
     let silent = TcpStream::connect(watch.address()).unwrap();

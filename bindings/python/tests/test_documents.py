@@ -61,7 +61,7 @@ def programs() -> dict[str, str]:
     return {text.partition("\n")[0].removeprefix("# with "): text for text in texts}
 
 
-def test_the_program_beside_that_of_scikit_fuzzy():
+def test_the_program_compared_with_scikit_fuzzy():
     assert printed(programs()["flagred"], sys.executable) == "19.8578"
 
 

@@ -128,7 +128,7 @@ def test_a_command_that_fails_is_run_again(dataset, tmp_path, capsys):
     assert (tmp_path / "fleet.html").exists()
 
 
-def test_what_is_new_since_the_last_report(dataset, tmp_path):
+def test_news_since_the_last_report(dataset, tmp_path):
     out, page = tmp_path / "dataset", tmp_path / "fleet.html"
     shutil.copytree(dataset, out)
     fleet.write_report(str(out), page)

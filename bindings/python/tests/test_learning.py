@@ -203,7 +203,7 @@ def cars(count: int = 300) -> dict:
     return {"weight": weight, "year": year, "name": np.array([f"car {i}" for i in range(count)]), "mpg": mpg}
 
 
-def test_identifying_finds_what_matters_in_any_frame():
+def test_identifying_finds_the_relevant_inputs_in_any_frame():
     found = [flagred.identify(frame, "mpg", validation=False) for frame in frames(cars())]
     assert all(one.model == found[0].model for one in found)
     assert set(found[0].model.inputs) == {"weight", "year"}
@@ -220,7 +220,7 @@ def test_identifying_is_compared_with_a_line(antecedents, consequents):
     assert found.model(*(cars()[name] for name in found.model.inputs)).shape == (300,)
 
 
-def test_identifying_refuses_what_it_cannot_use():
+def test_identifying_refuses_unusable_data():
     rows = cars()
     rows["weight"] = rows["weight"].copy()
     rows["weight"][7] = np.nan

@@ -25,7 +25,7 @@ def test_built_in_rule_sets_are_loaded_by_their_names():
         flagred.load("./flagred")
 
 
-def test_numbers_by_place_and_by_name(tip):
+def test_numbers_by_position_and_by_name(tip):
     value = tip(8, 9)
     assert type(value) is float
     assert value == tip(service=8, food=9) == tip({"food": 9, "service": 8}) == tip(8.0, np.float64(9))
@@ -423,7 +423,7 @@ def test_texts_come_as_bytes_and_from_open_files(tmp_path):
         flagred.loads(path)
 
 
-def test_rules_are_counted_from_one_where_people_read(tip):
+def test_rules_are_counted_from_one(tip):
     assert repr(tip.rules[0]).startswith("Rule(1: IF service IS poor")
     assert tip.rules[2].number == 3
     assert repr(tip.rules).splitlines()[2].startswith("3: ")

@@ -135,7 +135,7 @@ def test_settings_that_cannot_be_used(wave, settings, message):
         FuzzyRegressor(**settings).fit(*wave)
 
 
-def test_one_class_is_no_risk():
+def test_one_class_is_refused():
     with pytest.raises(ValueError, match="1 class"):
         FuzzyRiskClassifier().fit([[0.0], [1.0]], [1, 1])
 

@@ -247,7 +247,7 @@ fn outputs_are_compared_with_measured_values() {
 }
 
 #[test]
-fn rows_outside_a_range_are_clamped_where_asked() {
+fn rows_outside_a_range_are_clamped_on_request() {
     let rows = "temperature,humidity,fan\n20,50,-0.9\n41,100,100\n35,90,100\n10,10,0\n15,20,0\n";
     let folder = folder(&[("fan.yaml", FAN), ("rows.csv", rows)]);
     let run = |typed: &str| {

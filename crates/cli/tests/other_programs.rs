@@ -32,7 +32,7 @@ fn tipper(folder: &tempfile::TempDir, ending: &str) -> PathBuf {
 }
 
 #[test]
-fn commands_take_the_files_of_other_programs_as_they_are() {
+fn commands_accept_files_of_other_programs() {
     let folder = tempfile::tempdir().unwrap();
     let point = ["service=8", "food=9"];
     let value = |file: &str| {

@@ -32,7 +32,7 @@ fn errors(output: &Output) -> String {
 }
 
 #[test]
-fn check_shows_what_the_papers_rules_leave_open() {
+fn check_shows_the_gaps_of_the_papers_rules() {
     let (output, text) = flagred(&["check", "flagred-paper.yaml"], "");
     assert_eq!(output.status.code(), Some(0));
     insta::assert_snapshot!(text);
@@ -517,7 +517,7 @@ fn commands_accept_built_in_names() {
 }
 
 #[test]
-fn a_built_in_name_wins_over_a_file_and_a_path_is_the_file() {
+fn a_built_in_name_takes_precedence_over_a_file_unless_a_path_is_given() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("flagred"), "fuzzy: 1\nname: mine\n").unwrap();
     let run = |name: &str| {

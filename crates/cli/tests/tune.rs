@@ -193,7 +193,7 @@ rules:
 
 /// The rows lie on a line that is at 14 where `hot` is highest.
 #[test]
-fn constants_stay_in_the_range_unless_asked() {
+fn constants_stay_in_the_range_by_default() {
     let mut rows = String::from("heat,speed\n");
     for heat in 5..=25 {
         writeln!(rows, "{heat},{}", 2.0 + 0.4 * f64::from(heat - 5)).unwrap();
@@ -245,7 +245,7 @@ fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
 }
 
 #[test]
-fn numbers_are_rounded_to_three_digits_unless_asked() {
+fn numbers_are_rounded_to_three_digits_by_default() {
     let mut rows = String::from("heat,speed\n");
     for heat in 0..=40 {
         writeln!(rows, "{heat},{}", 3.123_456 + 0.123_456 * f64::from(heat)).unwrap();

@@ -141,7 +141,7 @@ fn written_rule_sets_are_read_again_with_the_same_values() {
 }
 
 #[test]
-fn steps_are_rectangles_elsewhere_and_steps_again() {
+fn steps_are_exported_as_rectangles_and_read_back_as_steps() {
     let model: Model = STEPS.parse().unwrap();
     for format in Format::ALL {
         let written = flagred_interchange::write(&model, format, Losses::Refuse).unwrap();

@@ -386,7 +386,7 @@ rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
 /// Whether fitted or searched, constants end at the best value within the range: the error is the minimum over all
 /// values.
 #[test]
-fn constants_end_at_the_best_place_within_the_range() {
+fn constants_are_optimal_within_the_range() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
     let truths: Vec<f64> = heat.iter().map(|heat| 4.0 + 1.2 * heat).collect();
     let data = Data {
@@ -476,7 +476,7 @@ fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
 
 /// One constant is far beyond the range and the other inside: the latter has its best value and is not affected.
 #[test]
-fn a_constant_inside_is_at_its_best_place_beside_one_at_the_end() {
+fn a_constant_inside_the_range_is_optimal_beside_one_at_its_end() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
     let truths = heat.iter().map(|heat| if *heat <= 2.0 { 6.0 } else { 1e4 });
     let data = Data {

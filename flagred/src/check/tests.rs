@@ -147,7 +147,7 @@ fn a_mistake_in_the_profile_is_reported_first() {
 }
 
 #[test]
-fn the_levels_of_another_risk_are_checked_at_their_place() {
+fn the_levels_of_another_risk_are_checked_at_their_position() {
     let rules = RULES.replace(
         "rules:",
         "  tip_over: {range: [0, 100], partition: [low, medium, high]}\nrules:\n  - IF margin IS low THEN tip_over IS high\n  - IF margin IS high THEN tip_over IS low",
@@ -166,7 +166,7 @@ fn the_levels_of_another_risk_are_checked_at_their_place() {
 
 /// The battery is one more vote in the default rules, or a risk of its own.
 #[test]
-fn an_input_beside_the_motors_that_raises_no_level_alone_is_outvoted() {
+fn an_input_that_raises_no_level_alone_is_reported_as_outvoted() {
     let rules = crate::shipped::RULE_SETS[0].text;
     let input = "inputs:\n  battery: {range: [0, 100], partition: {empty: 20, ok: 35}}\n";
     let rules = rules.replacen("inputs:\n", input, 1);

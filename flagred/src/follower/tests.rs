@@ -157,7 +157,7 @@ fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
 }
 
 #[test]
-fn a_late_land_detector_and_one_that_does_not_report_raise_nothing() {
+fn a_late_or_silent_land_detector_raises_no_level() {
     for (idle_s, in_air) in [(2.9, Some(true)), (20.0, None)] {
         let mut flown = Flown::new(&shipped::flagred());
         flown.fly(30.0, true, HOVER);

@@ -215,7 +215,7 @@ fn a_nilpotent_minimum_cuts_out_a_plateau() {
 }
 
 #[test]
-fn a_strength_of_the_highest_degree_but_for_rounding_cuts_nothing_off() {
+fn a_strength_equal_to_the_highest_degree_up_to_rounding_cuts_nothing_off() {
     let bell = MembershipFunction::Bell {
         center: 50.0,
         width: 20.0,

@@ -296,7 +296,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
     /// The YAML organisation's crate reads the same model from our text, and we read the same model from its text.
     #[test]
-    fn generated_rule_sets_mean_the_same_to_another_reader(model in valid_model()) {
+    fn generated_rule_sets_mean_the_same_to_another_yaml_reader(model in valid_model()) {
         let ours = crate::yaml::to_string(&model);
         let read = serde_yaml::from_str::<Model>(&ours);
         prop_assert_eq!(read.as_ref().ok(), Some(&model), "{}\n{:?}", ours, read);

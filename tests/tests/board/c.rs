@@ -219,7 +219,7 @@ fn risks(csv: &[u8]) -> BTreeMap<u64, f64> {
 }
 
 #[test]
-fn a_log_flown_again_in_c_has_the_risk_of_assess() {
+fn a_log_replayed_in_c_has_the_risk_of_assess() {
     let (mut program, folder) = program("bindings/c/examples/replay.c", "replay", FLAGRED);
     let csv = folder.at("steady.csv");
     let converted = flagred()
@@ -293,7 +293,7 @@ fn the_pages_in_c_run() {
 
 /// With the same names, the size of the profile included last would apply to both.
 #[test]
-fn two_profiles_in_one_program_have_memory_sizes_of_their_own() {
+fn two_profiles_in_one_program_have_their_own_memory_sizes() {
     let folder = Folder::new();
     for profile in ["flagred", "flagred-paper"] {
         let status = flagred()

@@ -105,7 +105,7 @@ fn along(estimator: &Estimator) -> usize {
 }
 
 #[test]
-fn exported_files_are_what_export_writes() {
+fn exported_files_equal_the_output_of_export() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("exported");
     for (profile, (file, _)) in PROFILES.iter().zip(exported()) {
         // One script is enough: other profiles differ only in their data, and `lua.rs` runs their scripts.

@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn px4_before_its_functions_has_motors_on_the_first_outputs() {
+    fn px4_without_output_functions_has_motors_on_the_first_outputs() {
         let old = parameters(&[("PWM_MIN", 1075.0), ("PWM_MAX", 1950.0)]);
         let setup = Setup::of(&old, &vehicle(4), true, None);
         assert_eq!(setup.outputs, [1, 2, 3, 4]);

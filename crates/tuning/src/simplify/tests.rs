@@ -123,7 +123,7 @@ fn twenty_eight_rules_become_nine_with_the_same_outputs() {
 }
 
 #[test]
-fn a_run_of_terms_becomes_or_by_the_disjunction_that_fits() {
+fn adjacent_terms_become_an_or_with_a_suitable_disjunction() {
     let mut text = String::from(
         "
 fuzzy: 1
@@ -153,7 +153,7 @@ rules:
 }
 
 #[test]
-fn by_maximum_a_run_of_terms_is_an_or() {
+fn adjacent_terms_become_an_or_with_maximum() {
     let found = simplified(&table("", "slow slow slow even even fast even even fast")).model;
     assert_eq!(found.operators.or, Disjunction::Maximum);
     insta::assert_snapshot!(rules(&found).join("\n"), @r"
@@ -180,7 +180,7 @@ fn duplicate_and_redundant_rules_are_dropped() {
 }
 
 #[test]
-fn a_gap_stays_a_gap() {
+fn simplification_keeps_gaps() {
     let model = table(SUMS, "slow slow - slow slow slow slow slow slow");
     let found = simplified(&model).model;
     let engine = Engine::new(&found).unwrap();

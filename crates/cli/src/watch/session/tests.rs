@@ -270,7 +270,7 @@ fn damaged_parameters_are_ignored() {
 }
 
 #[test]
-fn listening_only_sends_nothing() {
+fn a_watch_that_only_listens_sends_nothing() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, None);
     bench.wait_beating(9, false);
