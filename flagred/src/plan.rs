@@ -122,7 +122,7 @@ mod tests {
         );
     }
 
-    /// The risk of the paper in an output of its own, which a second output passes on.
+    /// The paper's risk in a separate output, which a second output passes on.
     #[test]
     fn a_chain_has_a_plan_unless_it_reads_an_output_without_a_closed_form() {
         let profile = shipped::flagred_paper().profile().clone();

@@ -3,7 +3,7 @@
 
 use std::{fs, io::Read, path::Path};
 
-use flagred::{flight::Verdict, shipped};
+use flagred::{estimator::Estimator, flight::Verdict, shipped};
 use flagred_cli::fuzzing::Watch;
 use flagred_flightlog::mavlink::{
     Next,
@@ -25,9 +25,8 @@ struct Replay {
 }
 
 impl Replay {
-    fn of(stream: &[u8]) -> Replay {
-        let estimator = shipped::flagred();
-        let mut watch = Watch::new(&estimator);
+    fn of(stream: &[u8], estimator: &Estimator) -> Replay {
+        let mut watch = Watch::new(estimator);
         let mut replay = Replay {
             events: Vec::new(),
             sent: Vec::new(),
@@ -96,9 +95,9 @@ fn stream(path: &Path) -> Vec<u8> {
 }
 
 /// The verdict of `assess`, and its assumptions.
-fn assess(stream: &[u8]) -> (Verdict, Vec<String>) {
+fn assess(stream: &[u8], estimator: &Estimator) -> (Verdict, Vec<String>) {
     let flight = flagred_flightlog::read(stream, &flagred_flightlog::Options::default()).unwrap();
-    let assessment = flagred::log::assess(&flight, &shipped::flagred(), None);
+    let assessment = flagred::log::assess(&flight, estimator, None);
     (assessment.verdict, flight.assumed)
 }
 
@@ -119,8 +118,8 @@ fn px4_streams_get_the_verdict_of_assess_with_the_same_assumptions() {
         ("m2", "FAIL"),
     ] {
         let bytes = px4(name);
-        let replay = Replay::of(&bytes);
-        let (assessed, assumed) = assess(&bytes);
+        let replay = Replay::of(&bytes, &shipped::flagred());
+        let (assessed, assumed) = assess(&bytes, &shipped::flagred());
         assert_eq!(replay.verdict(), verdict, "{name}");
         assert_eq!(assessed.to_string(), verdict, "{name}: {assessed:?}");
         let ready = replay.all("ready").last().unwrap();
@@ -150,6 +149,20 @@ fn px4_streams_get_the_verdict_of_assess_with_the_same_assumptions() {
     }
 }
 
+/// PX4 sends SYS_STATUS without a request.
+#[test]
+#[ignore = "needs FLAGRED_SHARED"]
+fn px4_streams_have_the_battery_risk_of_assess() {
+    let estimator = shipped::flagred_battery();
+    for name in ["c1", "w1", "m1"] {
+        let bytes = px4(name);
+        let replay = Replay::of(&bytes, &estimator);
+        let (assessed, _) = assess(&bytes, &estimator);
+        assert_eq!(replay.verdict(), assessed.to_string(), "{name}");
+        assert_ne!(replay.verdict(), "NA", "{name}");
+    }
+}
+
 /// In the streams of ArduPilot's simulator, everything is known, except in those without a parameter.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
@@ -168,7 +181,10 @@ fn ardupilot_streams_get_the_verdict_of_assess() {
             continue;
         }
         let bytes = stream(&path);
-        let (replay, (assessed, assumed)) = (Replay::of(&bytes), assess(&bytes));
+        let (replay, (assessed, assumed)) = (
+            Replay::of(&bytes, &shipped::flagred()),
+            assess(&bytes, &shipped::flagred()),
+        );
         let watched = replay.verdict();
         eprintln!("{name}: {watched}, {assessed}, assumed {assumed:?}");
         if watched != assessed.to_string() {
@@ -183,7 +199,7 @@ fn ardupilot_streams_get_the_verdict_of_assess() {
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_station_that_slows_a_recorded_stream_is_named() {
     let bytes = stream(&reference_data().join("sitl5/streams/w_1hz_contend.tlog.gz"));
-    let replay = Replay::of(&bytes);
+    let replay = Replay::of(&bytes, &shipped::flagred());
     let slowed: Vec<&Value> = replay.all("slowed").collect();
     assert!(!slowed.is_empty());
     for event in slowed {

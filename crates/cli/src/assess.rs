@@ -79,7 +79,7 @@ fn step(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Assesses every log; one that cannot be read does not stop the others.
+/// Assesses every log. A log that cannot be read does not stop the others.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let loaded = profile::load(&arguments.profile)?;
     let estimator = &loaded.estimator;
@@ -102,7 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut subjects = Vec::new();
     let documents: Vec<&Output> = html.iter().chain(&svg).collect();
     let mut out = Stdout::beside(&documents);
-    // Reports are written first: whoever reads standard output may stop at any time.
+    // Reports are written before standard output, whose reader may stop at any time.
     let mut waiting = Vec::new();
     let mut exit = Exit::Clean;
     let mut json = Vec::new();
@@ -172,7 +172,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         },
     );
     shown?;
-    // One that cannot be written keeps no other from being written, nor the verdict from being told.
+    // An error here is returned only after the remaining outputs, so that a failed report does not suppress the verdict.
     let reported = match (subjects.as_slice(), several) {
         ([], _) => Ok(()),
         ([subject], false) => write_reports(html.as_ref(), svg.as_ref(), subject, &loaded),
@@ -190,7 +190,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// Writes the files that were asked for of one flight.
+/// Writes the requested report and picture of one flight.
 fn write_reports(
     html: Option<&Output>,
     svg: Option<&Output>,
@@ -212,7 +212,7 @@ fn write_reports(
     Ok(())
 }
 
-/// An unknown risk is an exit code of its own, so that nobody takes it for GOOD.
+/// An unknown risk has its own exit code, so that it is not mistaken for GOOD.
 pub(crate) fn exit_of(verdict: &Verdict, fail_on: FailOn) -> Exit {
     match (verdict, fail_on) {
         (Verdict::NotAvailable(_), _) => Exit::Unreadable,

@@ -1,4 +1,4 @@
-//! `flagred check`: errors, gaps and conflicts in a rule set; whether a profile fits its rule set.
+//! `flagred check`: errors, gaps and conflicts in a rule set; whether a profile matches its rule set.
 
 mod format;
 
@@ -83,7 +83,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     let mut sarif = Sarif::default();
     let mut exit = Exit::Clean;
     for path in &arguments.models {
-        // A name that is built in is that of a profile, as in `assess`.
+        // A built-in name is the profile of that name, as in `assess`.
         let text = match built_in::profile_at(path) {
             Some(known) => known.text.to_owned(),
             None => read_text(path)?,
@@ -99,7 +99,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
             (None, examine(&source, arguments)?)
         };
         let findings = &examined.findings;
-        // Only what people read has colours.
+        // Only text for people is coloured.
         let mut out = match format {
             Format::Text => Stdout::text(),
             _ => Stdout::data(),
@@ -161,7 +161,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     Ok(exit)
 }
 
-/// All findings, and the analysis where the rule set can be analysed.
+/// All findings, and the analysis if the rule set can be analysed.
 fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>, Failure> {
     let mut options = check::Options::default();
     options.coverage = arguments.coverage;
@@ -172,8 +172,8 @@ fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>
     })
 }
 
-/// A profile, all findings about it and the rule set that it names, and what its inputs reach alone. A rule set with
-/// errors is refused: they are in another file.
+/// Reads a profile; returns all findings about it and its rule set, and the risk that each of its inputs reaches alone. A rule set
+/// with errors is refused, since these are in another file.
 fn examine_profile(
     path: &Path,
     source: &Source,

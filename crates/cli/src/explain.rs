@@ -1,4 +1,4 @@
-//! `flagred explain`: how the outputs of a rule set come about at one point, or at each row of a table.
+//! `flagred explain`: how the outputs of a rule set are computed at one point, or at each row of a table.
 
 mod table;
 
@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     format: Format,
 }
 
-/// A value of an input, as `INPUT=VALUE`.
+/// Parses a value of an input, as `INPUT=VALUE`.
 fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f64), Failure> {
     let Some((name, value)) = text.split_once('=') else {
         let inputs = model.inputs.iter();
@@ -68,7 +68,7 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
     }
 }
 
-/// What to write for a number with a decimal comma or a unit.
+/// Advice for a number with a decimal comma or a unit.
 fn number_advice(text: &str) -> Option<String> {
     if ["nan", "na", ""]
         .iter()
@@ -126,7 +126,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// One value for each input, in the order of the model.
+/// Returns one value for each input, in the order of the model.
 fn values(model: &Model, given: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
     let names = || model.inputs.iter().map(|input| input.name.as_str());
     for (i, (name, _)) in given.iter().enumerate() {

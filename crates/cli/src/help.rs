@@ -1,4 +1,4 @@
-//! The examples under the help of each command. A test parses every line.
+//! The examples at the end of each command's help. A test parses every line.
 
 pub(crate) const FLAGRED: &str = "\
 Examples:

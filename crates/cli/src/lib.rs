@@ -1,6 +1,6 @@
 //! The `flagred` command: assess flights; author, check and explain fuzzy rule sets.
 //!
-//! Each command has a file; this one reads the command line and dispatches.
+//! Each command has its own file; this one parses the command line and dispatches.
 
 mod assess;
 mod built_in;
@@ -186,7 +186,7 @@ impl Command {
     }
 }
 
-/// `flagred help --help` is `flagred help help`.
+/// Rewrites `flagred help --help` to `flagred help help`.
 fn help_of_help(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let mut arguments: Vec<OsString> = arguments.collect();
     if let [_, command, option, ..] = arguments.as_mut_slice()
@@ -198,7 +198,7 @@ fn help_of_help(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     arguments
 }
 
-/// Runs the command of a command line, which begins with the name of the program, and returns its exit code.
+/// Runs a command line, which begins with the name of the program, and returns its exit code.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> u8 {
     let code = match Arguments::try_parse_from(help_of_help(arguments)) {
         Ok(arguments) => match arguments.command.run() {
@@ -210,8 +210,8 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> u8 {
             None => failure::refuse(&error),
         },
     };
-    // A process that is not a Rust program, such as Python, does not flush Rust's buffer when it ends. Nobody is left to
-    // tell of an output that cannot be written here.
+    // A process that is not a Rust program, such as Python, does not flush Rust's buffer when it ends. An output that cannot be
+    // written here cannot be reported any more.
     let _ = io::stdout().flush();
     code
 }

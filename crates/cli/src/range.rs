@@ -1,4 +1,4 @@
-//! `--range`: the range of the motor outputs where a log or a vehicle does not report it.
+//! `--range`: the range of the motor outputs if a log or a vehicle does not report it.
 
 use flagred_flightlog::{Options, PulseRange};
 
@@ -19,7 +19,7 @@ fn pulse_width(text: &str) -> Result<u16, String> {
 }
 
 impl RangeArgument {
-    /// The given range, if any.
+    /// Returns the given range, if any.
     pub(crate) fn given(&self) -> Result<Option<PulseRange>, Failure> {
         let Some(&[low_us, high_us]) = self.range.as_deref() else {
             return Ok(None);
@@ -29,7 +29,7 @@ impl RangeArgument {
         Ok(Some(range))
     }
 
-    /// Options that read a log whole, with the given range.
+    /// Returns options that read a whole log, with the given range.
     pub(crate) fn options(&self) -> Result<Options, Failure> {
         let mut options = Options::default();
         options.range = self.given()?;

@@ -1,4 +1,4 @@
-//! What `identify`, `learn`, `tune` and `simplify` share: their arguments, and rows from tables, each with its place for messages.
+//! Shared by `identify`, `learn`, `tune` and `simplify`: arguments, and rows of tables with their positions for messages.
 
 use std::{collections::BTreeMap, path::PathBuf};
 
@@ -70,7 +70,7 @@ pub(crate) struct FromRows {
 }
 
 impl FromRows {
-    /// What is read and what is written.
+    /// Returns the inputs and the output.
     pub(crate) fn files(&self) -> Result<(Files, Output), Failure> {
         let Rewrite {
             model,
@@ -101,7 +101,7 @@ impl Claims {
         self.rising.is_empty() && self.falling.is_empty()
     }
 
-    /// The claims, those about rising inputs first.
+    /// Returns the claims; those about rising inputs come first.
     ///
     /// # Errors
     ///
@@ -123,7 +123,7 @@ impl Claims {
             .collect())
     }
 
-    /// The claims about the only output that is learned.
+    /// Returns the claims for the only output that is learned.
     ///
     /// # Errors
     ///
@@ -147,13 +147,13 @@ impl Claims {
     }
 }
 
-/// The word of the command line for a value.
+/// Returns the command-line word for a value.
 pub(crate) fn word(value: &impl ValueEnum) -> String {
     let word = value.to_possible_value();
     word.map_or_else(String::new, |word| word.get_name().to_owned())
 }
 
-/// Rows, and those that cannot be used, with the reason.
+/// Rows with their positions, and the reasons why other rows cannot be used.
 pub(crate) struct Data {
     pub(crate) rows: Vec<(Row, String)>,
     pub(crate) refused: Vec<String>,
@@ -165,7 +165,7 @@ pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure>
     let names: Vec<&str> = variables.iter().map(|v| v.name.as_str()).collect();
     let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
     let format = &arguments.rewrite.format;
-    // The names of constants: `failed` in place of 1.
+    // Names of constants may replace their numbers, such as `failed` for 1.
     let terms = variables.last().map(|output| output.terms.iter());
     let labels: Vec<(String, f64)> = terms
         .into_iter()
@@ -206,7 +206,7 @@ fn clamp(data: &mut Data, variables: &[&Variable]) {
     }
 }
 
-/// The tables, each read when it is asked for.
+/// Returns the tables; each is read when the iterator reaches it.
 pub(crate) fn tables<'a>(
     paths: &'a [PathBuf],
     format: &'a Format,
@@ -214,8 +214,8 @@ pub(crate) fn tables<'a>(
     paths.iter().map(|path| Table::read(path, format.delimiter))
 }
 
-/// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows. `labels` are the
-/// words that stand for values of the last variable.
+/// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows. `labels` are words
+/// that may replace values of the last variable.
 pub(crate) fn columns(
     tables: impl Iterator<Item = Result<Table, Failure>>,
     format: &Format,
@@ -285,7 +285,7 @@ pub(crate) fn columns(
     Ok(data)
 }
 
-/// Rows as columns, and those that cannot be used, with the reason.
+/// Converts rows to columns. Also returns the reasons why other rows cannot be used.
 pub(crate) fn in_columns(
     read: Data,
     inputs: usize,
@@ -311,7 +311,7 @@ pub(crate) fn in_columns(
     (data, refused)
 }
 
-/// A share on the command line.
+/// Parses a share on the command line.
 pub(crate) fn share(text: &str) -> Result<f64, String> {
     let share: Option<f64> = text.parse().ok();
     share
@@ -319,7 +319,7 @@ pub(crate) fn share(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "write a share, at least 0 and less than 1".into())
 }
 
-/// Rows that cannot be used, as a failure.
+/// Reports rows that cannot be used, as a failure.
 pub(crate) fn refuse(refused: &[String], purpose: &str) -> Failure {
     const SHOWN: usize = 20;
     let mut shown: Vec<String> = refused.iter().take(SHOWN).cloned().collect();

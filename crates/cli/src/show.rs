@@ -1,4 +1,4 @@
-//! `flagred show`: a built-in profile or rule set as it is written, with its comments.
+//! `flagred show`: prints a built-in profile or rule set as it is written, with its comments.
 
 use std::io::Write;
 

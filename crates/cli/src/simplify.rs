@@ -1,4 +1,4 @@
-//! `flagred simplify`: the same said with fewer rules.
+//! `flagred simplify`: a rule set with fewer rules and the same outputs.
 
 use std::{io::Write, path::PathBuf};
 
@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// A column for each input, and why other rows cannot be used.
+/// A column for each input, and the reasons why other rows cannot be used.
 fn rows(arguments: &Arguments, model: &Model) -> Result<(Vec<Vec<f64>>, Vec<String>), Failure> {
     if arguments.data.is_empty() {
         return Ok((Vec::new(), Vec::new()));
@@ -124,7 +124,7 @@ struct Outcome<'a> {
 }
 
 impl Outcome<'_> {
-    /// What is allowed, in words.
+    /// The allowed difference, as text.
     fn allowed(&self) -> String {
         match self.arguments.tolerance {
             Some(tolerance) => format!("{tolerance}"),
@@ -141,7 +141,7 @@ impl Outcome<'_> {
         }
     }
 
-    /// The rule set with the step that made it.
+    /// The rule set with a provenance step for this command.
     fn rule_set(&self, model_text: &str) -> Result<String, Failure> {
         let after = self.simplified.model.clone();
         let step = Step {
@@ -227,7 +227,7 @@ impl Outcome<'_> {
         Ok(())
     }
 
-    /// The inputs at which a difference was seen.
+    /// The names and values of the inputs at a difference.
     fn named<'a>(&'a self, difference: &'a Difference) -> impl Iterator<Item = OfInput<'a>> {
         let inputs = self.model.inputs.iter().zip(&difference.inputs);
         inputs.map(|(input, value)| OfInput {
@@ -283,7 +283,7 @@ fn size(difference: &Difference) -> f64 {
     (difference.after - difference.before).abs()
 }
 
-/// A number that may be far below 1.
+/// Formats a number that may be far below 1.
 fn tiny(value: f64) -> String {
     if value < 1e-3 {
         format!("{value:.1e}")
@@ -292,19 +292,19 @@ fn tiny(value: f64) -> String {
     }
 }
 
-/// `rules 2, 3`
+/// Lists rule numbers: `rules 2, 3`.
 fn listed(rules: &[usize]) -> String {
     let numbers: Vec<String> = rules.iter().map(|rule| (rule + 1).to_string()).collect();
     let plural = if numbers.len() == 1 { "" } else { "s" };
     format!("rule{plural} {}", numbers.join(", "))
 }
 
-/// The word of the format for what OR is.
+/// The word in the rule format for the function that evaluates OR.
 fn disjunction(model: &Model) -> &'static str {
     fuzzy::format::word_of_or(model.operators.or)
 }
 
-/// The version of the document's layout.
+/// The version of the JSON document.
 const SCHEMA: &str = "flagred.simplify/1";
 
 /// The document of `--json`.

@@ -1,4 +1,4 @@
-//! Tables of numbers from CSV files: one reader for all commands, every bad cell with its place.
+//! Tables of numbers from CSV files: one reader for all commands, which reports the position of every bad cell.
 
 use std::{
     fs::File,
@@ -14,15 +14,15 @@ use fuzzy::diagnostic::quoted;
 
 use crate::failure::{Failure, cannot_read};
 
-/// Bytes of a row, with the comments above it.
+/// Maximum number of bytes of a row, including the comments above it.
 const LONGEST_ROW: usize = 1_000_000;
-/// Cells of a table that is read whole.
+/// Maximum number of cells of a table that is read as a whole.
 const MOST_CELLS: usize = 20_000_000;
 
-/// A source of rows of which each is bounded: a single one could fill the memory.
+/// A source with a limit on the length of each row, since a single row could exhaust memory.
 struct Bounded {
     source: Box<dyn Read + Send>,
-    /// The bytes that are left for a row.
+    /// Remaining bytes for the current row.
     left: Arc<AtomicUsize>,
 }
 
@@ -47,13 +47,13 @@ pub(crate) struct Reader {
 }
 
 impl Reader {
-    /// Reads a row, and says whether there was one.
+    /// Reads a row, and returns whether there was one.
     pub(crate) fn read_byte_record(&mut self, record: &mut csv::ByteRecord) -> csv::Result<bool> {
         self.left.store(LONGEST_ROW, Ordering::Relaxed);
         self.csv.read_byte_record(record)
     }
 
-    /// As [`Reader::read_byte_record`], of text.
+    /// As [`Reader::read_byte_record`], for text.
     fn read_record(&mut self, record: &mut csv::StringRecord) -> csv::Result<bool> {
         self.left.store(LONGEST_ROW, Ordering::Relaxed);
         self.csv.read_record(record)
@@ -96,7 +96,7 @@ fn delimiter(text: &str) -> Result<u8, String> {
 }
 
 impl Format {
-    /// The place of the column of each variable.
+    /// Returns the column index of each variable.
     pub(crate) fn columns(&self, names: &[&str], header: &Header) -> Result<Vec<usize>, Failure> {
         if let Some((stray, _)) = self
             .column
@@ -119,15 +119,15 @@ impl Format {
 
 /// The first row of a table.
 pub(crate) struct Header {
-    /// The table, as the user knows it.
+    /// The name of the table for messages.
     pub(crate) file: String,
-    /// The names of the columns, without spaces around them.
+    /// The names of the columns, without surrounding spaces.
     pub(crate) names: Vec<String>,
     delimiter: u8,
 }
 
 /// Opens a table and reads its header; `-` is standard input. Rows may have more or fewer cells than the header, and cells
-/// spaces around them.
+/// may have spaces around them.
 pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failure> {
     const BUFFER: usize = 1 << 18;
     let file = path.display().to_string();
@@ -170,12 +170,12 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
 }
 
 impl Header {
-    /// The place of a column.
+    /// Returns the index of a column.
     pub(crate) fn column(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|column| column == name)
     }
 
-    /// The place of a column that must be there; `help` says what else could be done.
+    /// Returns the index of a required column; `help` is added to the message if it is missing.
     pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
         if name.is_empty() {
             // A column without a name in the header cannot be requested.
@@ -204,7 +204,7 @@ impl Header {
         })
     }
 
-    /// What seems to separate the cells, where it is not what was said.
+    /// The probable delimiter, if it differs from the chosen one.
     fn other_delimiter(&self) -> Option<&'static str> {
         let [only] = self.names.as_slice() else {
             return None;
@@ -216,7 +216,7 @@ impl Header {
         found.next().map(|(_, word)| word)
     }
 
-    /// What is wrong with a row of so many cells.
+    /// The problem of a row with this number of cells, if any.
     pub(crate) fn misfit(&self, cells: usize) -> Option<String> {
         let expected = self.names.len();
         (cells != expected).then(|| {
@@ -227,13 +227,13 @@ impl Header {
         })
     }
 
-    /// What to call a column.
+    /// The name of a column.
     pub(crate) fn name(&self, column: usize) -> &str {
         self.names.get(column).map_or("", String::as_str)
     }
 }
 
-/// What a cell says of a number.
+/// The number in a cell, if any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Cell {
     /// A finite number.
@@ -247,7 +247,7 @@ pub(crate) enum Cell {
 impl Cell {
     pub(crate) fn of(text: &[u8]) -> Cell {
         let text = text.trim_ascii();
-        // A number is ASCII.
+        // Numbers contain only ASCII characters.
         let number = str::from_utf8(text)
             .ok()
             .and_then(|text| text.parse::<f64>().ok());
@@ -259,7 +259,7 @@ impl Cell {
         }
     }
 
-    /// Why a cell is [`Cell::Bad`].
+    /// Explains why a cell is [`Cell::Bad`].
     pub(crate) fn problem(text: &[u8]) -> String {
         let text = String::from_utf8_lossy(text.trim_ascii());
         let shown = quoted(&text);
@@ -343,7 +343,7 @@ impl Table {
             .trim()
     }
 
-    /// The finite number in a cell.
+    /// Returns the finite number in a cell.
     pub(crate) fn number(&self, row: usize, column: usize) -> Result<f64, BadCell> {
         let text = self.text(row, column).as_bytes();
         match Cell::of(text) {
@@ -355,13 +355,13 @@ impl Table {
         }
     }
 
-    /// The finite number in a column of this name; `None` where there is none.
+    /// Returns the finite number in the column with this name; `None` if there is no such column.
     pub(crate) fn named_number(&self, row: usize, name: &str) -> Result<Option<f64>, BadCell> {
         let column = self.header.column(name);
         column.map(|column| self.number(row, column)).transpose()
     }
 
-    /// A finding about a cell.
+    /// Reports a problem with a cell.
     pub(crate) fn bad(&self, row: usize, column: usize, problem: String) -> BadCell {
         BadCell {
             line: self.line(row),
@@ -371,7 +371,7 @@ impl Table {
     }
 }
 
-/// What is wrong with the text of a table, and where.
+/// Reports a malformed table, with the line.
 pub(crate) fn broken(file: &str, error: &csv::Error) -> Failure {
     let line = error.position().map_or(1, csv::Position::line);
     match error.kind() {

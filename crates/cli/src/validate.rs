@@ -1,4 +1,4 @@
-//! `flagred validate`: how good are the risks of profiles, beside predictors that need no rules?
+//! `flagred validate`: how good are the risks of profiles, compared with predictors without rules?
 
 use std::{
     io::Write,
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(table) => (rows(table, &estimators)?, Exit::Clean),
         None => flights(arguments, &estimators)?,
     };
-    // Flights in folders are known only now.
+    // Only now are the flights in folders known.
     let mut files = Files::reading(evaluation.records().iter().map(Record::file))?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let drawn = match &svg {
@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// The shipped profiles that read the motors alone, and those that were asked for.
+/// The built-in profiles that read only the motors, and the requested ones.
 fn estimators(asked: &[String]) -> Result<Estimators, Failure> {
     let mut estimators = Estimators::default();
     let shipped = shipped::motor_profile_names().map(str::to_owned);
@@ -95,7 +95,7 @@ fn estimators(asked: &[String]) -> Result<Estimators, Failure> {
     Ok(estimators)
 }
 
-/// Evaluates every flight; one that cannot be read stops no other.
+/// Evaluates every flight. A flight that cannot be read does not stop the others.
 fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation, Exit), Failure> {
     let files = files(&arguments.flights)?;
     let mut records = Vec::new();
@@ -109,7 +109,7 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
                 Ok(record) => records.push(record),
                 Err(why) => {
                     left_out.push(LeftOut::new(file.path.display().to_string(), &why));
-                    // A folder may hold other things than flights.
+                    // A folder may contain other files than flights.
                     if file.is_named {
                         Failure::from(why).report();
                         exit = Exit::Unreadable;
@@ -130,7 +130,7 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
     Ok((evaluation, exit))
 }
 
-/// Evaluates a table with a row for each flight.
+/// Evaluates a table that has a row for each flight.
 fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
     let table = Table::read(path, b',')?;
     table.header.require(
@@ -153,7 +153,7 @@ fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
     }))
 }
 
-/// Scores the estimators with a progress bar.
+/// Scores the estimators, with a progress bar.
 fn scored<T>(estimators: &Estimators, score: impl FnOnce(&(dyn Fn() + Sync)) -> T) -> T {
     let bar = parallel::progress(estimators.names().count(), "estimators");
     let scored = score(&|| bar.inc(1));

@@ -1,4 +1,4 @@
-//! Mistakes that newcomers made, each with the advice it gets.
+//! Mistakes of newcomers, each with the advice for it.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod common;
@@ -161,10 +161,10 @@ fn options_mean_the_same_everywhere() {
         let words: Vec<&str> = typed.split(' ').collect();
         flagred(folder.path(), &words)
     };
-    // An option with a value does not take the file behind it.
+    // An option with a value does not consume the file after it.
     let (code, _, errors) = run("check --rising temperature fan.yaml");
     assert_eq!(code, Some(0), "{errors}");
-    // A rule set that exists is kept.
+    // An existing rule set is kept.
     let (code, fis, _) = run("export --fis fan.yaml");
     assert_eq!(code, Some(0));
     std::fs::write(folder.path().join("fan.fis"), fis).unwrap();

@@ -45,7 +45,7 @@ fn commands_accept_files_of_other_programs() {
     for ending in ["fis", "fll", "fcl", "fml"] {
         let file = tipper(&folder, ending);
         let file = file.to_str().unwrap();
-        // fuzzylite samples.
+        // fuzzylite integrates numerically.
         let tolerance = if ending == "fll" { 1e-3 } else { 1e-9 };
         assert!(
             (value(file) - expected).abs() < tolerance,
@@ -77,7 +77,7 @@ fn features_that_a_format_lacks_are_refused_or_reported() {
             && told.contains("\n  help: `--lossy`"),
         "{told}"
     );
-    // A FIS has numbers or fuzzy sets as terms of its outputs, and this rule set both.
+    // In a FIS an output has either numbers or fuzzy sets as terms, but this rule set uses both.
     let refused = flagred(&["export", "--fis", "--lossy", "tests/onboard/blocks.yaml"]);
     assert_eq!(refused.status.code(), Some(3));
     assert!(text(&refused.stderr).contains("error[two-defuzzifiers]"));

@@ -1,4 +1,4 @@
-//! The commands for those who write rule sets, run as a user runs them.
+//! The commands for authors of rule sets, as a user runs them.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::{
@@ -19,7 +19,7 @@ fn flagred(arguments: &[&str], input: &str) -> (Output, String) {
         .unwrap();
     let mut stdin = child.stdin.take().unwrap();
     let input = input.to_owned();
-    // Beside reading what it prints, or both would wait for each other. A command that reads nothing may have ended.
+    // Writes in another thread, since both processes would otherwise wait for each other. A command that ignores its input may have ended.
     let writer = std::thread::spawn(move || drop(stdin.write_all(input.as_bytes())));
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap();
@@ -206,7 +206,7 @@ fn plot_draws_the_terms_and_the_curve_of_one_input() {
         svg.contains("room [°C]<") && svg.contains("power [%] over room [°C]<"),
         "{svg}"
     );
-    // With more inputs there is no curve.
+    // There is no curve for several inputs.
     let (_, text) = flagred(&["plot", "tipper.yaml"], "");
     assert!(
         text.contains("service") && !text.contains(" over "),
@@ -264,7 +264,7 @@ fn eval_adds_the_outputs_with_all_digits() {
     assert_eq!(rows[2][3].parse().ok(), value(0.05, 0.12));
 }
 
-/// A row comes out for every row, whatever is wrong with it.
+/// Every row has an output row, even if it is invalid.
 #[test]
 fn eval_explains_the_value_of_each_row() {
     let points = "id,spread,margin\na,0.12,0.13\nb,0,0\nc,NA,0.1\nd,9,-0.05\ne,wide,inf\nf,0.1\ng,,nan\n\
@@ -280,7 +280,7 @@ fn eval_explains_the_value_of_each_row() {
     insta::assert_snapshot!(text + "\n" + &errors(&output));
 
     let (output, text) = flagred(&["eval", "flagred-paper.yaml", "--skip-bad-rows"], points);
-    // Rows are left out as asked; others still have no value.
+    // Bad rows are skipped as requested; some other rows still have no value.
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(text.lines().count(), 6, "{text}");
     assert!(
@@ -350,7 +350,7 @@ fn eval_writes_a_complete_file_or_none() {
         fs::read_to_string(&file).unwrap(),
         "margin,spread,risk\n0.1,0.1,50\n"
     );
-    // A folder opens, and cannot be read.
+    // A folder can be opened but not read.
     let (output, _) = flagred(&["eval", "flagred-paper.yaml", ".", "-o", out], "");
     assert_eq!(output.status.code(), Some(3), "{}", errors(&output));
     assert!(fs::read_to_string(&file).unwrap().starts_with("margin"));
@@ -421,7 +421,7 @@ fn new_writes_a_rule_set_that_passes_check() {
     }
     let (output, _) = flagred(&["explain", file, "temperature=24", "humidity=70"], "");
     assert_eq!(output.status.code(), Some(0));
-    // Nobody's work is overwritten.
+    // An existing file is not overwritten.
     let (output, _) = flagred(&["new", "fan-control", "--output", file], "");
     assert_eq!(output.status.code(), Some(2));
     let (output, _) = flagred(&["new", "../evil"], "");
@@ -442,7 +442,7 @@ fn a_new_profile_is_the_default_one_under_another_name() {
     for line in lines {
         assert!(profile.lines().any(|own| own == line), "{line}");
     }
-    // The verdicts are those of the default profile, too.
+    // The verdicts are the same as with the default profile.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.yaml");
     fs::write(&path, &profile).unwrap();
@@ -493,7 +493,7 @@ fn commands_accept_built_in_names() {
             assert!(!text.is_empty(), "{arguments:?}");
         }
     }
-    // The default of `export` works with each format that can carry it.
+    // The default rule set can be exported to each format that supports it.
     assert_eq!(
         flagred(&["export", "--fll"], "").1,
         flagred(&["export", "--fll", "flagred"], "").1

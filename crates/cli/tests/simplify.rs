@@ -1,4 +1,4 @@
-//! `flagred simplify` on files.
+//! `flagred simplify` with files.
 #![allow(clippy::unwrap_used)]
 
 mod common;

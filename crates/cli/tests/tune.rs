@@ -1,4 +1,4 @@
-//! `flagred tune` on files.
+//! `flagred tune` with files.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -18,7 +18,7 @@ rules:
   - IF heat IS hot THEN speed IS fast
 ";
 
-/// The fan turns slowly up to 20 degrees, fast from 30 degrees on; four rooms.
+/// The fan turns slowly up to 20 degrees, and fast from 30 degrees on; four rooms.
 fn rows() -> String {
     let mut rows = String::from("heat,speed,is_loud,room\n");
     for i in 0..=80 {
@@ -144,7 +144,7 @@ fn a_start_that_is_not_monotone_is_refused() {
     );
 }
 
-/// Nothing counts, or what counts is so large that errors overflow: the file that was there stays.
+/// All weights are 0, or values are so large that errors overflow: the existing file is kept.
 #[test]
 fn rows_without_information_or_with_overflow_are_refused() {
     let weightless = rows().replace(",1,", ",0,");
@@ -172,7 +172,7 @@ fn rows_without_information_or_with_overflow_are_refused() {
         assert_eq!((code, written.as_deref()), (Some(3), Some("good")), "{err}");
         assert!(err.contains(told), "{err}");
     }
-    // Some rows that do not count are nothing special.
+    // Some rows with weight 0 are allowed.
     let (code, _, err, written) = tune(&[], &["--weight", "is_loud", "--folds", "30"]);
     assert_eq!(code, Some(0), "{err}");
     assert!(!written.unwrap().contains(".nan"));
@@ -191,7 +191,7 @@ rules:
   - IF heat IS hot THEN speed IS fast
 ";
 
-/// The rows lie on a line that is at 14 where `hot` is highest.
+/// The rows are on a line that reaches 14 where `hot` is highest.
 #[test]
 fn constants_stay_in_the_range_by_default() {
     let mut rows = String::from("heat,speed\n");
@@ -214,7 +214,7 @@ fn constants_stay_in_the_range_by_default() {
     assert!(written.contains("fast: {constant: 10}"), "{written}");
 }
 
-/// Rows in other units than the range: the constants end at its end, and the report says why.
+/// The rows use other units than the range: the constants stop at its end, and the report explains why.
 #[test]
 fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
     let rows = "heat,speed\n5,1400\n15,1500\n25,1600\n35,1700\n";
@@ -238,7 +238,7 @@ fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
         out.contains("\"at_bounds\": [\n    \"speed.slow\""),
         "{out}"
     );
-    // The file tuned once more: nothing can move.
+    // When the tuned file is tuned again, nothing moves.
     let files = [("fan.yaml", &*written), ("rows.csv", rows)];
     let (_, out, ..) = tune(&files, &arguments);
     assert!(out.contains("nothing: no step within the range"), "{out}");
@@ -303,14 +303,14 @@ rules:
       note: as the old one did
 ";
 
-/// Without its digits.
+/// The text without its digits.
 fn shape(text: &str) -> String {
     text.chars()
         .filter(|c| !c.is_ascii_digit() && *c != '.' && *c != '-')
         .collect()
 }
 
-/// Comments, order, quotes and layout stay.
+/// Comments, order, quotes and layout are kept.
 #[test]
 fn numbers_change_in_place_in_the_text() {
     let mut rows = String::from("heat,damp,speed\n");
@@ -336,7 +336,7 @@ fn numbers_change_in_place_in_the_text() {
     }
     assert!(provenance.contains("command: flagred tune"), "{written}");
 
-    // A second step stands behind the first.
+    // A second step is appended to the first.
     let files = [("fan.yaml", &*written), ("rows.csv", &*rows)];
     let (code, _, err, again) = tune(&files, &["--only", "speed", "--no-validation"]);
     assert_eq!(code, Some(0), "{err}");
@@ -348,7 +348,7 @@ fn numbers_change_in_place_in_the_text() {
     );
 }
 
-/// An anchor stands for two terms: the rule set is written anew, and right.
+/// Two terms share an anchor: the whole rule set is written anew, with correct values.
 #[test]
 fn a_text_that_cannot_change_in_place_is_rewritten() {
     let shared = FAN.replace(
@@ -361,7 +361,7 @@ fn a_text_that_cannot_change_in_place_is_rewritten() {
     assert!(written.starts_with("# A fan for the attic.\nfuzzy: 1\n") && !written.contains("&n"));
 }
 
-/// Files cannot grow over 512 bytes, but a pipe can.
+/// Files cannot grow beyond 512 bytes, but a pipe can transfer more.
 #[test]
 #[cfg(unix)]
 fn other_outputs_are_written_despite_a_full_disk() {
@@ -402,7 +402,7 @@ fn other_outputs_are_written_despite_a_full_disk() {
     assert!(folder.path().join("moved.svg").exists());
 }
 
-/// Numbers that the user fixed stay as they are, whatever a checkpoint has.
+/// Numbers that the user fixed keep their values, even if a checkpoint has others.
 #[test]
 fn a_checkpoint_with_other_fixed_numbers_is_refused() {
     let moved = FAN.replace("{singleton: 8}", "{singleton: 7}");
@@ -440,7 +440,7 @@ fn a_checkpoint_with_other_fixed_numbers_is_refused() {
     }
 }
 
-/// At 1e15 one of two constants was named, and at 1e20 the report said that no step helps.
+/// At 1e15 only one of two constants was named, and at 1e20 the report claimed that no step helps.
 #[test]
 fn targets_that_leave_no_digit_of_the_loss_are_refused() {
     for target in ["1e8", "-1e15", "1e20", "1e49"] {
@@ -455,7 +455,7 @@ fn targets_that_leave_no_digit_of_the_loss_are_refused() {
     }
 }
 
-/// Other rules, another range or another operator are not what was tuned.
+/// A checkpoint with other rules, another range or another operator does not belong to this rule set.
 #[test]
 fn a_checkpoint_that_differs_in_more_than_numbers_is_refused() {
     let rules = "  - IF heat IS cool THEN speed IS slow\n  - IF heat IS hot THEN speed IS fast\n";

@@ -24,7 +24,7 @@ pub fn rmse_deg<'a>(attitudes: impl IntoIterator<Item = &'a Attitude>) -> Option
 
 /// Returns the risk that corresponds to an attitude error, in %: `100 min(1, rmse / critical)`.
 ///
-/// The paper gives the critical error ([`CRITICAL_ERROR_DEG`](flagred::profile::CRITICAL_ERROR_DEG)) but no scaling; this one is ours.
+/// The paper gives the critical error ([`CRITICAL_ERROR_DEG`](flagred::profile::CRITICAL_ERROR_DEG)) but no scaling.
 ///
 /// # Example
 /// ```

@@ -1,4 +1,4 @@
-//! Calm stretches of a flight, in which nothing happens.
+//! Calm stretches of a flight: times without a critical error or a steep tilt.
 
 use flagred::profile::CRITICAL_ERROR_DEG;
 use flagred_flightlog::Attitude;

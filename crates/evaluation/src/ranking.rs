@@ -170,7 +170,7 @@ impl Ranking {
     /// and other predictions. It measures whether scores predict the time, and not only the group. `None` if no group
     /// has both.
     ///
-    /// # Example: two flights that the score tells apart, but not their moments
+    /// # Example: the score distinguishes two flights, but not the moments within them
     /// ```
     /// use flagred_evaluation::{Prediction, Ranking};
     ///

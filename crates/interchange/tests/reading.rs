@@ -1,4 +1,4 @@
-//! Errors that the readers report, and that no text makes them panic.
+//! Errors that the readers report. No text makes the readers panic.
 
 #![allow(
     clippy::expect_used,
@@ -338,7 +338,7 @@ fn one_function_block_of_several_is_read_by_its_name() {
     assert_eq!(findings.0[0].help.as_deref(), Some("did you mean `twice`?"));
 }
 
-/// A file that ends within a section lacks rules or terms: what is left would be another rule set.
+/// A file that ends within a section lacks rules or terms: the rest would be another rule set.
 #[test]
 fn an_fcl_that_is_cut_off_is_refused() {
     let lines: Vec<&str> = FCL.lines().collect();

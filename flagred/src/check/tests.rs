@@ -41,7 +41,7 @@ fn fit(text: &str, rules: &str) -> (Findings, Option<Estimator>) {
     )
 }
 
-/// What is found after a part of the profile or of the rule set is replaced: the text that each finding is about, and
+/// The findings after a part of the profile or of the rule set is replaced: the text that each finding is about, and
 /// the finding.
 fn found(replaced: &str, by: &str) -> Vec<String> {
     let (text, model) = (PROFILE.replace(replaced, by), RULES.replace(replaced, by));

@@ -116,7 +116,7 @@ fn a_second_flight_starts_without_the_state_of_the_first() {
     assert_eq!(fly(30.0, HOVER).verdict, Verdict::Known(Level::Good));
 }
 
-/// The paper's inputs, with the rules about the spread fed by a signal that is not a motor at its limit.
+/// The paper's inputs; the rules about the spread read a signal that is not a motor at its limit.
 #[test]
 fn a_motor_is_named_only_where_motors_near_a_limit_are_the_cause() {
     let paper = shipped::flagred_paper();
@@ -217,7 +217,7 @@ fn a_lasting_fault_stays_a_finding_until_landing() {
         assert!(found.to_s > 119.0, "{found:?}");
         assert_eq!(found.severity, Level::Warn);
     }
-    // As before: nothing differs.
+    // Without the fault, nothing differs.
     let (flown, levels) = with_a_dead_motor(1e9);
     assert_eq!((flown.findings, levels), (vec![], vec![]));
 }
@@ -279,7 +279,7 @@ fn an_assessment_is_serde_data() {
     assert!(unknown["reason"].is_string() && unknown["help"].is_string());
 }
 
-/// The margin makes one risk, the spread another.
+/// One risk depends on the margin, the other on the spread.
 const TWO_RISKS: &str = "
 fuzzy: 1
 name: two
@@ -303,7 +303,7 @@ fn two_risks(risks: &str) -> Estimator {
     Estimator::new(&profile.parse().unwrap(), &model).unwrap()
 }
 
-/// First all motors come near their limit together, then they are torn apart.
+/// First both motors approach their limit together, then they diverge.
 fn fly_twice(estimator: &Estimator) -> (Assessment, Vec<(f64, Level)>, Vec<Option<String>>) {
     let mut assessor = Assessor::new(estimator, Craft::new(2), None).unwrap();
     let (mut changes, mut open) = (vec![], vec![]);
@@ -366,7 +366,7 @@ fn several_risks_have_the_findings_of_profiles_of_each() {
         .find(|found| found.risk_output.is_some());
     assert_eq!(torn.unwrap().cause.as_ref().unwrap().input, "spread");
 
-    // The level is the worst of both.
+    // The level is the worst of both risks.
     let levels: Vec<Level> = changes.iter().map(|(_, level)| *level).collect();
     assert_eq!(levels[..2], [Level::Warn, Level::Good]);
     assert!(levels.contains(&Level::Fail), "{changes:?}");
@@ -380,7 +380,7 @@ fn several_risks_have_the_findings_of_profiles_of_each() {
     );
 }
 
-/// If a risk has no rule, a flight without findings is not GOOD because of the other risk.
+/// If a risk is unknown because no rule covers it, a flight without findings is not GOOD, even if the other risk is known.
 #[test]
 fn a_flight_is_good_where_every_risk_is_known() {
     let rules = TWO_RISKS.replace("  - IF spread IS low THEN torn IS no\n", "");

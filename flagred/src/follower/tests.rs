@@ -87,7 +87,7 @@ fn a_flickering_land_detector_does_not_end_the_flight() {
     assert_eq!(last(&flicker).level, Some(Level::Fail));
     let again = flown.fly(0.1, true, LIMIT);
     assert_eq!(ended(&again), []);
-    // No window starts again.
+    // No window restarts.
     assert!(again[0].risk.is_ok());
     assert_eq!(last(&again).level, Some(Level::Fail));
 
@@ -130,7 +130,7 @@ fn motors_at_idle_after_a_high_risk_are_not_a_landing() {
     assert_eq!(last(&falling).level, Some(Level::Fail));
 }
 
-/// A fall at a command that no rule treats as a limit.
+/// A fall at a command that no rule considers a limit.
 #[test]
 fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
     for estimator in [shipped::flagred(), shipped::flagred_paper()] {

@@ -124,7 +124,7 @@ mod tests {
             sum += weight * map.value(cell).unwrap();
             weights += weight;
         }
-        // The classic form would call a saturated drone harmless.
+        // The usual form, over all covered cells, would give a saturated drone only 49 %.
         approx::assert_abs_diff_eq!(sum / weights, 49.0, epsilon = 2.0);
     }
 

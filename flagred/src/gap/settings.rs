@@ -1,4 +1,4 @@
-//! Settings that define what counts as a gap and how it is filled.
+//! Settings that define a gap and how it is filled.
 
 use fuzzy::{
     Model,

@@ -455,7 +455,7 @@ fn a_profile_that_reads_no_motor_requires_no_motor() {
         assert!(last.risk.is_ok() && last.level.is_some(), "{last:?}");
         assert!(monitor.margin().is_none() && monitor.spread().is_none());
     }
-    // A parked vehicle has no risk.
+    // A vehicle on the ground has no risk.
     let craft = Craft::new(0).with_signals(&["battery_v"]);
     let mut monitor = Monitor::new(&estimator, craft).unwrap();
     let update = monitor.push(&Sample {

@@ -371,7 +371,7 @@ mod tests {
         let (changes, findings, _) = run(&[
             (1.0, 0.0, 0.0),
             (2.0, 0.0, 60.0),
-            // Held, then not held for less than clear_after_s.
+            // The level is held, then not held for less than `clear_after_s`.
             (5.0, 0.0, 45.0),
             (1.0, 0.0, 0.0),
             (1.0, 0.0, 90.0),
@@ -430,7 +430,7 @@ mod tests {
 
     #[test]
     fn a_landing_cancels_a_warn_raised_just_before_it() {
-        // Raised at 0.5 s, can be withdrawn for 2 s.
+        // The WARN is raised at 0.5 s and can be withdrawn for 2 s.
         let (_, _, mut flown) = run(&[(1.0, 0.0, 60.0)]);
         let mut later = flown.clone();
         assert_eq!(flown.end(2.4, true).ended, None);

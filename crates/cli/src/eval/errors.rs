@@ -1,13 +1,13 @@
-//! How far outputs are from measured values.
+//! Errors of outputs against measured values.
 
 use fuzzy::drawing::short;
 
 use crate::output::say;
 
-/// The worst rows that are listed.
+/// The number of worst rows that are listed.
 const WORST: usize = 5;
 
-/// The errors of an output: computed less measured.
+/// The errors of an output: computed minus measured.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Errors {
     rows: u64,
@@ -35,7 +35,7 @@ impl Errors {
         self.sum_of_squares += later.sum_of_squares;
         let size = |(_, computed, measured): &(u64, f64, f64)| (computed - measured).abs();
         for row in later.worst {
-            // Of equal errors the earlier row comes first.
+            // Among equal errors the earlier row comes first.
             let place = self
                 .worst
                 .partition_point(|other| size(other) >= size(&row));
@@ -46,7 +46,7 @@ impl Errors {
         }
     }
 
-    /// Prints the errors on standard error, if there are any measured values.
+    /// Prints the errors on standard error if there are measured values.
     pub(super) fn say(&self, output: &str) {
         if self.rows == 0 {
             return;

@@ -1,9 +1,9 @@
-//! What is to be said of the rows, counted.
+//! Counts of rows, for the report at the end.
 
 use super::{Plan, errors::Errors};
 use crate::output::say;
 
-/// Bad rows that are told one by one.
+/// Maximum number of bad rows that are reported individually.
 const SHOWN: usize = 20;
 
 /// Rows in which something happened.
@@ -34,15 +34,15 @@ impl Rows {
 pub(super) struct Tally {
     pub(super) rows: u64,
     bad: Rows,
-    /// The first bad rows.
+    /// The problems of the first bad rows.
     shown: Vec<String>,
-    /// An input is unknown.
+    /// Rows with an unknown input.
     pub(super) unknown: Rows,
-    /// For each output: no rule fires for it.
+    /// For each output: rows in which no rule fires for it.
     pub(super) silent: Vec<Rows>,
-    /// For each input: it is outside its range.
+    /// For each input: rows in which it is outside its range.
     pub(super) clamped: Vec<Rows>,
-    /// For each output: how far it is from measured values.
+    /// For each output: its errors against measured values.
     pub(super) errors: Vec<Errors>,
 }
 
@@ -84,13 +84,13 @@ impl Tally {
         }
     }
 
-    /// Whether every row that is written has all values.
+    /// Returns whether every written row has a value for all outputs.
     pub(super) fn is_complete(&self, plan: &Plan) -> bool {
         let all_read = self.bad.count == 0 || plan.skip_bad_rows;
         all_read && self.unknown.count == 0 && self.silent.iter().all(|rows| rows.count == 0)
     }
 
-    /// Says on standard error what happened.
+    /// Prints the counts on standard error.
     pub(super) fn say(&self, plan: &Plan) {
         let of = |rows: Rows| format!("{} of {} rows", rows.count, self.rows);
         let first = |rows: Rows| format!("first in line {}", rows.first_line);

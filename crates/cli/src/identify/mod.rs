@@ -1,4 +1,4 @@
-//! `flagred identify`: a rule set from rows of data alone.
+//! `flagred identify`: a rule set from rows of data.
 
 mod report;
 
@@ -108,16 +108,16 @@ fn count(least: i64, most: i64) -> clap::builder::RangedI64ValueParser<u32> {
     clap::value_parser!(u32).range(least..=most)
 }
 
-/// What the report tells.
+/// The results for the report.
 struct Outcome {
     rows: usize,
     refused: Vec<String>,
-    /// The columns that were looked at.
+    /// The columns that were examined as inputs.
     columns: usize,
     /// Columns without a number.
     without_numbers: Vec<String>,
     identified: Identified,
-    /// `None` where it was not wanted.
+    /// `None` if not requested.
     judged: Option<Judged>,
 }
 
@@ -128,7 +128,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let mut files = Files::reading(&arguments.data)?;
     let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
-    // A table is read once: it may be standard input.
+    // A table is read only once, since it may be standard input.
     let mut tables = rows::tables(&arguments.data, &arguments.format).peekable();
     let (names, without_numbers) = match tables.peek() {
         Some(Ok(first)) => columns(arguments, first)?,
@@ -200,7 +200,7 @@ fn settings(arguments: &Arguments) -> Identification {
     settings
 }
 
-/// The columns of a table that may be inputs, and those that hold no number.
+/// The columns of a table that may be inputs, and those without a number.
 fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<String>), Failure> {
     if !arguments.input.is_empty() {
         return Ok((arguments.input.clone(), Vec::new()));
@@ -233,7 +233,7 @@ fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<Str
     Ok((named(numbers), named(others)))
 }
 
-/// Refuses a target of words, such as `good` and `bad`.
+/// Refuses a target that consists of words, such as `good` and `bad`.
 fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
     let column = arguments
         .format
@@ -251,7 +251,7 @@ fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
     ))
 }
 
-/// The rows as columns, and why others cannot be used.
+/// The rows as columns, and the reasons why other rows cannot be used.
 fn data(
     arguments: &Arguments,
     tables: impl Iterator<Item = Result<Table, Failure>>,

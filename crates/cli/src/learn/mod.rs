@@ -65,7 +65,7 @@ enum Resolve {
     Mean,
 }
 
-/// What the report tells.
+/// The results for the report.
 struct Outcome {
     learned: Learned,
     /// The rule set with the learned rules.
@@ -183,7 +183,7 @@ fn settings(arguments: &Arguments, claims: &[check::Monotone]) -> Settings {
     settings
 }
 
-/// Where the learned rules contradict `--rising` and `--falling`, as `flagred check` finds it.
+/// Checks the learned rules for contradictions to `--rising` and `--falling`, as `flagred check` does.
 fn counterexamples(
     claims: &[check::Monotone],
     model: &Model,
@@ -192,8 +192,8 @@ fn counterexamples(
     check::counterexamples(&engine, claims).map_err(unusable)
 }
 
-/// What would make the output monotone, where that is known: inference by product and sum does not bend monotone rules where
-/// every combination of terms has one.
+/// Advice that makes the output monotone, if there is any: with inference by product and sum, monotone rules give a monotone output
+/// if every combination of terms has a rule.
 fn monotone_help(outcome: &Outcome) -> Option<&'static str> {
     let mut model = outcome.model.clone();
     model.operators.and = Conjunction::Product;
@@ -211,14 +211,14 @@ fn monotone_help(outcome: &Outcome) -> Option<&'static str> {
     }
 }
 
-/// The most cells of the map that `coverage` looks at: 13 inputs.
+/// Maximum number of map cells that `coverage` evaluates: enough for 13 inputs.
 const MOST_CELLS: usize = 2_000_000;
 
 fn unusable(error: impl std::fmt::Display) -> Failure {
     Failure::unusable("the learned rules cannot be used", &error)
 }
 
-/// The shares of the map that rules cover, and that have a value after filling; `None` of a map with too many cells.
+/// The shares of the map that rules cover, and that have a value after filling; `None` if the map has too many cells.
 fn coverage(model: &Model, gap: &GapSettings) -> Result<Option<(f64, f64)>, Failure> {
     let engine = Engine::new(model).map_err(unusable)?;
     let points = crate::map::points_along(model.inputs.len());

@@ -140,7 +140,7 @@ impl Fill {
     }
 }
 
-/// The input of an axis, and the part of its range that is shown.
+/// The input of an axis, and the shown part of its range.
 #[derive(Debug, Clone)]
 struct AxisChoice {
     name: String,
@@ -178,18 +178,18 @@ fn hold(text: &str) -> Result<(String, f64), String> {
     }
 }
 
-/// A rule set, compiled, and what fills its gaps, with the name of the method.
+/// A compiled rule set, with the filling of its gaps and the name of the filling's method.
 struct Evaluated {
     engine: Engine,
     output: usize,
     filling: Option<(Filling, &'static str)>,
 }
 
-/// The most cells of a whole map by default.
+/// Default maximum number of cells of a whole map.
 const MAP_CELLS: f64 = 100_000.0;
 
-/// The default number of points of a whole map along each of so many inputs: 51, fewer where there would be more than
-/// 100,000 cells, at least 3.
+/// Returns the default number of points of a whole map along each of its inputs: at least 3, at most 51, and fewer if the map
+/// would otherwise exceed 100,000 cells.
 pub(crate) fn points_along(inputs: usize) -> usize {
     let most = MAP_CELLS.powf(1.0 / inputs.max(1) as f64);
     (most as usize).clamp(3, POINTS)
@@ -248,7 +248,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// A cell of a picture on a terminal, in its colour.
+/// Returns a cell of a picture for a terminal, in its colour.
 pub(crate) fn painted(cell: char, colour: Option<Colour>) -> String {
     let rgb = |colour: Colour| Some(RgbColor(colour.0, colour.1, colour.2).into());
     match colour {

@@ -1,16 +1,16 @@
-//! Where the packets come from: `udpin:0.0.0.0:14550`, `tcp:127.0.0.1:5760`, `/dev/ttyACM0:57600`.
+//! The origin of the packets: `udpin:0.0.0.0:14550`, `tcp:127.0.0.1:5760`, `/dev/ttyACM0:57600`.
 
 use std::{fmt, str::FromStr};
 
-/// The baud rate of a serial port that names none: that of telemetry radios.
+/// The default baud rate of a serial port: that of telemetry radios.
 const BAUD: u32 = 57_600;
 
-/// A place to find a vehicle at.
+/// An address at which a vehicle can be received.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Endpoint {
-    /// Wait for datagrams at an address.
+    /// Receive datagrams at an address.
     UdpIn(String),
-    /// Send datagrams to an address, and wait for answers.
+    /// Send datagrams to an address, and receive answers.
     UdpOut(String),
     /// Connect to an address.
     Tcp(String),

@@ -1,4 +1,4 @@
-//! Who gets what: the page for its user, nothing for anybody else.
+//! Access: the page for its user, nothing for anyone else.
 
 use std::{
     fs,
@@ -37,7 +37,7 @@ fn the_page_has_its_own_content_security_policy() {
     let head = studio.ask("HEAD", "", &[], "");
     assert_eq!((head.status, head.body.as_str()), (200, ""));
     assert_eq!(head.header("content-length"), page().len().to_string());
-    // Nothing to edit.
+    // There is no file to edit.
     assert_eq!(studio.file().status, 204);
     assert_eq!(studio.save("\"x\"", "text").status, 404);
     assert_eq!(studio.interrupt(), Some(0));
@@ -61,7 +61,7 @@ fn requests_of_others_are_refused() {
         request(&file, authority, &format!("Origin: {own}\r\n")).status,
         200
     );
-    // A name that another page made lead here.
+    // Another page may use a name that resolves to this machine.
     for host in [
         "evil.example",
         &format!("evil.example:{port}"),
@@ -124,11 +124,11 @@ fn requests_of_others_are_refused() {
         fs::read_to_string(folder.path().join("rules.yaml")).unwrap(),
         RULES
     );
-    // None of it made it stop.
+    // The server is still running.
     assert_eq!(studio.file().status, 200);
 }
 
-/// What is sent on the command line of the browser leads to the page once, so that who reads it there comes too late.
+/// The address in the browser's command line redirects to the page once, so that another user who reads it is too late.
 #[test]
 fn the_address_for_the_browser_works_once() {
     let folder = folder(&[]);
@@ -167,7 +167,7 @@ fn the_address_for_the_browser_works_once() {
     assert!(second.body.contains("opened already"), "{}", second.body);
 }
 
-/// Whoever is on the machine can connect, and send a byte now and then.
+/// Any user of the machine can connect and send single bytes slowly.
 #[test]
 fn slow_connections_do_not_block_others() {
     let folder = folder(&[("rules.yaml", RULES)]);
@@ -177,7 +177,7 @@ fn slow_connections_do_not_block_others() {
     for i in 0..200 {
         let mut stream = TcpStream::connect(&studio.authority).unwrap();
         let head = match i % 2 {
-            // In the head, and in a body that is refused.
+            // In the head, and in the body of a refused request.
             0 => "GET / HTTP/1.1\r\n",
             _ => "PUT /wrong/api/file HTTP/1.1\r\nHost: x\r\nContent-Length: 60000000\r\n\r\n",
         };
@@ -185,7 +185,7 @@ fn slow_connections_do_not_block_others() {
         dripping.push(stream);
     }
     for stream in &mut dripping {
-        // Some of them are closed by now.
+        // Some of the connections are closed by now.
         let _ = stream.write_all(b"x");
     }
     assert_eq!(studio.file().status, 200);
@@ -198,7 +198,7 @@ fn slow_connections_do_not_block_others() {
     );
 }
 
-/// However it drips, a request ends.
+/// A request ends, however slowly it is sent.
 #[test]
 fn a_refused_request_is_not_read_for_long() {
     let folder = folder(&[]);

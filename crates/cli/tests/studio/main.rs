@@ -1,4 +1,4 @@
-//! `flagred studio` as a browser, another page and another user meet it.
+//! `flagred studio` as seen by a browser, another page and another user.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
 

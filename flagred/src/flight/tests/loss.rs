@@ -115,7 +115,7 @@ fn several_motors_that_are_unknown_in_turns_are_named() {
     );
 }
 
-/// Calm, then samples at limits without a valid time, then calm.
+/// Calm flight, then samples at limits without a valid time, then calm flight.
 fn around(odd_time_s: impl Fn(i32) -> f64) -> String {
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
     let mut push = |t_s: f64, motors: &[f64; 4]| {

@@ -122,7 +122,7 @@ fn findings_contain_all_numbers() {
     }
 }
 
-/// The names that an author chooses may be anything.
+/// Authors may choose any names.
 #[test]
 fn an_input_without_words_is_described_by_name_and_description() {
     let battery = shipped::flagred_battery();

@@ -1,4 +1,4 @@
-//! Whom the watch believes, and what it does where another one watches too.
+//! Which senders the watch trusts, and how it behaves beside another watch.
 
 use flagred_flightlog::mavlink::dialect::NAMED_VALUE_FLOAT_DATA;
 
@@ -8,7 +8,7 @@ fn address(port: u16) -> Source {
     Some(([192, 0, 2, 1], port).into())
 }
 
-/// Somebody at an address who speaks as a component of a system.
+/// A sender at an address, as a component of a system.
 struct Peer {
     source: Source,
     system: u8,
@@ -54,7 +54,7 @@ fn one_stray_heartbeat_does_not_select_a_vehicle() {
     bench.wait_beating(1, false);
     assert_eq!(bench.followed(), Some(1));
 
-    // One that goes on sending heartbeats, and no motor commands, gives way to the one that has them.
+    // A sender of heartbeats without motor commands is replaced by the one that sends commands.
     let mut bench = Bench::new(&estimator, Some(191));
     let mut vehicle = Peer::new(2, 1, 1);
     for i in 0..20_u32 {
@@ -117,7 +117,7 @@ fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
     assert_eq!(bench.count(|event| matches!(event, Event::Over { .. })), 0);
     assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
 
-    // The first is silent: the flight goes on with the second, and that is told.
+    // The first sender is silent: the flight continues with the second one, and that is reported.
     bench.wait(2.5);
     for i in 0..50 {
         liar.say(&mut bench, &quadrotor(true));
@@ -129,7 +129,7 @@ fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
     );
     assert_eq!(changed, 1);
     assert!(!bench.session.view().unwrap().link_lost);
-    // The one before is the second sender now.
+    // The first sender is now the second one.
     bench.beat(true);
     assert_eq!(bench.session.doubts().second_sender, 301);
     let mut out = Out::default();
@@ -205,8 +205,8 @@ fn parameters_of_other_components_are_ignored() {
     assert_eq!(bench.session.doubts().other_component, 3);
 }
 
-/// Somebody at the vehicle's own address sends two packets for each of the vehicle's: a clock that goes back is no reboot
-/// while the clock before goes on.
+/// A sender at the vehicle's own address sends two packets for each of the vehicle's. A clock that jumps back is not a reboot
+/// while the original clock continues.
 #[test]
 fn a_clock_that_jumps_once_is_not_a_reboot() {
     let estimator = estimator();
@@ -229,7 +229,7 @@ fn a_clock_that_jumps_once_is_not_a_reboot() {
     let latest = bench.session.view().unwrap().latest.unwrap();
     assert!(latest.risk.is_ok() && latest.t_s > 113.0, "{latest:?}");
 
-    // A vehicle that reboots is silent before.
+    // A vehicle that reboots is silent before it sends again.
     bench.wait_beating(3, true);
     for i in 0..5 {
         bench.hear(&servo(1.0 + f64::from(i) * 0.04, [1000; 4]));
@@ -287,7 +287,7 @@ fn the_older_of_two_watches_sends_and_the_younger_takes_over() {
     assert_eq!(bench.count(told(None, true)), 1);
     assert!(said_by(&bench) > before + 10);
 
-    // A younger one does not silence it.
+    // A younger watch does not silence it.
     elder.say(&mut bench, &watch_beat(1.0));
     let before = said_by(&bench);
     bench.hover(30.0, 4.0, 1950);
@@ -312,7 +312,7 @@ fn a_risk_sent_by_the_autopilot_is_repeated_only_on_request() {
     }
 }
 
-/// A link that sends everything back is no other watch.
+/// A link that returns every packet is not another watch.
 #[test]
 fn an_echo_of_the_watch_is_not_taken_for_another_watch() {
     let estimator = estimator();
