@@ -119,8 +119,7 @@ impl Editor {
         found.iter().map(shown).collect()
     }
 
-    /// The completions at `
-    /// ` in a text.
+    /// The completions at `|` in a text.
     fn offered(&mut self, text: &str) -> Vec<String> {
         let offset = text.find('|').unwrap();
         let (uri, text) = ("file:///tmp/offered.yaml", text.replacen('|', "", 1));
