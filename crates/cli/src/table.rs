@@ -499,7 +499,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cell_is_a_number_or_says_why_not() {
+    fn a_cell_is_a_number_or_an_error_with_a_reason() {
         for (text, cell) in [
             ("1.5", Cell::Number(1.5)),
             (" -2e-3\t", Cell::Number(-0.002)),

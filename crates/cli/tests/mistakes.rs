@@ -18,7 +18,7 @@ rules:
 ";
 
 #[test]
-fn mistakes_get_advice_that_helps() {
+fn the_advice_for_mistakes_works() {
     let folder = folder(&[
         ("fan.yaml", FAN),
         ("profile.yaml", "flagred: 1\nname: mine\n"),
@@ -446,7 +446,7 @@ fn outputs_are_compared_with_measured_values() {
 }
 
 #[test]
-fn rows_outside_a_range_are_clamped_where_asked() {
+fn rows_outside_a_range_are_clamped_on_request() {
     let rows = "temperature,humidity,fan\n20,50,-0.9\n41,100,100\n35,90,100\n10,10,0\n15,20,0\n";
     let folder = folder(&[("fan.yaml", FAN), ("rows.csv", rows)]);
     let run = |typed: &str| {

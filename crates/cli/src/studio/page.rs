@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_without_the_page_says_where_it_comes_from() {
+    fn a_program_without_the_page_explains_how_to_get_it() {
         let failure = built_in(&packed("")).map(|page| page.html).unwrap_err();
         let told = failure.to_string();
         assert!(told.contains("without the page") && told.contains("`web/build`"));

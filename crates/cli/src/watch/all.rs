@@ -380,7 +380,7 @@ mod tests {
     };
 
     #[test]
-    fn the_gravest_vehicle_is_on_the_smallest_screen() {
+    fn the_vehicle_in_most_danger_is_on_the_smallest_screen() {
         let estimator = estimator();
         let mut air = Air::new(&estimator);
         let calm: Vec<(u8, bool, [u16; 4])> =

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_endpoint_is_told() {
+    fn invalid_endpoints_are_reported() {
         for text in [
             "",
             "14550",

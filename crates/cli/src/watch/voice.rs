@@ -182,7 +182,7 @@ mod tests {
 
     /// The text may contain names from rule sets.
     #[test]
-    fn a_text_does_nothing_on_a_terminal_and_ends_with_a_whole_character() {
+    fn a_text_is_safe_on_a_terminal_and_ends_with_a_whole_character() {
         let MavMessage::STATUSTEXT(sent) = status(Level::Warn, "a\u{1b}[2J\u{202e}") else {
             panic!("another message");
         };
