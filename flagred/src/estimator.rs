@@ -10,7 +10,7 @@ use fuzzy::{
 
 use crate::{
     board::Plan,
-    cause::{Asked, Cause, Proposition, Propositions},
+    cause::{Cause, Proposition, Propositions, RuleQuery},
     channel::{Channel, Input},
     craft::Craft,
     gap::Filling,
@@ -268,8 +268,8 @@ impl Estimator {
         let outputs = engine.output_names().len();
         let cause = propositions.cause(inputs, risk, outputs, |output, asked, pick| {
             let rule = match asked {
-                Asked::Raises(value) => engine.raised_by(scratch, point, output, value),
-                Asked::Concludes(said) => {
+                RuleQuery::Raises(value) => engine.raised_by(scratch, point, output, value),
+                RuleQuery::Concludes(said) => {
                     engine.concluded_by(scratch, point, self.0.said.get(said)?)
                 }
             };

@@ -26,7 +26,7 @@ use pyo3::{
 };
 
 use crate::{
-    compiled::Asked,
+    compiled::Inputs,
     errors::{data_error, diagnostics, rule_set_error},
     explained_rows::explained_rows,
     explanation::Explanation,
@@ -95,9 +95,9 @@ fn answer<'py>(
     let (py, source) = (rule_set.py(), rule_set.get().source());
     let compiled = source.compiled(py)?;
     match compiled.asked(py, args, named)? {
-        Asked::Numbers(numbers) => compiled.point(py, &numbers, with_reasons),
-        Asked::Arrays(values) => compiled.arrays(py, &values, threads, with_reasons),
-        Asked::Frame(frame) => by_frame(rule_set, frame, threads, with_reasons),
+        Inputs::Numbers(numbers) => compiled.point(py, &numbers, with_reasons),
+        Inputs::Arrays(values) => compiled.arrays(py, &values, threads, with_reasons),
+        Inputs::Frame(frame) => by_frame(rule_set, frame, threads, with_reasons),
     }
 }
 
@@ -422,12 +422,12 @@ impl RuleSet {
         let (py, source) = (slf.py(), slf.get().source());
         let compiled = source.compiled(py)?;
         let numbers = match compiled.asked(py, args, named)? {
-            Asked::Numbers(numbers) => numbers,
-            Asked::Frame(frame) => {
+            Inputs::Numbers(numbers) => numbers,
+            Inputs::Frame(frame) => {
                 let explain = EXPLAIN.import(py, "flagred._frames", "explain")?;
                 return explain.call1((slf, frame));
             }
-            Asked::Arrays(_) => {
+            Inputs::Arrays(_) => {
                 let help = "give a number for each input, or a frame with a column for each input";
                 let message = "arrays are not explained";
                 return Err(data_error(message, Some(help.into())));

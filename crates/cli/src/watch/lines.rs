@@ -9,7 +9,9 @@ use flagred_flightlog::{Vehicle, mavlink::Setup};
 
 use fuzzy::drawing::visible;
 
-use super::session::{Doubt, End, Event, Flown, Left, Lost, Session, Silent, Source, View};
+use super::session::{
+    Doubt, End, Event, FlightSummary, Lost, Session, Silent, Source, StopReason, View,
+};
 use flagred_report::{finding::Teller, words::effective_range};
 
 /// Seconds of the vehicle's clock between two lines with the risk.
@@ -169,12 +171,14 @@ fn another_watch(component: Option<u8>, speaks: bool) -> String {
     format!("{what}: this watch says {so}{help}")
 }
 
-fn over(end: End, flown: &Flown) -> String {
+fn over(end: End, flown: &FlightSummary) -> String {
     let mut text = match end {
         End::Landed => format!("{}: the flight is over", flown.verdict),
         End::Lost(lost) => format!("{}: LOST IN THE AIR, {}", flown.verdict, cause_of(lost)),
-        End::Left(Left::WatchEnded) => format!("{}: the watch ends in the air", flown.verdict),
-        End::Left(Left::SetUpAnew) => format!(
+        End::LeftInAir(StopReason::WatchEnded) => {
+            format!("{}: the watch ends in the air", flown.verdict)
+        }
+        End::LeftInAir(StopReason::SetUpAnew) => format!(
             "{}: the flight so far; motors or limits became known late, the rest is assessed as a flight of its own",
             flown.verdict
         ),

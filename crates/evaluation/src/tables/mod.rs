@@ -11,7 +11,7 @@ use crate::{
     alarms::Verdicts,
     bootstrap::Interval,
     flight::Record,
-    scores::{APART, Evaluated, Scores},
+    scores::{APART, ProfileScores, Scores},
 };
 use profiles::{alarms, reliability, warnings};
 
@@ -142,7 +142,7 @@ fn areas(evaluation: &Evaluation) -> Table {
         false => note,
     };
     columns.extend([column("PR area", 20), column("unknown", 0)]);
-    let row = |(name, estimator): (String, &Evaluated)| {
+    let row = |(name, estimator): (String, &ProfileScores)| {
         let all = &estimator.all;
         let roc = |scores: &Scores| {
             let interval = scores.intervals.map(|i| i.roc);
@@ -183,7 +183,7 @@ fn areas(evaluation: &Evaluation) -> Table {
 fn by(
     title: &str,
     evaluation: &Evaluation,
-    groups: fn(&Evaluated) -> &Vec<(String, Scores)>,
+    groups: fn(&ProfileScores) -> &Vec<(String, Scores)>,
 ) -> Option<Table> {
     let first = groups(evaluation.estimators.first()?);
     if first.len() < 2 {
