@@ -108,7 +108,7 @@ pub enum TuneError {
         outputs: usize,
     },
     /// A name that the model does not have.
-    #[error("the model has no variable and no term `{name}`")]
+    #[error("the rule set has no variable and no term `{name}`")]
     Unknown {
         /// The name.
         name: String,
