@@ -63,7 +63,7 @@ pub enum EstimatorError {
     #[error("the rule set cannot be evaluated everywhere: {0}")]
     Evaluate(#[from] EvaluateError),
     /// The rule set has an input that the profile does not provide.
-    #[error("the profile does not say where input `{input}` of the rule set comes from")]
+    #[error("the profile has no source for input `{input}` of the rule set")]
     NoSource {
         /// The input.
         input: String,

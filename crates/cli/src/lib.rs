@@ -174,7 +174,7 @@ impl Command {
             Command::Validate(arguments) => validate::run(&arguments),
             Command::Evaluate(arguments) => {
                 output::say(
-                    "note: `evaluate` is called `validate` now; this name goes with the next release",
+                    "note: `evaluate` is called `validate` now; the old name is removed in the next release",
                 );
                 validate::run(&arguments)
             }

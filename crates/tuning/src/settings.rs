@@ -117,7 +117,7 @@ pub enum TuneError {
     #[error("nothing may move")]
     NothingMoves,
     /// No input reduces the cross-validation error.
-    #[error("no input tells more about the output than its mean")]
+    #[error("no input predicts the output better than its mean")]
     NoInputHelps,
     /// There are no rows.
     #[error("there are no rows")]

@@ -58,7 +58,7 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
     match event {
         Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),
         Event::Locked { system, address } => format!(
-            "motor commands of vehicle {system} come{}: it is believed, and nobody else in its name",
+            "motor commands of vehicle {system} come{}: it is followed, other senders with its number are ignored",
             from(*address)
         ),
         Event::GivenUp { system } => {
@@ -75,11 +75,11 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             address,
         } => match what {
             Doubt::SecondSender => format!(
-                "something else{} speaks as vehicle {system}: it is not believed",
+                "something else{} sends as vehicle {system}: it is ignored",
                 from(*address)
             ),
             Doubt::OtherComponent => format!(
-                "component {component} of vehicle {system} sends parameters: they are not taken for those of the autopilot"
+                "component {component} of vehicle {system} sends parameters: they are not used as parameters of the autopilot"
             ),
             Doubt::ClockJump => format!(
                 "a time stamp of vehicle {system} jumps while its clock goes on: it is left out"
@@ -168,7 +168,7 @@ fn another_watch(component: Option<u8>, speaks: bool) -> String {
         false => "; `--send-anyway` sends both",
         true => "",
     };
-    format!("{what}: this watch says {so}{help}")
+    format!("{what}: this watch sends {so}{help}")
 }
 
 fn over(end: End, flown: &FlightSummary) -> String {
