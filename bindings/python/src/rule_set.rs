@@ -3,6 +3,7 @@
 use std::sync::{Arc, PoisonError, RwLock};
 
 use flagred_authoring::rewrite::rewritten;
+use flagred_cli::Language;
 use flagred_interchange::{Format, Losses};
 use fuzzy::{
     Findings, Model,
@@ -111,6 +112,16 @@ fn by_frame<'py>(
     static EVALUATE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let evaluate = EVALUATE.import(rule_set.py(), "flagred._frames", "evaluate")?;
     evaluate.call1((rule_set, frame, threads, with_reasons))
+}
+
+/// The language of this name.
+pub(crate) fn language(name: &str) -> Option<Language> {
+    match name {
+        "rust" => Some(Language::Rust),
+        "c" => Some(Language::C),
+        "lua" => Some(Language::Lua),
+        _ => None,
+    }
 }
 
 #[pymethods]
@@ -222,6 +233,11 @@ impl RuleSet {
         lossy: bool,
     ) -> PyResult<(String, Vec<String>)> {
         let source = self.source();
+        if let Some(language) = language(format) {
+            let model = &source.document.model;
+            let code = flagred_cli::export_rules(model, language, lossy);
+            return code.map_err(|error| data_error(error, None));
+        }
         let known = Format::ALL
             .into_iter()
             .find(|known| known.ending() == format);

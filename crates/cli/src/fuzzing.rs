@@ -52,7 +52,8 @@ impl Profile {
 
     /// Returns the Rust and C code that `export` writes; `None` if there is no closed form.
     pub fn exported(&self) -> Option<[String; 2]> {
-        export::texts(&self.0.estimator).ok()
+        let code = |language| export::profile_code(&self.0.estimator, language).ok();
+        Some([code(export::Language::Rust)?, code(export::Language::C)?])
     }
 }
 

@@ -45,6 +45,8 @@ mod tune;
 mod validate;
 mod watch;
 
+#[doc(hidden)] // For the Python package.
+pub use export::{Language, export_profile, export_rules};
 #[doc(hidden)] // For the types of the npm package.
 pub use schema::npm_types;
 
