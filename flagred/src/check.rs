@@ -291,7 +291,7 @@ fn durations(profile: &Profile, at: &Places, found: &mut Vec<Diagnostic>) {
     ] {
         if level.after_s > LONGEST_WAIT_S {
             let message = format!("`{name}` is raised only after {} s", level.after_s);
-            let help = "`after_s` is in seconds; control can be lost within one";
+            let help = "`after_s` is in seconds; control can be lost within one second";
             note(&["verdict", name, "after_s"], message, help);
         }
     }
@@ -349,7 +349,7 @@ fn reached(
         && level.raise.risk_pct.is_none_or(|limit| limit > low)
     {
         let message = format!(
-            "`{name}` is never lowered: it is held down to risk {until}, and the rules give at least {}",
+            "`{name}` is never lowered: it lasts until the risk falls below {until}, but the rules give at least {}",
             shown(low)
         );
         let help = "raise `until` above what the rules give at rest";
@@ -379,12 +379,12 @@ fn signal(
             }
             _ if is_angle(a) != is_angle(b) => {
                 let (angle, other) = if is_angle(a) { (a, b) } else { (b, a) };
-                Some(format!("`{angle}` is in degrees, and `{other}` is not"))
+                Some(format!("`{angle}` is in degrees, but `{other}` is not"))
             }
             _ => None,
         };
         if let Some(message) = message {
-            let help = "a difference is of two signals of one unit; the names of angles in degrees end in `_deg`";
+            let help = "a difference needs two signals of the same unit; the names of angles in degrees end in `_deg`";
             return Some(Diagnostic::error("unit", place, message).help(help));
         }
     }
@@ -445,7 +445,8 @@ fn signal(
         "input `{}` goes from {} to {}, but its values are from {low} to {high}",
         input.name, variable.low, variable.high
     );
-    let help = "motors are shares of their range, from 0 to 1; write the terms of the input so";
+    let help =
+        "motor commands are fractions of their range, from 0 to 1; write the terms of the input so";
     Some(Diagnostic::warning("unit", place, message).help(help))
 }
 

@@ -104,7 +104,7 @@ pub enum EstimatorError {
     },
     /// The output keeps its previous value where no rule fires, which conflicts with filling gaps.
     #[error(
-        "output `{output}` keeps its previous value where no rule fires, which a risk does not"
+        "output `{output}` keeps its previous value where no rule fires, which is not allowed for a risk"
     )]
     KeepsPrevious {
         /// The output.

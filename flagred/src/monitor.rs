@@ -62,7 +62,7 @@ impl Unknown {
                 format!("the command of motor {} is unknown", motor + 1)
             }
             Unknown::CommandOutside { motor, command } => format!(
-                "the command of motor {} is `{command}`, and a command is a fraction from 0 to 1",
+                "the command of motor {} is `{command}`, but a command is a fraction from 0 to 1",
                 motor + 1
             ),
         }
@@ -74,16 +74,16 @@ impl Unknown {
 #[non_exhaustive]
 pub enum MonitorError {
     /// The profile needs a signal that the samples do not have.
-    #[error("the profile needs the signal `{signal}`, which the flight does not carry")]
+    #[error("the profile needs the signal `{signal}`, which the flight does not contain")]
     NoSignal {
         /// The signal.
         signal: String,
     },
     /// The profile reads the motors, but the flight has none.
-    #[error("the flight has no motors, and the profile reads them")]
+    #[error("the profile reads motors, but the flight has none")]
     NoMotors,
     /// The profile reads a motor that the flight does not have.
-    #[error("the profile needs motor {motor}, and the flight has {motors} motors")]
+    #[error("the profile needs motor {motor}, but the flight has only {motors} motors")]
     FewMotors {
         /// The number of the motor, from 1.
         motor: usize,

@@ -28,7 +28,9 @@ pub enum NoPlan {
         output: String,
     },
     /// The profile has several risks.
-    #[error("the profile has the risks `{output}` and `{other}`, but exported code has one")]
+    #[error(
+        "the profile has the risks `{output}` and `{other}`, but exported code supports only one"
+    )]
     SeveralRisks {
         /// The first risk.
         output: String,
@@ -43,11 +45,11 @@ impl NoPlan {
         match self {
             NoPlan::NoClosedForm { .. } => {
                 "the defuzzifiers have a closed form with `implication: minimum` or `product` and `aggregation: maximum` or \
-                 `sum` (maxima: `maximum` only), over terms that are no functions, without `samples`; those of Takagi-Sugeno \
+                 `sum` (maxima: `maximum` only), over terms that are not functions, without `samples`; those of Takagi-Sugeno \
                  and Tsukamoto have one always"
             }
             NoPlan::KeepsPrevious { .. } => {
-                "give the output a value for where no rule fires, as `when_no_rule_fires: 0`, or leave that key out"
+                "set `when_no_rule_fires` to a number, such as 0, or leave that key out"
             }
             NoPlan::SeveralRisks { .. } => {
                 "write a profile for each risk, and run a monitor of each: the findings are the same"

@@ -19,7 +19,10 @@ impl<'py> Arrays<'py> {
         let alike = ALIKE.import(py, "flagred._arrays", "alike")?;
         let made: Vec<Bound<'py, PyAny>> = alike.call1((PyList::new(py, values)?,))?.extract()?;
         Self::of(&made).ok_or_else(|| {
-            crate::errors::data_error("the inputs are no arrays of numbers of one shape", None)
+            crate::errors::data_error(
+                "the inputs must be arrays of numbers of the same shape",
+                None,
+            )
         })
     }
 

@@ -88,7 +88,7 @@ impl Compiled {
             Some(_) => {
                 let help = "write `model(8, 9)` or `model(service=8, food=9)`".to_owned();
                 return Err(data_error(
-                    "values are given by place and by name",
+                    "values are given both by position and by name",
                     Some(help),
                 ));
             }
@@ -131,7 +131,7 @@ impl Compiled {
         let message = format!("input `{}` has no value", missing.unwrap_or_default());
         Err(data_error(
             message,
-            Some("None and NaN say that it is unknown".into()),
+            Some("use None or NaN for an unknown value".into()),
         ))
     }
 
@@ -258,7 +258,7 @@ impl Compiled {
                 }
                 (Some(_), Some(_)) => {
                     let message = format!("the table has the column `{name}` more than once");
-                    let help = "rename all but the one that is meant".to_owned();
+                    let help = "rename all of them except one".to_owned();
                     Err(data_error(message, Some(help)))
                 }
             }

@@ -68,7 +68,7 @@ impl<'e> Evaluator<'e> {
         columns: &[&[f64]],
     ) -> PyResult<Vec<Columns>> {
         if columns.is_empty() {
-            let message = "the rule set has no inputs, so rows say nothing to it";
+            let message = "the rule set has no inputs, so it takes no rows";
             return Err(data_error(message, Some("call it without values".into())));
         }
         let outputs = self.engine.output_names().len();

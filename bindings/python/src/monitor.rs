@@ -128,7 +128,7 @@ impl MonitorData {
         {
             return Err(data_error(
                 format!(
-                    "the command of motor {} is `{}`, and a command is a fraction from 0 to 1",
+                    "the command of motor {} is `{}`, but a command is a fraction from 0 to 1",
                     motor + 1,
                     commands[motor]
                 ),
@@ -146,7 +146,7 @@ impl MonitorData {
         ] {
             if expected != given {
                 return Err(data_error(
-                    format!("{expected} {what} are followed, and {given} were given"),
+                    format!("expected {expected} {what}, but {given} were given"),
                     None,
                 ));
             }

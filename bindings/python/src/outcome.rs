@@ -43,7 +43,7 @@ impl Outcome {
             coverage,
             dominant_rule,
             clamped,
-            state: state.ok_or_else(|| data_error("no state of an outcome", None))?,
+            state: state.ok_or_else(|| data_error("not a state of an outcome", None))?,
         })
     }
 

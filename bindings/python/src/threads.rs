@@ -31,7 +31,7 @@ pub(crate) fn count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
             .repr()
             .map_or_else(|_| "?".into(), |text| text.to_string());
         let message = format!(
-            "`threads` is {}; it must be a whole number from 1",
+            "`threads` is {}; it must be a whole number of at least 1",
             quoted(&shown)
         );
         data_error(
@@ -119,7 +119,9 @@ fn listening<T: Send + 'static>(
             Ok(done) => return Ok(done),
             Err(mpsc::RecvTimeoutError::Timeout) => py.check_signals().or_else(&mut heard)?,
             Err(mpsc::RecvTimeoutError::Disconnected) => {
-                return Err(PyRuntimeError::new_err("the work ended without a result"));
+                return Err(PyRuntimeError::new_err(
+                    "the calculation ended without a result",
+                ));
             }
         }
     }

@@ -49,7 +49,7 @@ def test_arrays_that_are_not_aligned_are_copied():
 @pytest.mark.parametrize("threads", [-1, 1.5, "two", 2**70])
 def test_threads_are_a_whole_number(threads):
     model = flagred.loads(ONE_INPUT)
-    told = "`threads` is .*; it must be a whole number from 1"
+    told = "`threads` is .*; it must be a whole number of at least 1"
     for call in (model, model.evaluate):
         with pytest.raises(ValueError, match=told):
             call(np.arange(5.0), threads=threads)

@@ -30,7 +30,7 @@ pub fn rule_set(begun_with: &str, mut model: Model, step: Step) -> Result<String
     match fuzzy::yaml::parse(&text)?.model == model {
         true => Ok(text),
         false => {
-            let message = "the text of the new rule set means another one";
+            let message = "the text of the new rule set does not read back as the same rule set";
             let finding = Diagnostic::error("read-back", 0..0, message);
             Err(Findings::locate(vec![finding], &text))
         }
@@ -137,7 +137,7 @@ fn edited_since(document: &Document) -> Option<Diagnostic> {
         document.spans.provenance.clone(),
         format!("the rule set was edited after `{}` made it", last.command),
     );
-    let help = "`provenance` describes an earlier version of the rule set; run the command again, or add a step of your own";
+    let help = "`provenance` describes an earlier version of the rule set; run the command again, or add a step that describes your edit";
     (!is_same).then(|| finding.help(help))
 }
 

@@ -63,7 +63,7 @@ pub fn add_variable(
     let rules = readable(document)?;
     check_name(name)?;
     if variables(rules).any(|known| known.name == name) {
-        return Err(format!("there is a `{name}` already"));
+        return Err(format!("the name `{name}` is already used"));
     }
     if !(low.is_finite() && high.is_finite() && low < high) {
         return Err("the range needs two numbers, the smaller one first".into());
@@ -131,7 +131,7 @@ pub fn add_term(document: &Document, variable: usize, name: &str) -> Result<Vec<
         .nth(variable)
         .ok_or("there is no such variable")?;
     if known.terms.iter().any(|term| term.name == name) {
-        return Err(format!("there is a `{name}` already"));
+        return Err(format!("the name `{name}` is already used"));
     }
     let text = document.text();
     let node = variable_node(document, rules, variable).ok_or(UNREADABLE)?;
@@ -404,9 +404,7 @@ fn verified(
 }
 
 fn readable(document: &Document) -> Result<&Partial, String> {
-    let rules = document
-        .rules()
-        .ok_or("there is no rule set that can be read")?;
+    let rules = document.rules().ok_or("the rule set cannot be read")?;
     match rules.names_unread {
         true => Err("a rule or a term cannot be read; correct it first".into()),
         false => Ok(rules),

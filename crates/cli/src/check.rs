@@ -122,7 +122,11 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                     write_alone(&mut out, &file, alone)?;
                     let reads_motors = profile.as_ref().is_none_or(Profile::reads_motors);
                     if !reads_motors {
-                        writeln!(out, "{}: reads no motor, and needs none", visible(&file))?;
+                        writeln!(
+                            out,
+                            "{}: the profile reads no motors, so logs without motors can be assessed",
+                            visible(&file)
+                        )?;
                     }
                 }
                 writeln!(out, "{}: {}", visible(&file), summary(findings))?;

@@ -111,7 +111,9 @@ impl NoText {
             Some((line, byte)) => {
                 format!("`{file}` is not UTF-8: line {line} contains the byte {byte:02X}")
             }
-            None => format!("`{file}` is not UTF-16, which its first two bytes announce"),
+            None => format!(
+                "`{file}` is not valid UTF-16, although it begins with a UTF-16 byte order mark"
+            ),
         });
         failure.help(match self.at {
             // Smaller bytes are control characters in Latin-1, so the file is probably not text in it.

@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let simplified = simplify(model, &rows, &settings).map_err(|error| {
         let help = match error {
             SimplifyError::NoRows => {
-                "the tables have a header and no rows; leave out `--rows-only`"
+                "the tables contain no rows; leave out `--rows-only`"
             }
             SimplifyError::TooManyRules { .. } => {
                 "learn it with fewer rules, such as with a higher `--min-support`, or split it by outputs"

@@ -117,8 +117,8 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
         Evaluation::of_flights(estimators, arguments.horizon, records, left_out, done)
     });
     let evaluation = evaluation.ok_or_else(|| {
-        Failure::unreadable("there is no step to evaluate in these files").help(
-            "`flagred inspect` shows what is in a log: it takes motors, attitude, and 20 s in the air",
+        Failure::unreadable("there are no steps to evaluate in these files").help(
+            "a log needs motor commands, attitude, and 20 s in the air; `flagred inspect` shows what it contains",
         )
     })?;
     Ok((evaluation, exit))

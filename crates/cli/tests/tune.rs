@@ -123,7 +123,7 @@ fn a_checkpoint_is_the_starting_point_unless_it_is_of_another_rule_set() {
         &[("best.yaml", &better)],
         &["--checkpoint", "best.yaml", "--no-validation"],
     );
-    assert!(out.contains("begun       with the checkpoint\n"), "{out}");
+    assert!(out.contains("started     with the checkpoint\n"), "{out}");
     assert!(out.contains("moved       heat.cool peak 19 -> 20"), "{out}");
     let other = FAN.replace("hot", "warm");
     let (code, _, err, written) = tune(&[("best.yaml", &other)], &["--checkpoint", "best.yaml"]);
@@ -139,7 +139,7 @@ fn a_start_that_is_not_monotone_is_refused() {
     let (code, _, err, _) = tune(&[], &["--falling", "heat"]);
     assert_eq!(code, Some(3));
     assert!(
-        err.contains("the output is not decreasing in `heat` to begin with"),
+        err.contains("the output is not decreasing in `heat` before tuning"),
         "{err}"
     );
 }
@@ -224,7 +224,7 @@ fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
     assert_eq!(code, Some(0), "{err}");
     assert!(
         out.contains(
-            "at bounds   speed.slow, speed.fast: the rows ask for values beyond the range;"
+            "at bounds   speed.slow, speed.fast: the rows require values beyond the range;"
         ),
         "{out}"
     );
@@ -480,7 +480,7 @@ fn a_header_without_names_is_reported() {
     let (code, _, err, _) = tune(&[("rows.csv", ",,\n1,2,3\n")], &[]);
     assert_eq!(code, Some(3));
     assert!(
-        err.contains("the header of `rows.csv` names none of its 3 columns"),
+        err.contains("the header of `rows.csv` does not name its 3 columns"),
         "{err}"
     );
     let (code, _, err, _) = tune(&[("rows.csv", "")], &[]);

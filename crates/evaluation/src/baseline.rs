@@ -107,7 +107,7 @@ impl Baseline {
                 per_motor: Some(PerMotor::Min),
                 ..of(
                     "least_margin",
-                    "mean margin of each motor over 2 s, of the motor with the least",
+                    "smallest mean margin of a motor over 2 s",
                     of_each(Statistic::Mean, Signal::MotorMargin),
                     false,
                 )
@@ -126,7 +126,7 @@ impl Baseline {
             ),
             of(
                 "true_wind",
-                "the wind as it was, where it is known",
+                "the true wind, where it is known",
                 last("wind_m_s"),
                 true,
             ),

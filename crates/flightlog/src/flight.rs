@@ -59,7 +59,7 @@ pub enum VehicleKind {
 
 impl VehicleKind {
     /// Advice for a name that is not one of a kind.
-    pub(crate) const NAMES_HELP: &str = "there are `multirotor`, `helicopter`, `plane`, `VTOL plane`, `rover`, `submarine` and `other vehicle`";
+    pub(crate) const NAMES_HELP: &str = "write `multirotor`, `helicopter`, `plane`, `VTOL plane`, `rover`, `submarine` and `other vehicle`";
 
     /// The kind that is displayed as `name`, in small or capital letters.
     pub(crate) fn from_name(name: &str) -> Option<Self> {

@@ -136,7 +136,7 @@ mod tests {
         let gaps = serde_json::to_value(flight.gaps()).unwrap();
         assert_eq!(
             gaps[0]["reason"],
-            "attitude and its set point are not both in the log"
+            "the attitude or its set point is not in the log"
         );
     }
 }

@@ -58,7 +58,7 @@ pub enum ClusterError {
     #[error("row {0} has an unknown value")]
     Unknown(usize),
     /// Too few different rows.
-    #[error("{clusters} clusters need as many different rows, and there are {rows}")]
+    #[error("{clusters} clusters need as many distinct rows, but there are {rows}")]
     Rows {
         /// The clusters.
         clusters: usize,
@@ -300,7 +300,7 @@ mod tests {
         assert_eq!(of(&[1.0, f64::NAN], 2), "row 1 has an unknown value");
         assert_eq!(
             of(&[1.0, 1.0, 2.0], 3),
-            "3 clusters need as many different rows, and there are 2"
+            "3 clusters need as many distinct rows, but there are 2"
         );
     }
 }

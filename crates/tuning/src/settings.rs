@@ -114,7 +114,7 @@ pub enum TuneError {
         name: String,
     },
     /// All parameters are fixed, or there are none.
-    #[error("nothing may move")]
+    #[error("no number is allowed to change")]
     NothingMoves,
     /// No input reduces the cross-validation error.
     #[error("no input predicts the output better than its mean")]
@@ -129,7 +129,7 @@ pub enum TuneError {
         what: &'static str,
     },
     /// There are more candidate columns than a search accepts.
-    #[error("{columns} columns are more than {most}")]
+    #[error("{columns} columns exceed the limit of {most}")]
     TooManyColumns {
         /// The number of columns.
         columns: usize,
@@ -166,10 +166,10 @@ pub enum TuneError {
         high: f64,
     },
     /// Not both truths, 0 and 1, occur in the rows.
-    #[error("all rows have the same truth")]
+    #[error("all rows have the same outcome")]
     OneClass,
     /// The model violates [`Settings::monotone`] before tuning.
-    #[error("the output is not {direction} in `{input}` to begin with")]
+    #[error("the output is not {direction} in `{input}` before tuning")]
     NotMonotone {
         /// The input.
         input: String,

@@ -122,7 +122,7 @@ impl core::fmt::Display for SetupError {
             }
             SetupError::Plan(damaged) => damaged.fmt(f),
             SetupError::Geometry => f.write_str(
-                "the geometry does not tell roll, pitch, yaw and thrust of all motors apart",
+                "the geometry does not distinguish roll, pitch, yaw and thrust of the motors",
             ),
         }
     }

@@ -124,7 +124,7 @@ fn at(one: &Alone) -> String {
 fn help(one: &Alone) -> String {
     let term = one.term.as_deref().unwrap_or("TERM");
     format!(
-        "rules are votes, and the other inputs outvote it: let rules with `{input} IS {term}` conclude an output of its own, such as `{input}_risk`, and name that output in `other_risks`",
+        "the rules about the other inputs outweigh it: let rules with `{input} IS {term}` conclude an output of its own, such as `{input}_risk`, and name that output in `other_risks`",
         input = one.input
     )
 }

@@ -108,7 +108,7 @@ pub enum Reason {
     },
     /// No moment of the flight is judged, because it ended within the first seconds after take-off.
     #[error(
-        "{in_air_s:.1} s are too short: nothing is judged in the first {quiet_s} s and just before the end"
+        "{in_air_s:.1} s in the air are too short: the first {quiet_s} s and the end of a flight are not judged"
     )]
     TooShort {
         /// The time in the air, in seconds.
@@ -117,12 +117,12 @@ pub enum Reason {
         quiet_s: f64,
     },
     /// There were too few samples in the air.
-    #[error("there is hardly any sample of the flight")]
+    #[error("the flight has too few samples")]
     NoSamples,
     /// The samples of a flight without motors are further apart than the profile's `longest_gap_s`, so that each
     /// follows a gap.
     #[error(
-        "the samples are {step_s} s apart, and the profile takes more than {longest_gap_s} s for a gap"
+        "the samples are {step_s} s apart, but the profile counts more than {longest_gap_s} s as a gap"
     )]
     SamplesFarApart {
         /// The distance between most of them, in seconds.
@@ -181,7 +181,7 @@ impl Reason {
             #[cfg(feature = "flightlog")]
             Reason::Log(gap) => gap.help(),
             Reason::Monitor(MonitorError::NoSignal { .. }) => Some(
-                "`flagred inspect` lists the signals that a log carries; `if_missing` of an input is its value on a vehicle that never sends it",
+                "`flagred inspect` lists the signals of a log; `if_missing` of an input is its value on a vehicle that never sends it",
             ),
             Reason::RiskUnknown { help, .. } => *help,
             Reason::MotorUnknown { command, .. } => Some(match command {

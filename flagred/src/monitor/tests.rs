@@ -423,7 +423,7 @@ fn an_unknown_motor_makes_the_risk_unknown_and_rounding_does_not() {
     };
     assert_eq!(
         why.explain(&profile()),
-        "the command of motor 2 is `1500`, and a command is a fraction from 0 to 1"
+        "the command of motor 2 is `1500`, but a command is a fraction from 0 to 1"
     );
 }
 
@@ -513,7 +513,7 @@ fn a_motor_that_the_vehicle_lacks_is_reported_when_the_monitor_is_created() {
     let refused = Monitor::new(&estimator, Craft::new(4)).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "the profile needs motor 5, and the flight has 4 motors"
+        "the profile needs motor 5, but the flight has only 4 motors"
     );
     assert!(Monitor::new(&estimator, Craft::new(5)).is_ok());
 

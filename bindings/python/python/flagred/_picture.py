@@ -50,7 +50,7 @@ def plot_map(map: DecisionMap, ax: Any | None) -> Any:
         return Picture(map.svg())
     axes = list(map.axes.items())
     if len(axes) > 2:
-        raise DataError(f"a picture has one or two axes, and the map has {len(axes)}")
+        raise DataError(f"a picture has one or two axes, but the map has {len(axes)}")
     ax.set_xlabel(axes[0][0])
     if len(axes) == 1:
         ax.plot(axes[0][1], map.values)

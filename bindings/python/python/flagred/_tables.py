@@ -59,7 +59,7 @@ def column_of(data: Any, name: str) -> Any:
         listed = ", ".join(f"`{column}`" for column in there)
         raise DataError(f"the data have no column `{name}`\n  help: {f'the columns are {listed}' if there else 'they have no columns'}")
     if there.count(name) > 1:
-        raise DataError(f"the data have the column `{name}` more than once\n  help: rename all but the one that is meant")
+        raise DataError(f"the data have the column `{name}` more than once\n  help: rename all of them except one")
     return data[name]
 
 

@@ -68,7 +68,7 @@ def assert_map(model: Model, path: str | os.PathLike[str], *, points: int = 11) 
     inputs = [_column(columns, name, path) for name in model.inputs]
     names = [name for name in model.outputs if name in columns]
     if not names:
-        raise DataError(f"`{path}` has no column of an output: {', '.join(model.outputs)}")
+        raise DataError(f"`{path}` has no column for an output: {', '.join(model.outputs)}")
     now = _evaluate(model, inputs)
     for name in names:
         _compare(model, str(path), name, inputs, columns[name], now[name])

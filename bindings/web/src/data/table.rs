@@ -41,7 +41,7 @@ impl Table {
         let broken = |error: csv::Error| {
             (
                 format!("cannot be read: {error}"),
-                "the file must be CSV text, a header first".into(),
+                "the file must be CSV text that begins with a header".into(),
             )
         };
         let names: Vec<String> = reader
@@ -67,7 +67,7 @@ impl Table {
         match records.is_empty() {
             true => Err((
                 "there are no rows".into(),
-                "the first line names the columns, the lines below it hold the rows".into(),
+                "write the names of the columns in the first line, and the rows below it".into(),
             )),
             false => Ok(Table { names, records }),
         }
@@ -82,7 +82,7 @@ impl Table {
                 let meant = suggest(&variable.name, names)
                     .map_or(String::new(), |meant| format!("{meant}; "));
                 let help = format!(
-                    "{meant}rename the column to the name of the variable: it has {}",
+                    "{meant}rename a column to the name of the variable; the columns are {}",
                     self.names.join(", ")
                 );
                 (format!("no column `{}`", variable.name), help)

@@ -119,7 +119,7 @@ fn shipped_text(name: &str) -> Result<String, JsError> {
 
 /// Fails, because a text has no files next to it.
 fn no_file(path: &Path) -> Result<String, String> {
-    Err(format!("`{}` cannot be read here", path.display()))
+    Err(format!("`{}` cannot be read", path.display()))
 }
 
 fn refusal<E: std::fmt::Display>(error: LoadError<E>) -> JsError {

@@ -71,7 +71,7 @@ pub fn moved(
     let handles = place.handles();
     let (grip, handle) = handles.get(handle).ok_or("there is no such point")?;
     if !(x.is_finite() && degree.is_finite()) {
-        return Err("a point is moved to a finite number".into());
+        return Err("a point can only be moved to a finite number".into());
     }
     let decimals = place.decimals();
     let to = rounded(x, decimals).clamp(handle.low, handle.high);

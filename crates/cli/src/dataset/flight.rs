@@ -20,14 +20,14 @@ const BEFORE_END_S: f64 = 1.0;
 
 pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     let names = plan.profile.signals();
-    let flight = open_complete(log, &names, "makes no rows")?;
+    let flight = open_complete(log, &names, "gives no rows")?;
     let said = |key: &str| header(&flight, key);
     let carried = log::carried(&flight, &names);
     if let Some(lacking) = names.iter().find(|name| !carried.contains(name)) {
         return Err(Failure::unreadable(format!(
-            "`{log}` makes no rows: it does not carry the signal `{lacking}`"
+            "`{log}` gives no rows: it does not contain the signal `{lacking}`"
         ))
-        .help("`flagred inspect` lists the signals a log carries"));
+        .help("`flagred inspect` lists the signals of a log"));
     }
     let errors: Vec<(f64, Attitude)> = flight.attitudes().collect();
     let mut made = Rows {
@@ -73,8 +73,9 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
         }
     }
     if made.rows.is_empty() {
-        made.notes
-            .push("no row: too short a time in the air, or nothing known in it".to_owned());
+        made.notes.push(
+            "no rows: the time in the air is too short, or its values are unknown".to_owned(),
+        );
     } else if refused > 0 {
         made.notes.push(format!(
             "{refused} rows left out: an input or the attitude is unknown"

@@ -156,7 +156,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     out.flush()?;
     if written == 0 && exit == Exit::Clean {
-        return Err(Failure::unreadable("no row could be made of these flights"));
+        return Err(Failure::unreadable("these flights give no rows"));
     }
     drop(out);
     if let Some(output) = output {

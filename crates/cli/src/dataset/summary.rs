@@ -45,7 +45,7 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
                 "input `{}` cannot be computed from a table of flights",
                 input.name
             ))
-            .help("make its rows from flight logs")
+            .help("create the rows from flight logs")
         })?;
         for column in recipe.columns {
             table.header.require(column, help)?;

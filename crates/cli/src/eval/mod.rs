@@ -98,7 +98,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let output = files.output(&arguments.output, Replace::Yes)?;
     if is_table(&arguments.model) && !is_table(&arguments.points) {
         let (model, points) = (arguments.model.display(), arguments.points.display());
-        let message = format!("`{model}` is a table, and the rule set comes first");
+        let message = format!("`{model}` is a table, but the rule set comes first");
         return Err(Failure::usage(message).help(format!("flagred eval {points} {model}")));
     }
     let engine = rule_set::load(&arguments.model)?;

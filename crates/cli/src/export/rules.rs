@@ -52,7 +52,7 @@ pub(super) fn code(
     for output in &mut model.outputs {
         if let Some(sampling) = output.samples.take_if(|_| lossy) {
             warnings.push(format!(
-                "output `{}` is exact, and not of {} samples",
+                "output `{}` is computed exactly, not from {} samples",
                 output.variable.name, sampling.samples
             ));
         }
@@ -63,7 +63,7 @@ pub(super) fn code(
     let rules = plan::rules(&engine).map_err(|refused| {
         let sampled = model.outputs.iter().any(|output| output.samples.is_some());
         let help = match sampled {
-            true => "`--lossy` leaves `samples` out: the value is exact then",
+            true => "`--lossy` drops `samples`: the output is then computed exactly",
             false => refused.help(),
         };
         Failure::unreadable(format!("`{name}`: {refused}")).help(help)
@@ -73,7 +73,7 @@ pub(super) fn code(
         return Err(Failure::unreadable(format!(
             "`{name}`: an evaluation takes {stack} bytes, which is too much for a stack"
         ))
-        .help("in C the memory is lent"));
+        .help("in C, the caller provides the memory"));
     }
     let text = match language {
         Language::Rust => rust::function(&rules, &heading(model, &rules, "--rust", stack)),
@@ -82,8 +82,10 @@ pub(super) fn code(
             c::rules(&rules, &model.name, &heading)
         }
         Language::Lua => {
-            return Err(Failure::usage("a script for ArduPilot is a whole profile")
-                .help("export a profile as Lua; rule sets as Rust or C"));
+            return Err(
+                Failure::usage("a script for ArduPilot is written from a profile")
+                    .help("export a profile as Lua, or the rule set as Rust or C"),
+            );
         }
     };
     Ok((text, warnings))

@@ -283,11 +283,12 @@ fn failure(arguments: &Arguments, names: &[String], error: &TuneError) -> Failur
     let failure = Failure::unusable(format!("`{target}`"), error);
     match error {
         TuneError::NoWeight => failure.help("give rows a weight above 0, or leave out `--weight`"),
-        TuneError::NoInputHelps => failure
-            .help("give columns that have to do with it, more rows, or a smaller `--min-gain`"),
-        TuneError::TooManyColumns { .. } => failure.help(
-            "name those that may be inputs with `--input`, or leave some out with `--ignore`",
-        ),
+        TuneError::NoInputHelps => {
+            failure.help("add columns that are related to it, add rows, or lower `--min-gain`")
+        }
+        TuneError::TooManyColumns { .. } => {
+            failure.help("select the inputs with `--input`, or exclude columns with `--ignore`")
+        }
         TuneError::Unknown { name } => {
             failure.help_if(suggest(name, names.iter().map(String::as_str)))
         }

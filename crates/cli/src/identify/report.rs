@@ -47,7 +47,7 @@ pub(super) fn words(
     outcome: &Outcome,
 ) -> std::io::Result<()> {
     left_out::rows(out, outcome.rows, &outcome.refused)?;
-    writeln!(out, "columns     {} looked at", outcome.columns)?;
+    writeln!(out, "columns     {} examined", outcome.columns)?;
     for name in outcome.without_numbers.iter().take(SHOWN) {
         writeln!(out, "            `{}` contains no number", visible(name))?;
     }
@@ -75,8 +75,8 @@ pub(super) fn words(
     }
     let missing = match identified.without_rows {
         0 => String::new(),
-        1 => "; 1 combination of terms without rows has none".to_owned(),
-        count => format!("; {count} combinations of terms without rows have none"),
+        1 => "; none for 1 combination of terms without rows".to_owned(),
+        count => format!("; {count} combinations of terms without rows have no rule"),
     };
     let inputs = identified.columns.len();
     writeln!(

@@ -120,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let learned = learner.finish();
     if learned.model.rules.is_empty() {
-        let message = format!("no rule is left from {} rows", rows.len());
+        let message = format!("no rule was learned from {} rows", rows.len());
         return Err(
             Failure::usage(message).help("lower `--min-support` and `--min-degree`, or add rows")
         );

@@ -84,7 +84,7 @@ pub(super) fn words(
         let holds = if found.is_empty() { "yes" } else { "no" };
         writeln!(
             out,
-            "monotone   {holds}; {} rules have another consequent for it",
+            "monotone   {holds}; the consequents of {} rules were changed for this",
             learned.moved
         )?;
         for found in found {

@@ -38,7 +38,7 @@ pub(super) fn against(path: &Path, evaluated: &MapSource) -> Result<Exit, Failur
     let outputs: Vec<(usize, &str, usize)> = outputs.collect();
     if outputs.is_empty() {
         let outputs = evaluated.engine.output_names();
-        let message = format!("`{}` has no column of an output", table.header.file);
+        let message = format!("`{}` has no column for an output", table.header.file);
         let known = fuzzy::diagnostic::suggest("", outputs).unwrap_or_default();
         return Err(Failure::unreadable(message).help(format!("{known}; {help}")));
     }

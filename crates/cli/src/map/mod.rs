@@ -199,7 +199,8 @@ pub(crate) fn points_along(inputs: usize) -> usize {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut held = BTreeSet::new();
     if let Some((name, _)) = arguments.hold.iter().find(|(name, _)| !held.insert(name)) {
-        return Err(Failure::usage(format!("`{name}` is held twice")).help("hold each input once"));
+        return Err(Failure::usage(format!("`{name}` has two values"))
+            .help("use `--hold` once for each input"));
     }
     let read = [&arguments.model].into_iter().chain(&arguments.check);
     let mut files = Files::reading(read)?;
@@ -212,7 +213,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let shown = evaluated.engine.model().outputs.get(evaluated.output);
     if let Some(shown) = shown.filter(|shown| shown.keeps_previous()) {
         output::say(&format!(
-            "note: `{}` keeps its previous value where no rule fires; a map has none before its cells",
+            "note: `{}` keeps its previous value where no rule fires; the cells of a map have no previous value",
             visible(&shown.variable.name)
         ));
     }
@@ -242,7 +243,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         None => print(output.as_ref(), &map_text(&slice, painted))?,
         Some(svg) if arguments.surface => {
             let surface = surface_svg(&slice).ok_or_else(|| {
-                Failure::usage("`--surface` needs two inputs, and one is left")
+                Failure::usage("`--surface` needs two inputs, but only one is left")
                     .help("without `--surface`, the picture of one input is a curve")
             })?;
             svg.write(&surface)?;
@@ -299,8 +300,8 @@ fn evaluate(arguments: &Arguments) -> Result<MapSource, Failure> {
         None => profile.map(|profile| profile.gap.method),
     };
     if method.is_none() && arguments.coverage_below.is_some() {
-        let message = "`--coverage-below` needs an interpolation, and there is none";
-        return Err(Failure::usage(message).help("choose one with `--fill`"));
+        let message = "`--coverage-below` has no effect without interpolation";
+        return Err(Failure::usage(message).help("choose an interpolation with `--fill`"));
     }
     let settings = |method| {
         let mut settings = GapSettings::default();

@@ -49,7 +49,7 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes,
             && fixed.get(input).copied().flatten().is_some()
         {
             return Err(
-                Failure::usage(format!("`--{axis}` names an input that `--hold` holds"))
+                Failure::usage(format!("`--{axis}` names an input that `--hold` fixes"))
                     .help("leave one of the two out"),
             );
         }

@@ -74,7 +74,7 @@ impl<S: Read> Request<S> {
             let mut parsed = httparse::Request::new(&mut headers);
             let status = parsed.parse(&bytes).map_err(|error| match error {
                 httparse::Error::TooManyHeaders => Status::HEAD_TOO_LARGE.says("too many headers"),
-                error => Status::BAD_REQUEST.says(&format!("no request: {error}")),
+                error => Status::BAD_REQUEST.says(&format!("the request cannot be read: {error}")),
             })?;
             if let httparse::Status::Complete(length) = status {
                 let headers = parsed.headers.iter().map(|header| {

@@ -131,8 +131,7 @@ impl Server {
     fn lead(&self) -> Result<Response<'_>, Refusal> {
         if self.is_used.swap(true, Ordering::Relaxed) {
             return Err(Status::NOT_FOUND.says(
-                "this address was opened already; take the one that `flagred studio` printed, \
-                 and end `flagred studio` where it was not you who opened this one",
+                "this address was already opened; use the one that `flagred studio` printed. If you did not open it yourself, stop `flagred studio`",
             ));
         }
         Ok(Response {
@@ -219,7 +218,8 @@ fn failed(failure: Failure) -> Refusal {
 /// Returns a random secret, in digits and letters.
 fn secret() -> Result<String, Failure> {
     let mut bytes = [0; 16];
-    getrandom::fill(&mut bytes)
-        .map_err(|error| Failure::unreadable(format!("there are no random numbers: {error}")))?;
+    getrandom::fill(&mut bytes).map_err(|error| {
+        Failure::unreadable(format!("the system provides no random numbers: {error}"))
+    })?;
     Ok(digits(&bytes))
 }

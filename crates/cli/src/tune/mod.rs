@@ -298,14 +298,14 @@ fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
         }
         TuneError::Unknown { .. } => "name a variable, or a term as `variable.term`",
         TuneError::NothingMoves => {
-            "`--only` and `--fix` leave nothing; `--rule-weights` moves the weights"
+            "`--only` and `--fix` leave nothing to tune; `--rule-weights` tunes the weights of rules"
         }
-        TuneError::NoRows => "the tables have a header and no rows",
+        TuneError::NoRows => "the tables contain no rows",
         TuneError::NoWeight => "give rows a weight above 0, or leave out `--weight`",
         TuneError::NotFinite | TuneError::TooFar { .. } => {
             "check the units of the output's column and of its range"
         }
-        TuneError::OneClass => "ranking needs rows of 1 and rows of 0",
+        TuneError::OneClass => "ranking needs both rows of 1 and rows of 0",
         TuneError::NotMonotone { .. } => {
             "`flagred check` with the same options shows where; start from a rule set without counterexamples: `flagred learn --rising`"
         }
@@ -388,7 +388,7 @@ impl<'a> Watch<'a> {
             if let Err(failure) = self.keep(progress.model)
                 && !std::mem::replace(&mut self.is_refused, true)
             {
-                let note = format!("{}; the search goes on", failure.message());
+                let note = format!("{}; the search continues", failure.message());
                 self.bar.suspend(|| output::say(&note));
             }
         }

@@ -84,7 +84,7 @@ pub(super) fn words(
         )?;
     }
     if outcome.is_resumed {
-        writeln!(out, "begun       with the checkpoint")?;
+        writeln!(out, "started     with the checkpoint")?;
     }
     let ended = if tuned.is_stopped {
         "; ended early"
@@ -176,10 +176,7 @@ pub(super) fn words(
             true => "",
             false => " within the range",
         };
-        writeln!(
-            out,
-            "moved       nothing: no step{within} makes the loss smaller"
-        )?;
+        writeln!(out, "moved       nothing: no step{within} reduces the loss")?;
     }
     if !tuned.at_bounds.is_empty() {
         let names = tuned.at_bounds.iter().map(|name| visible(name));
@@ -190,7 +187,7 @@ pub(super) fn words(
         };
         writeln!(
             out,
-            "at bounds   {}: the rows ask for values beyond the range; {remedy}",
+            "at bounds   {}: the rows require values beyond the range; {remedy}",
             names.join(", ")
         )?;
     }

@@ -293,7 +293,7 @@ impl Totals {
         let doubts = self.doubts;
         if doubts != Doubts::default() {
             text += &format!(
-                "; not believed: {} packets of a second sender, {} parameters of other components, {} jumps of the clock",
+                "; ignored: {} packets of a second sender, {} parameters of other components, {} jumps of the clock",
                 doubts.second_sender, doubts.other_component, doubts.clock_jumps
             );
         }
@@ -374,7 +374,7 @@ impl Display {
             (
                 told.signed,
                 now.signed,
-                "signed packets are left out: without the key (`--key`) they cannot be verified",
+                "signed packets are ignored: they cannot be verified without the key (`--key`)",
             ),
             (
                 told.unsigned,
@@ -384,12 +384,12 @@ impl Display {
             (
                 told.bad_signatures,
                 now.bad_signatures,
-                "packets whose signature is not that of the key, or that came before, are refused",
+                "packets with a wrong or an already used signature are refused",
             ),
             (
                 told.unknown,
                 now.unknown,
-                "some messages are not known here: they are recorded, but not evaluated",
+                "some messages are unknown: they are recorded, but not evaluated",
             ),
             (
                 told.bytes,

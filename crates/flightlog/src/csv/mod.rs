@@ -197,7 +197,7 @@ impl Layout {
         let mut seen = HashSet::new();
         for name in names.iter().filter(|name| !name.is_empty()) {
             if !seen.insert(name) {
-                let text = format!("the column `{name}` is there twice");
+                let text = format!("the column `{name}` occurs twice");
                 return Err(problem(line, text, "give each column a name of its own"));
             }
         }
@@ -217,7 +217,7 @@ impl Layout {
         motors.sort_unstable();
         if motors.len() > MOST_MOTORS {
             let text = format!("there are {} motors, more than {MOST_MOTORS}", motors.len());
-            return Err(problem(line, text, "name other columns otherwise"));
+            return Err(problem(line, text, "give other columns different names"));
         }
         if let Some((0, _)) = motors.first() {
             let text = format!("there is a column `{stem}0`");

@@ -151,7 +151,7 @@ pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<Stri
         let (least, name) = best(&|factors| variance.with_outputs(factors))?;
         return (least > FOLLOWS && least > own + FOLLOWS_ABOVE).then(|| {
             format!(
-                "its roll, pitch and yaw do not follow the outputs of the controllers (correlation {own:.2}), those of {name} do ({least:.2})"
+                "its roll, pitch and yaw do not follow the outputs of the controllers (correlation {own:.2}), but those of {name} do ({least:.2})"
             )
         });
     }
@@ -161,7 +161,7 @@ pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<Stri
     let fits = least > GOES_WITH || least > from && least > own + above;
     (own < GOES_WITHOUT && fits).then(|| {
         format!(
-            "its roll and pitch do not go with the attitude error (correlation {own:.2}), those of {name} do ({least:.2})"
+            "its roll and pitch do not correlate with the attitude error (correlation {own:.2}), but those of {name} do ({least:.2})"
         )
     })
 }

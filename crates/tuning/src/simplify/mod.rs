@@ -72,7 +72,7 @@ pub struct Difference {
 #[non_exhaustive]
 pub enum SimplifyError {
     /// The tolerance is negative or not a number.
-    #[error("the tolerance {tolerance} is not a number from 0")]
+    #[error("the tolerance is {tolerance}; it must be at least 0")]
     Tolerance {
         /// The tolerance.
         tolerance: f64,

@@ -212,7 +212,7 @@ fn carried(channel: &Channel, statistic: Statistic) -> Result<(), Unsupported> {
     };
     Err(Unsupported::new(
         format!("a script on the autopilot cannot compute {what}"),
-        "`export --rust` and `export --c` carry them",
+        "`export --rust` and `export --c` support them",
     ))
 }
 

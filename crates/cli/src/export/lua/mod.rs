@@ -80,7 +80,7 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Uns
     if !plan.rules.stages.is_empty() {
         return Err(Unsupported::new(
             "a script on the autopilot cannot evaluate outputs that read other outputs".into(),
-            "write rules whose conditions name inputs only; `export --rust` and `export --c` carry chains",
+            "write rules whose conditions name inputs only; `export --rust` and `export --c` support chains",
         ));
     }
     let mut filling = Filling::default();
