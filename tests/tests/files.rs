@@ -77,8 +77,8 @@ fn no_output_replaces_an_input() {
         let (code, told) = run(&arguments);
         assert_eq!(code, Some(2), "{arguments:?}: {told}");
         assert!(
-            told.contains("as well")
-                || told.contains("which is read")
+            told.contains("is also an input")
+                || told.contains("which is an input")
                 || told.contains("; write `"),
             "{arguments:?}: {told}"
         );
@@ -114,7 +114,7 @@ fn two_outputs_cannot_be_the_same_file() {
         let (code, told) = run(&["assess", STEADY, "--html", html, "--svg", svg]);
         assert_eq!(code, Some(2), "{told}");
         assert!(
-            told.contains("which is written") || told.contains("is written as well"),
+            told.contains("which is another output") || told.contains("is also another output"),
             "{told}"
         );
         assert!(!Path::new(&same).exists());

@@ -340,7 +340,7 @@ def test_options_of_another_type_are_reported_in_plain_words():
     fan = flagred.load("flagred-paper")
     rows = {"margin": [0.1, 0.5], "spread": [0.1, 0.2], "risk": [50, 10]}
     for call, message in (
-        (lambda: flagred.tune(fan, rows, seed=-1), "`seed` is -1; it must be a whole number from 0"),
+        (lambda: flagred.tune(fan, rows, seed=-1), "`seed` is -1; it must be a whole number of at least 0"),
         (lambda: flagred.tune(fan, rows, folds="a"), "`folds` is 'a'"),
         (lambda: flagred.learn(fan, rows, min_support=1.5), "`min_support` is 1.5"),
         (lambda: flagred.simplify(fan, seed="x"), "`seed` is 'x'"),

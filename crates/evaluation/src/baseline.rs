@@ -107,7 +107,7 @@ impl Baseline {
                 per_motor: Some(PerMotor::Min),
                 ..of(
                     "least_margin",
-                    "smallest mean margin of a motor over 2 s",
+                    "lowest mean margin of a motor over 2 s",
                     of_each(Statistic::Mean, Signal::MotorMargin),
                     false,
                 )

@@ -79,7 +79,7 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
     html! {
         h1 { (together(subjects)) }
         p.soft {
-            "All curves have the same scale of time, " (number(longest_s, 0)) " s. "
+            "All curves have the same time scale, " (number(longest_s, 0)) " s. "
             code { "flagred assess LOG --html FILE" } " writes the whole report of one flight."
         }
         .scroll { table {

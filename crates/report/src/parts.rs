@@ -314,9 +314,9 @@ fn figures(subject: &Subject) -> Markup {
             @for (name, value) in figures.into_iter().chain(at_limit) { div { dt { (name) } dd { (value) } } }
         }
         @if has_motors {
-            p.soft { "The highest and mean values are without the seconds around take-off and landing." }
+            p.soft { "The highest and mean values exclude the seconds around take-off and landing." }
         } @else {
-            p.soft { "The highest and mean values are without the first seconds in use and the last ones before a stop." }
+            p.soft { "The highest and mean values exclude the first seconds in use and the last seconds before a stop." }
         }
     }
 }
@@ -329,8 +329,7 @@ fn reliability(rows: &[Reliability]) -> Markup {
             details {
                 summary { "How sure a risk is" }
                 p.soft {
-                    "Of the moments with such a risk on the flights that the rules were tested on, the share that was followed by an attitude \
-                     error over 5 degrees within 5 s."
+                    "The share of moments with such a risk that were followed by an attitude error over 5 degrees within 5 s, on the flights that the rules were tested on."
                 }
                 table.rules {
                     thead { tr { th.n { "Risk" } th.n { "Real vehicles" } th.n { "Simulated vehicles" } } }

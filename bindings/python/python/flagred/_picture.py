@@ -70,7 +70,7 @@ def plot_surface(map: DecisionMap, ax: Any | None) -> Any:
     axes = list(map.axes.items())
     if len(axes) != 2:
         help_text = "give the other inputs a value: `model.surface(bill=80)`"
-        raise DataError(f"a surface has two axes, and the map has {len(axes)}\n  help: {help_text}")
+        raise DataError(f"a surface has two axes, but the map has {len(axes)}\n  help: {help_text}")
     if not hasattr(ax, "plot_surface"):
         raise DataError('the axes are flat\n  help: make them with `plt.subplot(projection="3d")`')
     (x_name, x), (y_name, y) = axes
