@@ -106,7 +106,7 @@ pub fn outvoted(profile: &fuzzy::Source, estimator: &Estimator) -> Findings {
     Findings::locate(found, profile.text())
 }
 
-/// The values of a document, by their keys.
+/// The positions of the values of a document, by their keys.
 struct Places<'t>(&'t Node);
 
 impl Places<'_> {
@@ -260,11 +260,11 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
     }
 }
 
-/// The longest window and the longest wait before a level is raised that are not suspicious, in seconds.
+/// The window and the wait before a level is raised above which a warning is given, in seconds.
 const LONGEST_WINDOW_S: f64 = 600.0;
 const LONGEST_WAIT_S: f64 = 30.0;
 
-/// Finds windows and waits so long that they are likely in another unit.
+/// Finds windows and waits that are so long that their unit is probably wrong.
 fn durations(profile: &Profile, at: &Places, found: &mut Vec<Diagnostic>) {
     let mut note = |path: &[&str], message: String, help: &str| {
         found.push(Diagnostic::warning("unit", at.of(path), message).help(help));
@@ -450,7 +450,7 @@ fn signal(
     Some(Diagnostic::warning("unit", place, message).help(help))
 }
 
-/// A unit in normalised spelling.
+/// Returns the normalised spelling of a unit.
 fn normal(unit: &str) -> String {
     let unit = unit.trim().replace('°', "deg").replace('²', "2");
     unit.to_lowercase()

@@ -27,7 +27,8 @@ pub struct Loaded {
     pub rules: Source,
     /// Warnings, which do not prevent the use of the profile.
     pub warnings: Findings,
-    /// The files that it may have been read from; empty for a shipped profile.
+    /// The files that the profile and its rule set may have been read from; empty for a shipped
+    /// profile.
     pub files: Vec<PathBuf>,
 }
 

@@ -127,7 +127,7 @@ pub struct Monitor {
     unknown: Option<Unknown>,
 }
 
-/// A finding of another risk of the profile.
+/// A finding about another risk of the profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OfRisk {
     /// The index of the risk in [`Profile::other_risks`].
@@ -298,7 +298,7 @@ impl Monitor {
         elsewhere.or_else(|| self.follower.open_finding())
     }
 
-    /// The finding behind the current level if it is one of another risk.
+    /// The finding behind the current level, if the finding is about another risk.
     pub fn open_elsewhere(&self) -> Option<OfRisk> {
         let first = self.follower.open_finding().map(|found| found.severity);
         let others = self.others.iter().enumerate();
@@ -306,7 +306,7 @@ impl Monitor {
             let found = other.follower.open_finding()?;
             Some(OfRisk { risk, found })
         });
-        // Of equal ones, the first counts.
+        // Among findings of equal level, the first counts.
         let worst = open.reduce(
             |worst, next| match next.found.severity > worst.found.severity {
                 true => next,

@@ -7,7 +7,7 @@ use fuzzy::{Engine, table::ClosedForm};
 
 use crate::board::Rules;
 
-/// The reason why a rule set, with or without a profile, cannot be exported.
+/// The reason why a rule set or a profile cannot be exported.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoPlan {

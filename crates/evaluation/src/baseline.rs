@@ -33,7 +33,7 @@ pub struct Baseline {
 /// How the statistics of single motors are combined into one value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PerMotor {
-    /// Their mean.
+    /// The mean of the motors.
     Mean,
     /// The smallest value.
     Min,

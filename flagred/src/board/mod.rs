@@ -294,9 +294,9 @@ pub struct Monitor<'a> {
     plan: &'a Plan<'a>,
     follower: Follower,
     rules: Evaluator<'a>,
-    /// One for each input of the rule set.
+    /// The values of the inputs of the rule set.
     point: &'a mut [f64],
-    /// One for each input of the profile.
+    /// The values of the inputs of the profile.
     inputs: &'a mut [f64],
     seen: &'a mut [ChannelState],
     risks: &'a mut Window,

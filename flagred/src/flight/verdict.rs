@@ -15,7 +15,7 @@ use crate::{
 pub enum Verdict {
     /// The level of the gravest finding; GOOD without findings.
     Known(Level),
-    /// There is no answer (NA), for this reason.
+    /// No verdict (NA), with the reason.
     NotAvailable(Reason),
 }
 
@@ -38,7 +38,8 @@ impl Verdict {
         }
     }
 
-    /// The verdict of a flight whose end was not observed: a GOOD start does not make the whole flight GOOD.
+    /// The verdict of a flight whose end was not observed: if the observed part was GOOD, the
+    /// verdict is unknown.
     pub fn lost_in_air(self) -> Verdict {
         match self {
             Verdict::Known(level) if level > Level::Info => self,
@@ -82,7 +83,7 @@ pub enum Reason {
     /// The risk was unknown for most of the time in the air.
     #[error("{explanation}")]
     RiskUnknown {
-        /// The reason that made it unknown for longest.
+        /// The reason that applied for the longest time.
         unknown: Unknown,
         /// The same reason in words.
         explanation: String,
@@ -97,16 +98,18 @@ pub enum Reason {
         motor: usize,
         /// Whether other motors were unknown too.
         others: bool,
-        /// The first such command, if it is known and far outside 0 to 1.
+        /// The first of these commands, if it is a number far outside 0 to 1.
         command: Option<f64>,
-        /// The start, in seconds.
+        /// The start of the time with unknown commands, in seconds.
         from_s: f64,
-        /// The end, in seconds.
+        /// The end of that time, in seconds.
         to_s: f64,
-        /// For how long the command was unknown in that time, in seconds.
+        /// The total time for which the command was unknown between `from_s` and `to_s`, in
+        /// seconds.
         unknown_s: f64,
     },
-    /// No moment of the flight is judged, because it ended within the first seconds after take-off.
+    /// The whole flight is within the seconds after take-off and before landing that are not
+    /// judged.
     #[error(
         "{in_air_s:.1} s in the air are too short: the first {quiet_s} s and the end of a flight are not judged"
     )]
@@ -125,15 +128,15 @@ pub enum Reason {
         "the samples are {step_s} s apart, but the profile counts more than {longest_gap_s} s as a gap"
     )]
     SamplesFarApart {
-        /// The distance between most of them, in seconds.
+        /// The most frequent distance between samples, in seconds.
         step_s: f64,
         /// The profile's `longest_gap_s`, in seconds.
         longest_gap_s: f64,
     },
-    /// The vehicle was in the air when its last message arrived, or it rebooted there.
+    /// The vehicle was in the air when its last message arrived, or it rebooted in the air.
     #[error("the vehicle was lost in the air")]
     LostInAir,
-    /// The clock goes back in the air: the autopilot started again there, or its clock was set back.
+    /// The clock goes back in the air: the autopilot rebooted, or its clock was set back.
     #[error("the clock goes back in the air at {at_s:.1} s")]
     SetBackInAir {
         /// The time at which it went back, in seconds.

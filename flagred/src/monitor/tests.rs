@@ -408,7 +408,7 @@ fn an_unknown_motor_makes_the_risk_unknown_and_rounding_does_not() {
         assert_eq!(of(rounded), of(limit), "{rounded}");
         assert!(of(rounded).iter().all(Result::is_ok));
     }
-    // Fewer commands than motors.
+    // A sample with fewer commands than motors.
     let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let update = monitor.push(&Sample {
         t_s: 0.0,
@@ -465,7 +465,7 @@ fn a_profile_that_reads_no_motor_requires_no_motor() {
         signals: &[0.05],
     });
     assert_eq!(update.risk, Err(Unknown::OnGround));
-    // A finding that is not about the risk reads the motors too.
+    // Findings that are not about the risk also read the motors.
     profile.verdict.notices.reserve = Some(Limit {
         value: 0.1,
         after_s: 1.0,

@@ -33,7 +33,7 @@ pub enum SetDefuzzifier {
 pub enum OfMaxima {
     /// The smallest one.
     Smallest,
-    /// Their mean.
+    /// The mean of the motors.
     Mean,
     /// The largest one.
     Largest,
