@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     /// Warn where no rule fires with at least this strength
     #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = numbers::degree_above_0)]
     coverage: f64,
-    /// Exit with 1 for findings of this severity, too; by default only for errors
+    /// Also exit with 1 for findings of this severity [default: only for errors]
     #[arg(long, value_name = "SEVERITY")]
     deny: Option<Deny>,
 }
@@ -159,7 +159,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     Ok(exit)
 }
 
-/// All findings, and the analysis if the rule set can be analysed.
+/// Returns all findings, and the analysis if the rule set can be analysed.
 fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>, Failure> {
     let mut options = check::Options::default();
     options.coverage = arguments.coverage;

@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
     /// Rule sets or profiles in YAML; `-` is standard input, written to standard output
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Only list files with another layout, and exit with 1 if there are any
+    /// Only list files that are not formatted, and exit with 1 if there are any
     #[arg(long)]
     check: bool,
 }

@@ -127,7 +127,7 @@ impl Claims {
             .collect())
     }
 
-    /// Refuses claims about inputs that the rule set does not have.
+    /// Returns an error for claims about inputs that the rule set does not have.
     pub(crate) fn check_inputs(&self, model: &Model) -> Result<(), Failure> {
         let names = || model.inputs.iter().map(|input| input.name.as_str());
         let claims = self.rising.iter().chain(&self.falling);

@@ -232,7 +232,7 @@ impl Header {
             }
             let columns = self.names.iter().map(String::as_str);
             let columns = columns.filter(|name| !name.is_empty());
-            // Capitals are the commonest difference.
+            // Different capitals are the most frequent mistake.
             if let Some(column) = columns.clone().find(|it| it.eq_ignore_ascii_case(name)) {
                 let column = quoted(column);
                 return failure.help(format!("did you mean `{column}`? then add `--column {name}={column}`"));
@@ -272,7 +272,7 @@ impl Header {
         }
     }
 
-    /// The problem of a row with this number of cells, if any.
+    /// Returns the problem of a row with `cells` cells, if any.
     pub(crate) fn misfit(&self, cells: usize) -> Option<String> {
         let expected = self.names.len();
         (cells != expected).then(|| {
@@ -296,7 +296,7 @@ pub(crate) enum Cell {
     Number(f64),
     /// Empty, `NA`, `NaN` or `#N/A`, as spreadsheets write it.
     Unknown,
-    /// Anything else.
+    /// Any other text.
     Bad,
 }
 

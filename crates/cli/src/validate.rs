@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(table) => (rows(table, &estimators)?, Exit::Clean),
         None => flights(arguments, &estimators)?,
     };
-    // Only now are the flights in folders known.
+    // The flights in folders are known only after the folders have been listed.
     let mut files = Files::reading(evaluation.records().iter().map(Record::file))?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let drawn = match &svg {

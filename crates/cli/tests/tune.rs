@@ -303,7 +303,7 @@ rules:
       note: as the old one did
 ";
 
-/// The text without its digits.
+/// Returns the text without its digits.
 fn shape(text: &str) -> String {
     text.chars()
         .filter(|c| !c.is_ascii_digit() && *c != '.' && *c != '-')
@@ -440,7 +440,8 @@ fn a_checkpoint_with_other_fixed_numbers_is_refused() {
     }
 }
 
-/// At 1e15 only one of two constants was named, and at 1e20 the report claimed that no step helps.
+/// A regression test: at 1e15 the report named only one of two constants, and at 1e20 it claimed
+/// that no step helps.
 #[test]
 fn targets_that_leave_no_digit_of_the_loss_are_refused() {
     for target in ["1e8", "-1e15", "1e20", "1e49"] {

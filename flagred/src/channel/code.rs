@@ -42,6 +42,7 @@ impl Statistic {
 }
 
 impl Motors {
+    /// The code in exported plans.
     pub const fn code(self) -> u32 {
         match self {
             Motors::Pooled => 0,

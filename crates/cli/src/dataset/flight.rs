@@ -42,7 +42,7 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
             Cut::Windows { length_s } => Some(length_s),
             Cut::Ahead { .. } => None,
         };
-        // Errors on the ground do not belong to the flight.
+        // Attitude errors on the ground do not belong to the flight.
         let in_air = errors.iter().filter(|(t_s, _)| air_s.contains(*t_s));
         let record = ErrorRecord::new(in_air.copied());
         let inputs = inputs(&flight, plan, &carried, length_s, &moments)?;
@@ -86,9 +86,9 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
 
 /// A part of a flight from which rows are made.
 struct Part {
-    /// The time in the air that contains it.
+    /// The time in the air that contains this part.
     air_s: Span,
-    /// The part of it that counts.
+    /// The time span of this part.
     span: Span,
 }
 
@@ -141,7 +141,7 @@ fn inputs(
     moments: &[f64],
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut profile = plan.profile.clone();
-    // The rules below have only one output.
+    // The placeholder rules have only one output.
     profile.other_risks.clear();
     for input in &mut profile.inputs {
         input.source.window_s = length_s.unwrap_or(input.source.window_s);

@@ -165,9 +165,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// The paper's two inputs come first, whatever inputs the rules of the profile read. An input of the profile that has one of these names
-/// but is another quantity becomes `input_NAME`, as in the steps of `assess`. With [`Cut::Ahead`] the inputs are those of the profile
-/// and keep their names.
+/// The inputs of the paper come first, regardless of the inputs of the profile. An input of the
+/// profile that has one of these names but is another quantity becomes `input_NAME`, as in the
+/// steps of `assess`. With [`Cut::Ahead`] the inputs are those of the profile and keep their names.
 fn with_margin_and_spread(mut profile: Profile, cut: Cut) -> Profile {
     let paper = [
         ("margin", Statistic::Mean, Signal::MotorMargin),

@@ -102,7 +102,7 @@ struct Arrays {
 }
 
 impl Arrays {
-    /// Starts a file.
+    /// Writes the beginning of a file.
     fn begin(heading: &[String], guard: &str, prefix: String) -> Self {
         let mut out = String::new();
         line(&mut out, &format!("/* {} */", heading.join("\n * ")));

@@ -259,7 +259,7 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
     lines.into_iter().map(harmless).collect()
 }
 
-/// Makes a line safe inside a comment: a name in it must not end the comment.
+/// Makes a line safe inside a comment, which a name in the line must not end.
 fn harmless(line: String) -> String {
     visible(&line).replace("*/", "* /")
 }

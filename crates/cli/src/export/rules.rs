@@ -21,7 +21,7 @@ use crate::{
     rule_set,
 };
 
-/// Larger evaluations would overflow the stack of many threads.
+/// The maximum stack of an evaluation; more would overflow the stack of many threads.
 const MOST_STACK_BYTES: usize = 1 << 20;
 
 /// Writes a rule set in Rust or C.
@@ -41,7 +41,8 @@ pub(super) fn export(arguments: &Arguments, source: &Source) -> Result<Exit, Fai
     Ok(Exit::Clean)
 }
 
-/// Returns a rule set as code, with warnings about what was dropped. `name` is the rule set in messages.
+/// Returns a rule set as code, with warnings about dropped parts. Messages refer to the rule set as
+/// `name`.
 pub(super) fn code(
     (model, name): (&Model, &str),
     language: Language,

@@ -114,7 +114,7 @@ struct Outcome {
     /// Columns without a number.
     without_numbers: Vec<String>,
     identified: Identified,
-    /// `None` if not requested.
+    /// The cross-validation; `None` if it was not requested.
     judged: Option<Judged>,
 }
 

@@ -137,25 +137,25 @@ pub(crate) struct Document<'a> {
     steps: Vec<OfStep<'a>>,
     /// The number of rules.
     rules: usize,
-    /// The combinations of terms without a rule.
+    /// The number of combinations of terms without a rule.
     combinations_without_rows: usize,
-    /// Null where validation was not wanted.
+    /// The cross-validation; null if it was not requested.
     validation: Option<Validation>,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Rows<'a> {
-    /// The rows that were used.
+    /// The number of rows that were used.
     used: usize,
-    /// The rows without use.
+    /// The number of rows that cannot be used.
     refused: usize,
-    /// Why these rows have no use.
+    /// The reasons why these rows cannot be used.
     reasons: &'a [String],
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Columns<'a> {
-    /// The columns that could become inputs.
+    /// The number of columns that were examined as inputs.
     looked_at: usize,
     /// The columns without numbers.
     without_numbers: &'a [String],
@@ -165,29 +165,30 @@ struct Columns<'a> {
 
 #[derive(Serialize, JsonSchema)]
 struct OfStep<'a> {
-    /// The input that is new, or has another term.
+    /// The input that was added, or that got another term.
     input: &'a str,
-    /// How many terms it has now; of clusters, how many there are.
+    /// The number of terms of this input after the step, or the number of clusters.
     terms: usize,
-    /// The RMS error on rows left out, in the unit of the output.
+    /// The cross-validation error (RMS), in the unit of the output.
     left_out: f64,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Validation {
-    /// The parts of the cross-validation.
+    /// The number of cross-validation folds.
     parts: usize,
-    /// The rows for which no rule fires: the mean of the other rows stands for them.
+    /// The number of rows for which no rule fires; the mean of the other rows is used instead.
     rows_without_value: usize,
-    /// The RMS error of the rule set on rows left out of the whole search.
+    /// The cross-validation error (RMS) of the whole search.
     identified: OfInterval,
-    /// The RMS error of a line over all columns.
+    /// The cross-validation error (RMS) of a linear regression on all columns.
     linear: OfInterval,
-    /// The RMS error of the mean.
+    /// The cross-validation error (RMS) of the mean of the training rows.
     mean: OfInterval,
     /// `identified` divided by `linear`.
     ratio: OfInterval,
-    /// The rows left out by class and predicted class, where the target has 2 to 10 whole numbers; else null.
+    /// The confusion matrix of the cross-validation, if the target has 2 to 10 whole numbers; else
+    /// null.
     confusion: Option<OfClasses>,
 }
 

@@ -42,17 +42,18 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "POINTS", value_parser = whole(2_u16, 1001))]
     points: Option<u16>,
 
-    /// Hold an input at a value: `battery=0.8`; may be repeated. An input that is neither held nor an axis is held at the middle
-    /// of its range, or at the peak of a term if the output varies more there
+    /// Fix an input at a value: `battery=0.8`; may be repeated. An input that is neither fixed nor
+    /// an axis is fixed at the middle of its range, or at the peak of a term if the output varies
+    /// more there
     #[arg(long, value_name = "INPUT=VALUE", value_parser = hold)]
     hold: Vec<(String, f64)>,
 
-    /// The input along the horizontal axis, and the part of its range to show: `spread` or `spread:0..0.2` [default: the
-    /// first that is not held, where its terms lie]
+    /// The input along the horizontal axis, and the part of its range to show: `spread` or
+    /// `spread:0..0.2` [default: the first that is not fixed, where its terms change]
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     x: Option<AxisChoice>,
 
-    /// The input along the vertical axis, as `--x` [default: the next that is not held]
+    /// The input along the vertical axis, as `--x` [default: the next that is not fixed]
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     y: Option<AxisChoice>,
 
@@ -115,7 +116,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Fill {
-    /// Show no value there
+    /// Show no value in such cells
     None,
     /// The value of the nearest covered cell
     Nearest,

@@ -1,4 +1,5 @@
-//! The part of HTTP that a page on the same machine needs: one request per connection, with bounded lengths and durations.
+//! A minimal HTTP server for a page on the same machine: one request per connection, with bounded
+//! lengths and durations.
 
 use std::{
     borrow::Cow,
@@ -14,7 +15,8 @@ const HEADERS: usize = 64;
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Time limit for the answer: the page may be sent through a slow tunnel.
 const PATIENCE_TO_ANSWER: Duration = Duration::from_secs(60);
-/// Bytes of a refused body that are read nevertheless, so that the sender reaches the answer.
+/// Maximum number of bytes of a refused body that are read, so that the sender can receive the
+/// answer.
 const DRAINED: u64 = 64_000_000;
 
 /// A request whose body has not been read yet.

@@ -1,8 +1,8 @@
 //! Access to the page and its file, only for the user of this machine who started the studio.
 //!
-//! Every user of the machine can connect, and every page in a browser can send requests here. So the path begins with a
-//! token that cannot be guessed, the host must be the served address (another name that resolves to it belongs to another page),
-//! and requests of other pages are refused.
+//! Every user of the machine can connect, and every page in a browser can send requests here. So
+//! the path begins with a token that cannot be guessed, the host must be the served address (a page
+//! of another site could use a name that resolves to it), and requests of other pages are refused.
 
 use std::{
     borrow::Cow,
@@ -39,7 +39,7 @@ pub(super) struct Server {
     is_used: AtomicBool,
     page: Page,
     file: Option<EditedFile>,
-    /// Locked from the comparison of the file's content until the new content is written.
+    /// Held while the content of the file is compared and the new content is written.
     saving: Mutex<()>,
 }
 

@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = numbers::share)]
     min_distance: f64,
 
-    /// Let constants leave the range of the output, by its width at most
+    /// Let constants leave the range of the output by at most its width
     #[arg(long)]
     beyond_range: bool,
 
@@ -100,9 +100,9 @@ pub(crate) struct Arguments {
 enum LossName {
     /// The mean square of the error
     Squared,
-    /// The mean of -ln p, where the output's column is 0 or 1 and p the place of the value in the range
+    /// The mean of -ln p for outcomes of 0 and 1, with the predicted probability p of the outcome
     Log,
-    /// The share of pairs of a 1 and a 0 in the wrong order: 1 less the area under the ROC curve
+    /// The share of pairs of a 1 and a 0 in the wrong order: 1 minus the area under the ROC curve
     Ranking,
 }
 
@@ -395,7 +395,7 @@ impl<'a> Watch<'a> {
         self.flow()
     }
 
-    /// Called after each step of work that the progress bar does not count.
+    /// Called after each step of further work, which the progress bar does not count.
     fn more(&self, what: &'static str) -> ControlFlow<()> {
         self.bar.set_message(what);
         self.flow()

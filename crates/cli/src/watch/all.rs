@@ -1,4 +1,5 @@
-//! `flagred watch --all`: every vehicle on one or several links, one line each. It only receives.
+//! `flagred watch --all`: follows every vehicle on one or several links, one line each. It only
+//! receives.
 
 use std::{
     io::{self, IsTerminal},

@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "ENDPOINT", required = true)]
     endpoints: Vec<Endpoint>,
 
-    /// Follow every vehicle that is heard on these endpoints, a line each, and only listen
+    /// Follow every vehicle that is received on these endpoints, one line each; nothing is sent
     #[arg(long, conflicts_with_all = ["record", "send_anyway", "component", "range"])]
     all: bool,
 

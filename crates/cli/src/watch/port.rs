@@ -25,7 +25,7 @@ pub(crate) struct Port {
     kind: Kind,
     /// Why the endpoint could not be opened at first, until this is reported.
     closed_because: Option<String>,
-    /// Packets that could not be sent.
+    /// The number of packets that could not be sent.
     unsent: u64,
 }
 

@@ -64,7 +64,7 @@ pub(super) fn fill(
         script.operators = model.operators_of(rule);
         for consequent in terms {
             let term = &consequent.term.text;
-            // In the table, rules with the same consequent update the same firing strength.
+            // In the table, rules with the same consequent share one firing strength.
             let strength = actions.iter().find(|action| {
                 let other = model.rules.get(action.rule as usize);
                 other.is_some_and(|other| other.rule.consequents.contains(consequent))
