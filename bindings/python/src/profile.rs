@@ -105,7 +105,7 @@ impl Profile {
         Ok((slf.getattr("_of_texts")?, texts))
     }
 
-    /// Its name.
+    /// The name of the parameter.
     #[getter]
     fn name(&self) -> &str {
         &self.loaded.estimator.profile().name

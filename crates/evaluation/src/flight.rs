@@ -97,7 +97,7 @@ pub enum Unusable {
     Incomplete {
         /// The name of the flight for the user.
         name: String,
-        /// The missing information.
+        /// Description of the missing information.
         lacks: Incomplete,
     },
     /// The baselines cannot be computed for the flight.

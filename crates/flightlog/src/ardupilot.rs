@@ -219,7 +219,7 @@ pub(crate) fn effective_doubt(parameters: &Parameters) -> Option<String> {
         .then(|| format!("MOT_SPIN_MIN/MAX, {low} and {high}, are not valid limits"))
 }
 
-/// Whether there are parameters with limits of the commands, even if these are implausible.
+/// Whether the parameters contain limits of the commands, even implausible ones.
 pub(crate) fn has_limits(parameters: &Parameters) -> bool {
     let is_known = |name: &str| parameters.get(name).is_some();
     is_known("MOT_SPIN_MIN") && is_known("MOT_SPIN_MAX") || is_known("THR_MIN")
@@ -298,7 +298,7 @@ mod tests {
         pairs.iter().copied().collect()
     }
 
-    /// Limits that no speed controller has would hide a motor at its limit.
+    /// Impossible limits are ignored, because they would hide a motor at its limit.
     #[test]
     fn impossible_limits_are_ignored() {
         for (low, high) in [

@@ -14,7 +14,7 @@ pub enum Format {
     DataFlashText,
     /// PX4 ULog (`.ulg`).
     ULog,
-    /// MAVLink telemetry with time stamps (`.tlog`).
+    /// MAVLink telemetry with timestamps (`.tlog`).
     Tlog,
     /// Flight CSV.
     Csv,
@@ -58,10 +58,10 @@ pub enum VehicleKind {
 }
 
 impl VehicleKind {
-    /// Advice for a name that is not one of a kind.
+    /// Advice for an unknown name of a kind.
     pub(crate) const NAMES_HELP: &str = "write `multirotor`, `helicopter`, `plane`, `VTOL plane`, `rover`, `submarine` and `other vehicle`";
 
-    /// The kind that is displayed as `name`, in small or capital letters.
+    /// The kind with the given name, in small or capital letters.
     pub(crate) fn from_name(name: &str) -> Option<Self> {
         [
             Self::Multirotor,

@@ -22,7 +22,7 @@ pub struct PulseRange {
     high_us: u16,
 }
 
-/// Two pulse widths that are not a valid range of motor outputs.
+/// The error for two pulse widths that are not a valid range of motor outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("`{low_us}` to `{high_us}` us is not a range of motor outputs")]
 pub struct PulseRangeError {

@@ -73,9 +73,10 @@ impl<T: Serialize> Serialize for Event<T> {
 #[derive(serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct IntervalsFields<'a> {
-    /// The sum of their lengths, in seconds.
+    /// The total length of the intervals, in seconds.
     duration_s: f64,
-    /// The rule that determined them, such as `EV 28 (not landed) to EV 18 (land complete)`.
+    /// The rule that determined the intervals, such as `EV 28 (not landed) to EV 18 (land
+    /// complete)`.
     rule: &'a str,
     /// The intervals, in order of time, without overlap.
     spans: &'a [Interval],
@@ -96,7 +97,7 @@ impl Serialize for Intervals {
 #[derive(serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct GapFields {
-    /// The missing information.
+    /// Description of the missing information.
     reason: String,
     /// Advice for the pilot.
     help: Option<&'static str>,

@@ -23,7 +23,7 @@ use flagred_cli::fuzzing::Profile;
 
 /// A fuzz target.
 pub struct Target {
-    /// Its name.
+    /// The name of the parameter.
     pub name: &'static str,
     /// The function, which accepts any bytes.
     pub body: fn(&[u8]),

@@ -194,7 +194,7 @@ pub(super) fn apply_header(
                     )
                 })?;
                 let outside = times.iter().find(|t_s| !span_s.contains(t_s));
-                // In a damaged log it may be anywhere, which cannot result in a verdict of GOOD.
+                // A damaged log may contain any time here; it cannot result in a verdict of GOOD.
                 if let Some(outside) = outside.filter(|_| !is_ours) {
                     let (from_s, to_s) = (span_s.start(), span_s.end());
                     let text = format!(

@@ -138,7 +138,7 @@ fn problem(line: u64, problem: impl Into<String>, help: &str) -> ReadError {
 /// as a flight CSV.
 const LONGEST_ROW: usize = 1_000_000;
 const MOST_COLUMNS: usize = 4096;
-/// ArduPilot's frames have up to 12 motors, its outputs are up to 32.
+/// The maximum number of motors: ArduPilot has up to 32 outputs, and its frames up to 12 motors.
 const MOST_MOTORS: usize = 32;
 
 fn too_long(line: u64) -> ReadError {

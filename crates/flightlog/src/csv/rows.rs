@@ -195,7 +195,7 @@ impl Rows {
         Ok(())
     }
 
-    /// Refuses the file; the first reason is kept.
+    /// Marks the file as refused; the first reason is kept.
     fn refuse(&mut self, line: u64, text: String, help: &str) {
         self.refused
             .get_or_insert_with(|| problem(line, text, help));

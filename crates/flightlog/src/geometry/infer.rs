@@ -14,7 +14,8 @@ const FEWEST_ROWS: usize = 100;
 const FITS: f64 = 0.05;
 /// A layout does not fit if at least this share of the variance is outside its space.
 const FITS_NOT: f64 = 0.2;
-/// A share is clearly larger than another one if it exceeds that one times the first number plus the second.
+/// A share is clearly larger than another share `s` if it exceeds `s` times the first number plus
+/// the second number.
 const CLEARLY: (f64, f64) = (5.0, 0.002);
 /// The minimum correlation of effort and output of the rate controller for a layout to be right, and the minimum
 /// difference to other layouts. Right layouts have 0.44 to 1, and more than any other.
@@ -186,8 +187,8 @@ struct Variance {
 }
 
 impl Variance {
-    /// Computes them from a flight. `all_run` excludes the times at which a motor is stopped, because it does not
-    /// follow the mixer then.
+    /// Computes the covariances from a flight. `all_run` excludes the times at which a motor is
+    /// stopped, because it does not follow the mixer then.
     fn of_commands(flight: &Flight, all_run: bool) -> Option<Self> {
         let motors = flight.motors.len();
         let mut commands = Covariance::new(motors);
