@@ -16,7 +16,7 @@ pub(crate) enum Status {
     WrongCount = 8,
 }
 
-/// The text of a status.
+/// Returns a description of a status, as a static C string.
 pub(crate) fn text(status: i32) -> &'static CStr {
     match status {
         0 => c"ok",

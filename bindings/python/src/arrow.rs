@@ -123,7 +123,7 @@ struct SchemaLayout {
 }
 
 impl Imported {
-    /// The names of the columns.
+    /// The names of the columns, in their order.
     pub(crate) fn names(&self) -> Vec<String> {
         self.fields
             .iter()

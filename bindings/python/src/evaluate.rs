@@ -30,7 +30,7 @@ pub(crate) struct Evaluator<'e> {
     with_reasons: bool,
 }
 
-/// The part of the result that one block fills.
+/// The part of the result into which one block of rows is evaluated.
 struct Block<'a> {
     first: usize,
     outputs: Vec<BlockOutput<'a>>,
@@ -126,7 +126,7 @@ impl<'e> Evaluator<'e> {
     }
 }
 
-/// The result in blocks of rows.
+/// Divides the result into blocks of rows.
 fn blocks(rows: usize, results: &mut [Columns]) -> Vec<Block<'_>> {
     let mut blocks: Vec<Block<'_>> = (0..rows.div_ceil(BLOCK))
         .map(|i| Block {

@@ -59,7 +59,7 @@ enum Source {
     Path(PathBuf),
 }
 
-/// The reason why there is no result.
+/// The reason why the work gave no result.
 enum Failed {
     Unusable(Unusable),
     NoSteps,

@@ -31,7 +31,7 @@ pub(crate) struct Update {
     elevated_risk: Option<f64>,
     /// ``GOOD``, ``INFO``, ``WARN`` or ``FAIL``; None on the ground and while a risk is unknown, unless an alarm is raised.
     level: Option<String>,
-    /// The new level, if this sample changed it.
+    /// The new level if this sample changed it; None otherwise, or if the new level is unknown.
     change: Option<String>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: Option<f64>,

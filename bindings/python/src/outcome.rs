@@ -133,7 +133,7 @@ pub(crate) struct Reasons {
     pub(crate) clamped: Vec<bool>,
 }
 
-/// A placeholder for a rule number; it is masked or null before it is returned.
+/// A placeholder if no rule fires; it is masked or becomes null before it is returned.
 pub(crate) const NO_RULE: i32 = -1;
 
 /// The rule number, from 1.

@@ -41,7 +41,7 @@ pub(crate) fn count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
     })
 }
 
-/// Refuses 0 threads.
+/// Returns an error for 0 threads.
 pub(crate) fn checked(threads: Option<usize>) -> PyResult<()> {
     match threads {
         Some(0) => Err(data_error(
@@ -109,7 +109,7 @@ fn listening<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
     mut heard: impl FnMut(PyErr) -> PyResult<()>,
 ) -> PyResult<T> {
-    /// Short enough not to be noticed as a delay.
+    /// The interval between checks for Ctrl-C, too short to be noticed as a delay.
     const LISTEN_EVERY: Duration = Duration::from_millis(50);
     let (sender, mut receiver) = mpsc::sync_channel(1);
     thread::spawn(move || sender.send(work()));

@@ -55,7 +55,7 @@ pub(crate) struct Tuned {
     validation: Option<Validation>,
 }
 
-/// Each figure with its interval.
+/// The figures of the cross-validation, each with its interval.
 #[derive(IntoPyObject)]
 struct Validation {
     folds: usize,

@@ -37,7 +37,8 @@ pub fn rule_set(begun_with: &str, mut model: Model, step: Step) -> Result<String
     }
 }
 
-/// A text with the numbers and the last step of a rule set; `None` if anything else differs.
+/// Replaces the numbers and the last step in a text by those of a rule set; `None` if anything else
+/// differs.
 fn in_place(text: &str, model: &Model) -> Option<String> {
     let document = fuzzy::yaml::parse(text).ok()?;
     let mut edits = numbers::of_model(text, &document, model)?;
@@ -193,7 +194,7 @@ rules:
         }
     }
 
-    /// The rule set with the peak of `hot` at 30, and a step.
+    /// A rule set whose peak of `hot` was moved to 30, with a provenance step.
     fn moved(text: &str, note: &str) -> String {
         let mut model = fuzzy::yaml::parse(text).unwrap().model;
         let mut heat = model.inputs.remove(0);

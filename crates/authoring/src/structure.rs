@@ -338,7 +338,7 @@ const UNREADABLE: &str = "this part of the text cannot be changed here; change i
 enum Change {
     Added(Part),
     Removed(Part),
-    /// Only this part may differ.
+    /// A change in which only this part may differ.
     Other(Part),
 }
 
@@ -609,7 +609,8 @@ fn inserted(text: &str, node: &Node, index: usize, item: &str) -> Option<Edit> {
     }
 }
 
-/// The edit that removes an entry. In a block its lines are removed; comments on separate lines are kept.
+/// Returns the edit that removes an entry. In a block, the lines of the entry are removed; comments
+/// on separate lines are kept.
 fn removed(text: &str, node: &Node, index: usize) -> Option<Edit> {
     let (first, last) = entry(node, index)?;
     let behind = match last.span.is_empty() {

@@ -18,7 +18,8 @@ pub use crate::parts::{Part, Report, Subject};
 const CHART_CSS: &str = include_str!("chart.css");
 const PAGE_CSS: &str = include_str!("page.css");
 const PAGE_JS: &str = include_str!("page.js");
-/// The page may not load anything, because it contains all that it shows.
+/// The content security policy: the page loads nothing, because it contains everything that it
+/// shows.
 const POLICY: &str = "default-src 'none';style-src 'unsafe-inline';script-src 'unsafe-inline'";
 
 /// The report of one flight.

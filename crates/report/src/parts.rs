@@ -27,7 +27,7 @@ use crate::{
 
 /// An assessed flight.
 pub struct Subject {
-    /// The name of its file.
+    /// The name of the file of the log.
     pub name: String,
     /// The flight.
     pub flight: Arc<Flight>,
@@ -42,7 +42,8 @@ impl Subject {
         file.and_then(|file| file.to_str()).unwrap_or(&self.name)
     }
 
-    /// The time that a report shows by default: from the first take-off to the last landing, or the whole log.
+    /// The time that a report shows by default: from the first take-off to the last landing, or the
+    /// whole log if there is none.
     pub fn stretch(&self) -> Stretch {
         charts::stretch(&self.flight)
     }

@@ -28,7 +28,7 @@ pub(crate) struct Timeline {
 pub(crate) struct Phase {
     /// The time of the phase.
     pub(crate) stretch: Stretch,
-    /// What it is called.
+    /// The name of the phase.
     pub(crate) name: String,
     /// The kind of the phase: phases of one kind have the same shade.
     pub(crate) kind: usize,

@@ -321,7 +321,7 @@ fn wrong_rows_are_errors() {
         error(&same, Loss::Ranking),
         "all rows have the same outcome"
     );
-    // Rows of one truth count, the others do not.
+    // Only rows of one truth have a weight.
     let mut one = classes(20);
     one.weights = one.truths.clone();
     assert_eq!(error(&one, Loss::Ranking), "all rows have the same outcome");

@@ -2,10 +2,10 @@
 
 use fuzzy::{diagnostic::suggest, model::Variable};
 
-/// Cells of a table.
+/// The maximum number of cells of a table.
 const MOST_CELLS: usize = 5_000_000;
 
-/// A message, and what to do.
+/// A message, and advice on what to do.
 type Refusal = (String, String);
 
 /// The cells of a table as text.
@@ -73,7 +73,8 @@ impl Table {
         }
     }
 
-    /// The values of variables; the last one is the output, of which words stand for constants.
+    /// The values of variables in each row. The last variable is the output, whose values may be
+    /// names of constants.
     pub(super) fn rows(&self, variables: &[&Variable]) -> Result<Rows, Refusal> {
         let column = |variable: &&Variable| {
             let found = self.names.iter().position(|name| *name == variable.name);

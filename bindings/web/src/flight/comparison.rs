@@ -10,7 +10,7 @@ use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 use super::assessment::{Assessment, documents, table};
 use crate::failure::failure;
 
-/// Assessments of several flights with one profile.
+/// Assessments of several flights with the same profile.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Comparison(Vec<Assessment>);

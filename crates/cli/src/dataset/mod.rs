@@ -227,7 +227,7 @@ fn rows_of(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     flight::rows(log, plan)
 }
 
-/// The names of the columns.
+/// The names of the columns, in their order.
 fn head(plan: &Plan) -> Vec<String> {
     let mut head = ["file", "vehicle", "kind", "from_s", "t_s"]
         .map(str::to_owned)
