@@ -73,7 +73,7 @@ fn a_frame_with_fewer_motors_than_columns_is_refused() {
         "line 1: `frame` is `QUAD/X`, which has 4 motors",
         "correct it",
     );
-    // Factors of all motors replace the table of the frame.
+    // If the factors of all motors are given, they replace the table of the frame.
     let factors: String = (1..=6)
         .map(|motor| format!("# motor{motor}_factors: 1 1 1\n"))
         .collect();

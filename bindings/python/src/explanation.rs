@@ -30,7 +30,7 @@ pub(crate) struct Explanation {
 /// An input with the degree of each of its terms.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct ExplainedInput {
-    /// The name of the parameter.
+    /// The name of the input.
     name: String,
     /// The given value.
     given: f64,
@@ -56,7 +56,7 @@ pub(crate) struct FiredRule {
 /// An output, and the rules that contribute to it.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct ExplainedOutput {
-    /// The name of the parameter.
+    /// The name of the output.
     name: String,
     /// The value; None if it is unknown.
     value: Option<f64>,

@@ -120,7 +120,7 @@ pub(crate) struct Outcomes {
 
 /// The outcomes of one output, row by row.
 pub(crate) struct Columns {
-    /// The value; NaN is unknown.
+    /// The values; NaN is unknown.
     pub(crate) value: Vec<f64>,
     pub(crate) reasons: Option<Reasons>,
 }

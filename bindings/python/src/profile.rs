@@ -105,7 +105,7 @@ impl Profile {
         Ok((slf.getattr("_of_texts")?, texts))
     }
 
-    /// The name of the parameter.
+    /// The name of the profile.
     #[getter]
     fn name(&self) -> &str {
         &self.loaded.estimator.profile().name

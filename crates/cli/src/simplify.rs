@@ -357,9 +357,9 @@ struct OfRule {
 
 #[derive(Serialize, JsonSchema)]
 struct Change {
-    /// The value before.
+    /// The disjunction before.
     before: &'static str,
-    /// The value after.
+    /// The disjunction after.
     after: &'static str,
 }
 

@@ -107,8 +107,8 @@ pub fn write(
     Ok(())
 }
 
-/// Writes the assessment of one of several flights on one line: the verdict, the log, and its gravest finding or the
-/// reason why there is no verdict.
+/// Writes the assessment of one of several flights on one line: the verdict, the log, and its most
+/// severe finding or the reason why there is no verdict.
 pub fn write_line(
     out: &mut impl Write,
     name: &str,
@@ -206,7 +206,7 @@ pub fn effective_range(effective: &flagred_flightlog::Range) -> String {
 /// The maximum number of spans of time that are listed on a line.
 const MOST_SPANS: usize = 12;
 
-/// The first of many spans, with the number of the rest.
+/// The first spans, with the number of further spans.
 pub fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
     let first: Vec<String> = spans.by_ref().take(MOST_SPANS).collect();
     match spans.len() {
