@@ -217,7 +217,7 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
             );
             found.push(
                 Diagnostic::error("out-of-reach", of(&[]), message)
-                    .help("lower the thresholds: with these every flight would be GOOD"),
+                    .help("lower the thresholds: with these thresholds every flight would be GOOD"),
             );
             return;
         }
@@ -233,7 +233,7 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
                 .is_some_and(|limit| limit > 0.0)
             {
                 let message =
-                    format!("`{name}` is never reached by the elevated risk, which never rises");
+                    format!("`{name}` is never reached by the elevated risk, because that never rises");
                 let place = of(&[name, "elevated_risk"]);
                 let help = "write `rise_per_s` in `elevated_risk`, or remove the threshold";
                 found.push(Diagnostic::warning("out-of-reach", place, message).help(help));
@@ -269,7 +269,7 @@ fn durations(profile: &Profile, at: &Places, found: &mut Vec<Diagnostic>) {
     let mut note = |path: &[&str], message: String, help: &str| {
         found.push(Diagnostic::warning("unit", at.of(path), message).help(help));
     };
-    let window = "windows are in seconds; a risk over a longer one comes too late";
+    let window = "windows are in seconds; a risk over a longer window comes too late";
     let mut long = |path: &[&str], window_s: f64| {
         if window_s > LONGEST_WINDOW_S {
             note(
@@ -337,9 +337,9 @@ fn reached(
             let message = format!("`{name}` at risk {limit} {what}: the rules give {bound}");
             let help = match above {
                 true => {
-                    "lower it in `verdict`, or make the last term of the output narrower: the centroid of a term lies inside it"
+                    "lower the threshold in `verdict`, or make the last term of the output narrower: the centroid of a term is inside the term"
                 }
-                false => "raise it in `verdict` above what the rules give at rest",
+                false => "raise the threshold in `verdict` above the risk at rest",
             };
             found.push(Diagnostic::warning("out-of-reach", place(&["risk"]), message).help(help));
         }
@@ -352,7 +352,7 @@ fn reached(
             "`{name}` is never lowered: it lasts until the risk falls below {until}, but the rules give at least {}",
             shown(low)
         );
-        let help = "raise `until` above what the rules give at rest";
+        let help = "raise `until` above the risk at rest";
         let place = place(&["until", "risk"]);
         found.push(Diagnostic::warning("out-of-reach", place, message).help(help));
     }
@@ -429,7 +429,7 @@ fn signal(
                 input.name,
                 if is_rate { "the rate of " } else { "" }
             );
-            let help = "take a signal of that unit, or write the terms of the input in the unit of the signal";
+            let help = "choose a signal with that unit, or write the terms of the input in the unit of the signal";
             return Some(Diagnostic::warning("unit", place, message).help(help));
         }
     }

@@ -257,7 +257,7 @@ pub fn rules<E>(
                 "profile `{}` names the rule set `{}`, which is not in the profile's folder",
                 profile.name, profile.rules
             ))
-            .help("move it there, or allow its folder with FLAGRED_RULES=FOLDER"));
+            .help("move the rule set there, or allow its folder with FLAGRED_RULES=FOLDER"));
         }
         let text = read(&path).map_err(LoadError::Read)?;
         return Ok((path.display().to_string(), text));
@@ -269,10 +269,10 @@ pub fn rules<E>(
         .map(|known| (known.file.to_owned(), known.text.to_owned()))
         .ok_or_else(|| {
             LoadError::unusable(format!(
-                "profile `{}` names the rule set `{}`, which is neither a file beside it nor built in",
+                "profile `{}` names the rule set `{}`, which is neither a file next to it nor built in",
                 profile.name, profile.rules
             ))
-            .help(format!("built in are {}; a path starts at the folder of the profile", built_in()))
+            .help(format!("built in are {}; paths are relative to the folder of the profile", built_in()))
         })
 }
 

@@ -21,7 +21,7 @@ pub enum NoPlan {
     },
     /// An output keeps its previous value.
     #[error(
-        "output `{output}` keeps its previous value where no rule fires, so it does not depend on the inputs alone"
+        "output `{output}` keeps its previous value where no rule fires, so it depends on more than the inputs"
     )]
     KeepsPrevious {
         /// The output.

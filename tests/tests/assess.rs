@@ -383,7 +383,7 @@ fn a_given_range_replaces_only_an_assumed_one() {
         STEADY,
         ["1100", "1900"],
         3,
-        "has a range of its own, 1000 to 2000 us (MOT_PWM_MIN/MAX)",
+        "reports its own range, 1000 to 2000 us (MOT_PWM_MIN/MAX)",
     );
     refused(
         log,

@@ -198,7 +198,7 @@ fn unusable_rules(text: &str, rules: &str) -> Findings {
     let place = text.find("rules:").unwrap_or(0);
     let message = format!("the rule set `{rules}` cannot be used");
     let finding = Diagnostic::error("rule-set", place..place + 5, message).help(
-        "`flagred check` shows why; a rule set is a shipped one, or a file beside the profile",
+        "`flagred check` shows why; a rule set must be a shipped one, or a file next to the profile",
     );
     Findings::locate(vec![finding], text)
 }

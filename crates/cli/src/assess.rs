@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     if several && arguments.svg.is_some() {
         return Err(
-            Failure::usage("--svg draws one flight").help("compare several with --html FILE")
+            Failure::usage("--svg draws only one flight").help("to compare several flights, use --html FILE")
         );
     }
     let inputs = arguments.logs.iter().map(PathBuf::from);

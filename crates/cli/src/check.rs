@@ -196,7 +196,7 @@ fn write_alone(out: &mut impl Write, file: &str, alone: &[Alone]) -> Result<(), 
     let file = visible(file);
     writeln!(
         out,
-        "{file}: the highest risk of each input while all others are calm:"
+        "{file}: the highest risk that each input causes while all others are calm:"
     )?;
     let rows: Vec<[String; 3]> = alone.iter().map(row).collect();
     let width = |column: usize| {

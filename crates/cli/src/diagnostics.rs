@@ -121,7 +121,7 @@ impl NoText {
             // text.
             Some((_, byte)) if byte >= 0xa0 => {
                 let letter = char::from(byte);
-                format!("it may be Latin-1, where the byte is `{letter}`; save the file as UTF-8")
+                format!("the file may be in Latin-1, where the byte is `{letter}`; save the file as UTF-8")
             }
             _ => String::from("save the file as UTF-8"),
         })

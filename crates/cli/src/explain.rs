@@ -113,7 +113,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let model = arguments.model.display().to_string();
     if model.contains('=') && !arguments.model.exists() {
         let failure = Failure::usage(format!("`{model}` is not a rule set"));
-        return Err(failure.help("the rule set comes first, then the values of its inputs"));
+        return Err(failure.help("name the rule set first, then the values of its inputs"));
     }
     let engine = rule_set::load(&arguments.model)?;
     let model = engine.model();

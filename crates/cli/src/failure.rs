@@ -148,8 +148,8 @@ pub(crate) fn command_forgotten(error: &clap::Error) -> Option<Failure> {
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
         let rules = ["yaml", "yml", "fis", "fll", "fcl", "fml"];
         let help = match rules.iter().any(|rules| ending == *rules) {
-            true => format!("the errors of a rule set or profile: `flagred check {word}`"),
-            false => format!("how risky a flight was: `flagred assess {word}`"),
+            true => format!("`flagred check {word}` lists the errors of a rule set or profile"),
+            false => format!("`flagred assess {word}` assesses a flight"),
         };
         Failure::usage(format!("`{word}` is a file, not a command")).help(help)
     })
@@ -166,7 +166,7 @@ pub(crate) fn cannot_read(shown: &str, error: &io::Error) -> Failure {
             let built_in = built_in::profile_names();
             failure.help(match nearest(shown, built_in) {
                 Some(name) => format!("did you mean the built-in `{name}`?"),
-                None if shown.contains('*') => "no file has a name of this form".to_owned(),
+                None if shown.contains('*') => "no file matches this pattern".to_owned(),
                 None => "check the path".to_owned(),
             })
         }

@@ -38,7 +38,7 @@ pub(crate) fn confusion(
     let width = lengths.map(|text| text.chars().count()).max().unwrap_or(0);
     writeln!(
         out,
-        "classes     {:.1} % of rows left out are predicted as their class; for each class, the rows predicted as",
+        "classes     {:.1} % of the cross-validated rows are predicted as their class; for each class, the rows predicted as",
         100.0 * confusion.accuracy()
     )?;
     let line = |cells: &mut dyn Iterator<Item = String>| {

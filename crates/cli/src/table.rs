@@ -381,7 +381,7 @@ fn not_a_table(start: &[u8]) -> Option<Foreign> {
     if lines.any(|line| line.starts_with(b"fuzzy:") || line.starts_with(b"flagred:")) {
         return is(
             "a rule set or profile",
-            "the rule set comes first, then the tables: see `--help`",
+            "name the rule set first, then the tables: see `--help`",
         );
     }
     None

@@ -51,7 +51,7 @@ fn moved_numbers_are_printed_and_written() {
         "{out}"
     );
     assert!(
-        out.contains("(4 parts of groups of `room`, 95 % intervals)"),
+        out.contains("(4 folds of groups of `room`, 95 % intervals)"),
         "{out}"
     );
     let written = written.unwrap();

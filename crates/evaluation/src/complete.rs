@@ -10,7 +10,7 @@ use crate::span::Span;
 #[non_exhaustive]
 pub enum Incomplete {
     /// The log exceeds the limits of a reader, which left part of it out.
-    #[error("not all of it is kept; left out: {0}")]
+    #[error("the log exceeds the limits of the reader; left out: {0}")]
     LeftOut(LeftOut),
     /// Required information is missing from the log.
     #[error(transparent)]

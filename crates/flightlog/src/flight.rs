@@ -318,7 +318,7 @@ impl Flight {
             motors: Vec::new(),
             geometry: None,
             range: None,
-            effective_range: whole_range("the log names no tighter limits"),
+            effective_range: whole_range("the log contains no tighter limits"),
             effective_range_doubt: None,
             assumed: Vec::new(),
             parameters: Vec::new(),
@@ -400,6 +400,6 @@ pub(crate) fn whole_range(why: &str) -> Range {
         low: 0.0,
         high: 1.0,
         unit: "1",
-        source: format!("whole range: {why}"),
+        source: format!("the whole range: {why}"),
     }
 }

@@ -170,7 +170,7 @@ impl Gap {
             }
             Self::TooSlow { format, .. } => match format {
                 DataFlash | DataFlashText => "set bit 0 (fast attitude) of LOG_BITMASK",
-                ULog => "choose a higher rate of logging with SDLOG_PROFILE",
+                ULog => "choose a higher logging rate with SDLOG_PROFILE",
                 Tlog => {
                     "use the log on the vehicle, or raise the rate of SERVO_OUTPUT_RAW (ArduPilot: SRx_RC_CHAN)"
                 }

@@ -408,7 +408,7 @@ fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
     let flight = &subject.flight;
     let report = &flight.report;
     let end = if report.truncated {
-        "; cut off at the end"
+        "; the end is missing"
     } else {
         ""
     };

@@ -238,7 +238,7 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     let left_out = &flight.report.left_out;
     if !left_out.is_empty() {
         notes.push(format!(
-            "not all of the log is kept: {left_out} are left out"
+            "the log exceeds the limits of the reader: {left_out} are left out"
         ));
     }
     if assessed.findings_left_out > 0 {
@@ -309,7 +309,7 @@ pub fn conversion(name: &str, flight: &Flight) -> Vec<String> {
         .map(|reason| format!("`{name}` is damaged: {reason}; the undamaged part is converted"));
     let left_out = &report.left_out;
     let left_out = (!left_out.is_empty())
-        .then(|| format!("not all of `{name}` is converted: {left_out} are left out"));
+        .then(|| format!("`{name}` exceeds the limits of the reader: {left_out} are left out"));
     damage.into_iter().chain(left_out).collect()
 }
 

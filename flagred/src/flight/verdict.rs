@@ -149,10 +149,10 @@ pub enum Reason {
         ignored: u64,
     },
     /// No flight was observed.
-    #[error("no flight was seen")]
+    #[error("no flight was observed")]
     NoFlight,
     /// The vehicle sent messages, but never the commands of its motors.
-    #[error("the vehicle sent no motor outputs (SERVO_OUTPUT_RAW)")]
+    #[error("the vehicle did not send motor outputs (SERVO_OUTPUT_RAW)")]
     NoMotorOutputs,
 }
 
@@ -191,7 +191,7 @@ impl Reason {
                 Some(_) => {
                     "scale the commands: 0 is the lower limit of the motor, 1 the upper limit"
                 }
-                None => "a missing motor can hide any risk: log the commands of all motors",
+                None => "a motor without commands can hide any risk: log the commands of all motors",
             }),
             Reason::NoMotorOutputs => Some(
                 "ArduPilot: set SRx_RC_CHAN of the port to 25; PX4: `mavlink stream -d PORT -s SERVO_OUTPUT_RAW_0 -r 25`; `flagred watch` without `--all` asks for them",
@@ -203,7 +203,7 @@ impl Reason {
                 "what came after is missing or uncertain: look for a restart of the autopilot, or for a damaged clock",
             ),
             Reason::SamplesIgnored { .. } => {
-                Some("give each sample a time after that of the one before, in seconds")
+                Some("give each sample a later time than the previous one, in seconds")
             }
             Reason::SamplesFarApart { .. } => Some(
                 "`longest_gap_s` of the profile has to be longer than the time between samples; if `t_s` is in milliseconds, divide it by 1000",

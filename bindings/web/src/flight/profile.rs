@@ -139,7 +139,7 @@ fn drawn(findings: &fuzzy::Findings, file: &str, text: &str) -> String {
     let style = Style {
         colored: false,
         advice: |_| None,
-        all: "the problems list has all of them",
+        all: "the list of problems shows all of them",
         is_quoted: flagred::loaded::is_meant_as_rules,
     };
     draw(&findings.0, file, text, style).trim_end().to_owned()

@@ -161,7 +161,7 @@ impl Arguments {
         let text = self.output.to_string_lossy();
         let checked = output::path_of(&text, &format!("the output is {what}"), endings);
         checked.map(drop).map_err(|wrong| {
-            Failure::usage(format!("`{text}` has the ending of another format")).help(wrong)
+            Failure::usage(format!("`{text}` has the extension of another format")).help(wrong)
         })
     }
 

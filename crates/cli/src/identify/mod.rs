@@ -249,7 +249,7 @@ fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
         return Err(Failure::unreadable(message).help(Cell::problem(first.as_bytes())));
     }
     Err(Failure::unreadable(message).help(
-        "for two classes write 0 and 1; `FuzzyClassifier` of the Python package takes words and many classes",
+        "for two classes write 0 and 1; `FuzzyClassifier` of the Python package supports words and more than two classes",
     ))
 }
 
@@ -282,7 +282,7 @@ fn failure(arguments: &Arguments, names: &[String], error: &TuneError) -> Failur
     let target = &arguments.target;
     let failure = Failure::unusable(format!("`{target}`"), error);
     match error {
-        TuneError::NoWeight => failure.help("give rows a weight above 0, or leave out `--weight`"),
+        TuneError::NoWeight => failure.help("give some rows a weight above 0, or leave out `--weight`"),
         TuneError::NoInputHelps => {
             failure.help("add columns that are related to it, add rows, or lower `--min-gain`")
         }

@@ -24,7 +24,7 @@ const SHOWN: usize = 12;
 pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome) -> Result<String, Failure> {
     let judged = outcome.judged.as_ref().map_or_else(String::new, |judged| {
         format!(
-            "; RMS error on rows left out, in {} parts: {}; of a line {}",
+            "; cross-validation error (RMS, {} folds): {}; of a linear regression: {}",
             judged.folds,
             short(judged.identified.value),
             short(judged.linear.value)
@@ -67,7 +67,7 @@ pub(super) fn words(
         let title = if i == 0 { "steps" } else { "" };
         let left_out = short(step.left_out);
         let said = if i == 0 {
-            " RMS error on rows left out"
+            " cross-validation error (RMS)"
         } else {
             ""
         };
@@ -96,7 +96,7 @@ fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io
     let parts = divided(arguments.group_by.as_ref());
     writeln!(
         out,
-        "left out    {} RMS error of the whole search ({} parts of {parts}, 95 % intervals)",
+        "left out    {} cross-validation error (RMS) of the whole search ({} folds of {parts}, 95 % intervals)",
         figure(&judged.identified),
         judged.folds
     )?;
@@ -106,7 +106,7 @@ fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io
     };
     writeln!(
         out,
-        "            {} of a line over all columns; the first is {ratio}",
+        "            {} of a linear regression on all columns; the first is {ratio}",
         figure(&judged.linear)
     )?;
     writeln!(out, "            {} of the mean", figure(&judged.mean))?;

@@ -106,8 +106,8 @@ pub(super) fn words(
         None => writeln!(out, "coverage   not computed for so many inputs")?,
     }
     let parts = match &arguments.rows.group_by {
-        Some(column) => format!("groups of `{}` left out in turn", visible(column)),
-        None => "tenths of the rows left out in turn".to_owned(),
+        Some(column) => format!("cross-validation over groups of `{}`", visible(column)),
+        None => "10-fold cross-validation".to_owned(),
     };
     match &outcome.errors {
         None => {}

@@ -245,7 +245,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(svg) if arguments.surface => {
             let surface = surface_svg(&slice).ok_or_else(|| {
                 Failure::usage("`--surface` needs two inputs, but only one is left")
-                    .help("without `--surface`, the picture of one input is a curve")
+                    .help("without `--surface`, a map of one input is drawn as a curve")
             })?;
             svg.write(&surface)?;
         }

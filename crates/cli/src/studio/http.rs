@@ -125,7 +125,7 @@ impl<S: Read> Request<S> {
         }
         if self.header("content-encoding").is_some() {
             return Err(
-                Status::BAD_REQUEST.says("send the text as it is, without a content encoding")
+                Status::BAD_REQUEST.says("send the text without a content encoding")
             );
         }
         let length = length

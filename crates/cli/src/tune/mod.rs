@@ -301,7 +301,7 @@ fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
             "`--only` and `--fix` leave nothing to tune; `--rule-weights` tunes the weights of rules"
         }
         TuneError::NoRows => "the tables contain no rows",
-        TuneError::NoWeight => "give rows a weight above 0, or leave out `--weight`",
+        TuneError::NoWeight => "give some rows a weight above 0, or leave out `--weight`",
         TuneError::NotFinite | TuneError::TooFar { .. } => {
             "check the units of the output's column and of its range"
         }

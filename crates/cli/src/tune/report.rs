@@ -35,7 +35,7 @@ pub(super) fn rule_set(
     let tuned = &outcome.tuned;
     let left_out = outcome.validation.as_ref().map(|validation| {
         format!(
-            "on rows left out, in {} parts: {} before, {} after",
+            "cross-validation in {} folds: {} before, {} after",
             validation.folds,
             short(validation.before.value),
             short(validation.after.value)
@@ -102,7 +102,7 @@ pub(super) fn words(
         let parts = divided(arguments.rows.group_by.as_ref());
         writeln!(
             out,
-            "left out    {} before, {} after; gain {} ({} parts of {parts}, 95 % intervals)",
+            "left out    {} before, {} after; gain {} ({} folds of {parts}, 95 % intervals)",
             figure(&validation.before),
             figure(&validation.after),
             figure(&validation.gain),
@@ -138,7 +138,7 @@ pub(super) fn words(
         let title = if i == 0 { "curve" } else { "" };
         let left_out = short(point.left_out);
         let said = if i == 0 {
-            " on rows left out, tuned on this share of the others"
+            " cross-validated, tuned on this share of the other rows"
         } else {
             ""
         };

@@ -304,10 +304,10 @@ pub(crate) mod tests {
             (
                 2,
                 "NA",
-                "the vehicle sent no motor outputs (SERVO_OUTPUT_RAW)",
+                "the vehicle did not send motor outputs (SERVO_OUTPUT_RAW)",
             ),
             (1, "GOOD", ""),
-            (3, "NA", "no flight was seen"),
+            (3, "NA", "no flight was observed"),
         ];
         assert_eq!(
             verdicts,

@@ -199,7 +199,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             Received::Nothing => {}
             Received::Waiting(why) => {
                 let text = format!(
-                    "`{endpoint}` cannot be opened yet: {why}; trying again every second (`--no-wait` ends instead)"
+                    "`{endpoint}` cannot be opened yet: {why}; trying again every second (with `--no-wait`, `watch` ends instead)"
                 );
                 out.events.push(Event::Note { text });
             }
@@ -210,7 +210,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             }
             Received::Closed(why) => {
                 session.closed();
-                let text = format!("the link is closed: {why}; waiting for it to come back");
+                let text = format!("the link is closed: {why}; waiting for it to open again");
                 out.events.push(Event::Note { text });
             }
         }

@@ -451,7 +451,7 @@ fn refusal(endpoint: &Endpoint, error: &io::Error) -> Failure {
             "on Linux your user must be in the group that owns the port, often `dialout`: `sudo usermod -aG dialout $USER`, then log in again",
         ),
         (io::ErrorKind::NotFound, Endpoint::Serial { .. }) => {
-            failure.help("is the cable plugged in? `ls /dev/tty*` lists the serial ports")
+            failure.help("check that the cable is plugged in; `ls /dev/tty*` lists the serial ports")
         }
         (io::ErrorKind::ConnectionRefused, _) => {
             failure.help("no program listens there: start the vehicle or the simulator, or leave out `--no-wait`")

@@ -245,7 +245,7 @@ impl Rows {
                     "`in_air` is `{}`, not 0 or 1",
                     String::from_utf8_lossy(bytes)
                 );
-                let help = "write 1 in the air and 0 on the ground, and leave the cell empty where neither is known";
+                let help = "write 1 in the air and 0 on the ground, and leave the cell empty where it is unknown";
                 self.refuse(line, text.clone(), help);
                 Err(text)
             }
@@ -340,7 +340,7 @@ impl Rows {
             problem(
                 line,
                 text,
-                "divide milliseconds by 1000; rows that are seconds apart are too few to assess",
+                "divide milliseconds by 1000; rows that are seconds apart are too few for an assessment",
             )
         })
     }

@@ -378,7 +378,7 @@ impl Watch {
         for input in monitor.assumed().filter_map(|index| inputs.get(index)) {
             let signals: Vec<&str> = input.source.signal.carried().collect();
             let text = format!(
-                "`{}` is not received yet: input `{}` is assumed to be {} (`if_missing`)",
+                "`{}` has not been received yet: input `{}` is assumed to be {} (`if_missing`)",
                 signals.join("` and `"),
                 input.name,
                 number(input.if_missing.unwrap_or(f64::NAN), 6)

@@ -86,7 +86,7 @@ fn the_value_for_missing_signals_holds_until_the_signal_is_received() {
         });
         texts.collect::<Vec<String>>()
     };
-    let assumed = "`battery_remaining_pct` is not received yet: input `battery` is assumed to be 100 (`if_missing`)";
+    let assumed = "`battery_remaining_pct` has not been received yet: input `battery` is assumed to be 100 (`if_missing`)";
     assert_eq!(notes(&bench), [assumed]);
     bench.hover_with(40.0, 2);
     assert_eq!(bench.level(), Some(Level::Fail));
