@@ -215,10 +215,10 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
                 "neither `warn` nor `fail` can be reached: the rules give at most {}",
                 shown(high)
             );
-            found.push(
-                Diagnostic::error("out-of-reach", of(&[]), message)
-                    .help("lower the thresholds: with these thresholds every flight would be GOOD"),
-            );
+            found
+                .push(Diagnostic::error("out-of-reach", of(&[]), message).help(
+                    "lower the thresholds: with these thresholds every flight would be GOOD",
+                ));
             return;
         }
         for (name, level) in levels {
@@ -232,8 +232,9 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
                 .elevated_risk_pct
                 .is_some_and(|limit| limit > 0.0)
             {
-                let message =
-                    format!("`{name}` is never reached by the elevated risk, because that never rises");
+                let message = format!(
+                    "`{name}` is never reached by the elevated risk, because that never rises"
+                );
                 let place = of(&[name, "elevated_risk"]);
                 let help = "write `rise_per_s` in `elevated_risk`, or remove the threshold";
                 found.push(Diagnostic::warning("out-of-reach", place, message).help(help));

@@ -83,9 +83,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::usage("standard input can be read only once").help("name `-` once"));
     }
     if several && arguments.svg.is_some() {
-        return Err(
-            Failure::usage("--svg draws only one flight").help("to compare several flights, use --html FILE")
-        );
+        return Err(Failure::usage("--svg draws only one flight")
+            .help("to compare several flights, use --html FILE"));
     }
     let inputs = arguments.logs.iter().map(PathBuf::from);
     let mut files = Files::reading(inputs.chain(loaded.files.iter().cloned()))?;

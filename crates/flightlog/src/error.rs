@@ -78,14 +78,14 @@ impl ReadError {
                 ErrorKind::NotFound if path.starts_with("http") => {
                     Some("download the log first, and name the file")
                 }
-                ErrorKind::NotFound if path.contains('*') => {
-                    Some("no file matches this pattern")
-                }
+                ErrorKind::NotFound if path.contains('*') => Some("no file matches this pattern"),
                 ErrorKind::NotFound => Some("check the path"),
                 ErrorKind::IsADirectory => Some("name the logs in it"),
                 _ => None,
             },
-            Self::Empty { .. } => Some("the download or copy may have failed: download the log again"),
+            Self::Empty { .. } => {
+                Some("the download or copy may have failed: download the log again")
+            }
             Self::NotALog { what, .. } if what.contains("git-lfs") => {
                 Some("fetch the log itself with `git lfs pull`")
             }

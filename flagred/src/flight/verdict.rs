@@ -191,7 +191,9 @@ impl Reason {
                 Some(_) => {
                     "scale the commands: 0 is the lower limit of the motor, 1 the upper limit"
                 }
-                None => "a motor without commands can hide any risk: log the commands of all motors",
+                None => {
+                    "a motor without commands can hide any risk: log the commands of all motors"
+                }
             }),
             Reason::NoMotorOutputs => Some(
                 "ArduPilot: set SRx_RC_CHAN of the port to 25; PX4: `mavlink stream -d PORT -s SERVO_OUTPUT_RAW_0 -r 25`; `flagred watch` without `--all` asks for them",

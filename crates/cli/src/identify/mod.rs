@@ -282,7 +282,9 @@ fn failure(arguments: &Arguments, names: &[String], error: &TuneError) -> Failur
     let target = &arguments.target;
     let failure = Failure::unusable(format!("`{target}`"), error);
     match error {
-        TuneError::NoWeight => failure.help("give some rows a weight above 0, or leave out `--weight`"),
+        TuneError::NoWeight => {
+            failure.help("give some rows a weight above 0, or leave out `--weight`")
+        }
         TuneError::NoInputHelps => {
             failure.help("add columns that are related to it, add rows, or lower `--min-gain`")
         }

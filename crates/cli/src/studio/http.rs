@@ -124,9 +124,7 @@ impl<S: Read> Request<S> {
             return Err(status.says("send the text with its length, not in chunks"));
         }
         if self.header("content-encoding").is_some() {
-            return Err(
-                Status::BAD_REQUEST.says("send the text without a content encoding")
-            );
+            return Err(Status::BAD_REQUEST.says("send the text without a content encoding"));
         }
         let length = length
             .and_then(|length| length.parse::<usize>().ok())

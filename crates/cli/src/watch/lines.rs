@@ -178,7 +178,10 @@ fn over(end: End, flown: &FlightSummary) -> String {
         End::Landed => format!("{}: the flight is over", flown.verdict),
         End::Lost(lost) => format!("{}: LOST IN THE AIR, {}", flown.verdict, cause_of(lost)),
         End::LeftInAir(StopReason::WatchEnded) => {
-            format!("{}: the watch ends while the vehicle is in the air", flown.verdict)
+            format!(
+                "{}: the watch ends while the vehicle is in the air",
+                flown.verdict
+            )
         }
         End::LeftInAir(StopReason::SetUpAnew) => format!(
             "{}: the flight so far; motors or limits became known late, the rest is assessed as a separate flight",

@@ -62,7 +62,11 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     };
     let first = reader.read_byte_record(&mut record);
     if !first.map_err(|error| broken(error, lines + 1))? {
-        return Err(problem(lines + 1, "the line with the column names is missing", HELP));
+        return Err(problem(
+            lines + 1,
+            "the line with the column names is missing",
+            HELP,
+        ));
     }
     let layout = Layout::new(&record, lines + 1, options)?;
     let mut rows = Rows::new(&layout);
