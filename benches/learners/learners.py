@@ -107,7 +107,7 @@ def predictions(model, points):
 
 
 def main():
-    print("| data | learner | RMS error on rows left out | of that of a line | rules |\n|---|---|---|---|---|")
+    print("| data | learner | cross-validation error (RMS) | of that of a line | rules |\n|---|---|---|---|---|")
     for what, (x, y, names), random in (("cars", cars(), True), ("patients", patients(), True), ("series", series(), False)):
         errors, rules = {}, {}
         for split in range(SPLITS if random else 1):

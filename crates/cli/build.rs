@@ -9,7 +9,8 @@ const VARIABLE: &str = "FLAGRED_STUDIO_PAGE";
 
 fn main() -> std::io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");
-    // Watches the folder, since cargo cannot watch a file that does not exist yet.
+    // Declares the folder as an input of the build, since cargo cannot watch a file that does not
+    // exist yet.
     println!("cargo::rerun-if-changed=page");
     println!("cargo::rerun-if-env-changed={VARIABLE}");
     let page = match env::var_os(VARIABLE).map(PathBuf::from) {

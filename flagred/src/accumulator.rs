@@ -21,16 +21,18 @@ pub struct AccumulatorSettings {
     pub window_s: f64,
     /// The risk in % above which the elevated risk rises (the paper's `x_high`).
     pub high_pct: f64,
-    /// The risk in % below which it falls (the paper's `x_low`).
+    /// The risk in % below which the elevated risk falls (the paper's `x_low`).
     pub low_pct: f64,
-    /// The rate at which it rises when all risks are above `high_pct`, in % per second (the paper's `k_i`).
+    /// The rate at which the elevated risk rises when all risks are above `high_pct`, in % per
+    /// second (the paper's `k_i`).
     pub rise_pct_per_s: f64,
-    /// The rate at which it falls when all risks are below `low_pct`, in % per second (the paper's `k_d`).
+    /// The rate at which the elevated risk falls when all risks are below `low_pct`, in % per
+    /// second (the paper's `k_d`).
     pub fall_pct_per_s: f64,
 }
 
 impl Default for AccumulatorSettings {
-    /// Calibrated on simulated flights.
+    /// The default parameters, which were calibrated on simulated flights.
     fn default() -> Self {
         AccumulatorSettings {
             window_s: 10.0,

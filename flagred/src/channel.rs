@@ -62,12 +62,12 @@ pub enum Statistic {
 }
 
 impl Statistic {
-    /// Whether it is computed from means over 0.1 s and not from samples.
+    /// Whether the statistic is computed from means over 0.1 s instead of samples.
     pub(crate) const fn is_of_bins(self) -> bool {
         matches!(self, Statistic::StdLessNoise | Statistic::Noise)
     }
 
-    /// Whether it can be computed over an exponential window.
+    /// Whether the statistic can be computed over an exponential window.
     pub(crate) const fn is_of_weights(self) -> bool {
         matches!(
             self,
@@ -79,7 +79,7 @@ impl Statistic {
         )
     }
 
-    /// Whether it is computed from the means of slots and not from samples.
+    /// Whether the statistic is computed from the means of slots instead of samples.
     #[cfg(feature = "std")]
     pub(crate) const fn is_of_slots(self) -> bool {
         matches!(self, Statistic::Rate | Statistic::Percentile(_))
@@ -107,12 +107,12 @@ impl Statistic {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Motors {
-    /// They are not combined: the statistic is over all motors and the whole window at once.
+    /// No combination: the statistic is computed over all motors and the whole window at once.
     #[default]
     Pooled,
-    /// Their mean.
+    /// The mean of the motors.
     Mean,
-    /// Their standard deviation: the spread between motors.
+    /// The standard deviation of the motors: the spread between them.
     Std,
     /// The smallest value.
     Min,
@@ -135,7 +135,8 @@ pub enum Observed {
     LowSide,
     /// The distance of each command from the upper limit.
     HighSide,
-    /// One of the efforts that the commands add up to (0 roll, 1 pitch, 2 yaw, 3 thrust); unknown without a geometry.
+    /// One of the efforts into which the commands are decomposed (0 roll, 1 pitch, 2 yaw, 3
+    /// thrust); unknown without a geometry.
     Effort(usize),
     /// The noise of the commands of all motors together.
     CommandNoise,
@@ -170,7 +171,7 @@ pub enum Observed {
 }
 
 impl Observed {
-    /// The indices of the signals that it reads.
+    /// The indices of the signals that the channel reads.
     pub fn signals(&self) -> impl Iterator<Item = usize> {
         let [first, second] = match *self {
             Observed::Named(signal) => [Some(signal), None],
@@ -189,7 +190,7 @@ impl Observed {
     }
 }
 
-/// A difference of angles the shorter way around, in [-180, 180).
+/// The difference of two angles, the shorter way around, in [-180, 180).
 pub(crate) fn short_way_deg(difference_deg: f64) -> f64 {
     let short_deg = libm::remainder(difference_deg, 360.0);
     if short_deg == 180.0 {
@@ -289,7 +290,7 @@ pub struct Input {
 }
 
 impl Input {
-    /// The indices of the other inputs that its value depends on.
+    /// The indices of the other inputs that the value of this input depends on.
     pub(crate) fn others(&self) -> impl Iterator<Item = usize> {
         self.ratio.into_iter().map(|ratio| ratio.per)
     }

@@ -107,7 +107,7 @@ pub fn outvoted(profile: &fuzzy::Source, estimator: &Estimator) -> Findings {
     Findings::locate(found, profile.text())
 }
 
-/// The values of a document, by their keys.
+/// The positions of the values of a document, by their keys.
 struct Places<'t>(&'t Node);
 
 impl Places<'_> {
@@ -243,10 +243,10 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
                 "neither `warn` nor `fail` can be reached: the rules give at most {}",
                 shown(high)
             );
-            found.push(
-                Diagnostic::error("out-of-reach", of(&[]), message)
-                    .help("lower the thresholds: with these every flight would be GOOD"),
-            );
+            found
+                .push(Diagnostic::error("out-of-reach", of(&[]), message).help(
+                    "lower the thresholds: with these thresholds every flight would be GOOD",
+                ));
             return;
         }
         for (name, level) in levels {
@@ -260,8 +260,9 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
                 .elevated_risk_pct
                 .is_some_and(|limit| limit > 0.0)
             {
-                let message =
-                    format!("`{name}` is never reached by the elevated risk, which never rises");
+                let message = format!(
+                    "`{name}` is never reached by the elevated risk, because that never rises"
+                );
                 let place = of(&[name, "elevated_risk"]);
                 let help = "write `rise_per_s` in `elevated_risk`, or remove the threshold";
                 found.push(Diagnostic::warning("out-of-reach", place, message).help(help));
@@ -288,16 +289,16 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
     }
 }
 
-/// The longest window and the longest wait before a level is raised that are not suspicious, in seconds.
+/// The window and the wait before a level is raised above which a warning is given, in seconds.
 const LONGEST_WINDOW_S: f64 = 600.0;
 const LONGEST_WAIT_S: f64 = 30.0;
 
-/// Finds windows and waits so long that they are likely in another unit.
+/// Finds windows and waits that are so long that their unit is probably wrong.
 fn durations(profile: &Profile, at: &Places, found: &mut Vec<Diagnostic>) {
     let mut note = |path: &[&str], message: String, help: &str| {
         found.push(Diagnostic::warning("unit", at.of(path), message).help(help));
     };
-    let window = "windows are in seconds; a risk over a longer one comes too late";
+    let window = "windows are in seconds; a risk over a longer window comes too late";
     let mut long = |path: &[&str], window_s: f64| {
         if window_s > LONGEST_WINDOW_S {
             note(
@@ -319,7 +320,7 @@ fn durations(profile: &Profile, at: &Places, found: &mut Vec<Diagnostic>) {
     ] {
         if level.after_s > LONGEST_WAIT_S {
             let message = format!("`{name}` is raised only after {} s", level.after_s);
-            let help = "`after_s` is in seconds; control can be lost within one";
+            let help = "`after_s` is in seconds; control can be lost within one second";
             note(&["verdict", name, "after_s"], message, help);
         }
     }
@@ -365,9 +366,9 @@ fn reached(
             let message = format!("`{name}` at risk {limit} {what}: the rules give {bound}");
             let help = match above {
                 true => {
-                    "lower it in `verdict`, or make the last term of the output narrower: the centroid of a term lies inside it"
+                    "lower the threshold in `verdict`, or make the last term of the output narrower: the centroid of a term is inside the term"
                 }
-                false => "raise it in `verdict` above what the rules give at rest",
+                false => "raise the threshold in `verdict` above the risk at rest",
             };
             found.push(Diagnostic::warning("out-of-reach", place(&["risk"]), message).help(help));
         }
@@ -377,10 +378,10 @@ fn reached(
         && level.raise.risk_pct.is_none_or(|limit| limit > low)
     {
         let message = format!(
-            "`{name}` is never lowered: it is held down to risk {until}, and the rules give at least {}",
+            "`{name}` is never lowered: it lasts until the risk falls below {until}, but the rules give at least {}",
             shown(low)
         );
-        let help = "raise `until` above what the rules give at rest";
+        let help = "raise `until` above the risk at rest";
         let place = place(&["until", "risk"]);
         found.push(Diagnostic::warning("out-of-reach", place, message).help(help));
     }
@@ -407,12 +408,12 @@ fn signal(
             }
             _ if is_angle(a) != is_angle(b) => {
                 let (angle, other) = if is_angle(a) { (a, b) } else { (b, a) };
-                Some(format!("`{angle}` is in degrees, and `{other}` is not"))
+                Some(format!("`{angle}` is in degrees, but `{other}` is not"))
             }
             _ => None,
         };
         if let Some(message) = message {
-            let help = "a difference is of two signals of one unit; the names of angles in degrees end in `_deg`";
+            let help = "a difference needs two signals of the same unit; the names of angles in degrees end in `_deg`";
             return Some(Diagnostic::error("unit", place, message).help(help));
         }
     }
@@ -457,7 +458,7 @@ fn signal(
                 input.name,
                 if is_rate { "the rate of " } else { "" }
             );
-            let help = "take a signal of that unit, or write the terms of the input in the unit of the signal";
+            let help = "choose a signal with that unit, or write the terms of the input in the unit of the signal";
             return Some(Diagnostic::warning("unit", place, message).help(help));
         }
     }
@@ -473,11 +474,12 @@ fn signal(
         "input `{}` goes from {} to {}, but its values are from {low} to {high}",
         input.name, variable.low, variable.high
     );
-    let help = "motors are shares of their range, from 0 to 1; write the terms of the input so";
+    let help =
+        "motor commands are fractions of their range, from 0 to 1; write the terms of the input so";
     Some(Diagnostic::warning("unit", place, message).help(help))
 }
 
-/// A unit in normalised spelling.
+/// Returns the normalised spelling of a unit.
 fn normal(unit: &str) -> String {
     let unit = unit.trim().replace('°', "deg").replace('²', "2");
     unit.to_lowercase()

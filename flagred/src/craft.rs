@@ -10,8 +10,9 @@ pub struct Craft<'a> {
     pub motors: usize,
     /// The names of the other signals of a sample, in order.
     pub signals: &'a [&'a str],
-    /// The signals among these that the vehicle may never send. Until such a signal is known for the first time, an
-    /// input with [`if_missing`](crate::profile::ProfileInput::if_missing) has that value.
+    /// The subset of `signals` that the vehicle may never send. Until such a signal is known for
+    /// the first time, an input with [`if_missing`](crate::profile::ProfileInput::if_missing) has
+    /// that value.
     pub optional: &'a [&'a str],
     /// The factors of each motor, in the order of the samples; empty if the geometry is unknown.
     pub geometry: &'a [Factors],

@@ -26,7 +26,7 @@ pub(crate) fn column(normal: &Normal, factors: &Factors) -> Option<Efforts> {
     shares.filter(|shares| shares.iter().all(|share| share.is_finite()))
 }
 
-/// The sums of the products of the factors over all motors.
+/// The normal matrix: products of the factors, summed over all motors.
 pub(crate) type Normal = [[f64; ROLL_PITCH_YAW_THRUST]; ROLL_PITCH_YAW_THRUST];
 
 /// The normal matrix of the factors of all motors. An axis that no motor acts on gets an effort of 0.

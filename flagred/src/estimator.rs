@@ -46,7 +46,7 @@ struct Compiled {
     channels: Vec<Channel>,
     inputs: Vec<Input>,
     propositions: Vec<Proposition>,
-    /// The propositions with the names of their terms.
+    /// The inputs and terms of the propositions, by name.
     said: Vec<Said>,
     /// The estimators of the other risks of the profile, each as if it were the only one.
     others: Vec<Estimator>,
@@ -74,7 +74,7 @@ pub enum EstimatorError {
         /// The input.
         input: String,
     },
-    /// The rule set does not have the output that the profile takes as the risk.
+    /// The rule set does not have the output that the profile names as the risk.
     #[error("the rule set has no output `{output}`")]
     NoSuchOutput {
         /// The output.
@@ -104,7 +104,7 @@ pub enum EstimatorError {
     },
     /// The output keeps its previous value where no rule fires, which conflicts with filling gaps.
     #[error(
-        "output `{output}` keeps its previous value where no rule fires, which a risk does not"
+        "output `{output}` keeps its previous value where no rule fires, which is not allowed for a risk"
     )]
     KeepsPrevious {
         /// The output.
@@ -198,7 +198,7 @@ impl Estimator {
         });
         let order = order.collect();
         let signals = profile.signals();
-        // The signals that a vehicle sends on board are not known here.
+        // The signals that the vehicle will send are unknown when a plan is created.
         let craft = Craft::new(0).with_signals(&signals);
         let (channels, inputs) = profile
             .channels(&[], craft.with_optional(&signals))
@@ -246,7 +246,7 @@ impl Estimator {
         &self.0.engine
     }
 
-    /// The order of the inputs, as in [`Lookup::order`].
+    /// The indices of the inputs, as in [`Lookup::order`].
     pub(crate) fn order(&self) -> &[u32] {
         &self.0.order
     }
@@ -299,7 +299,7 @@ impl Estimator {
         self.estimate(inputs, &mut Memory::of(self))
     }
 
-    /// As [`Estimator::at`], without allocating.
+    /// As [`Estimator::at`], in memory that the caller reuses.
     pub(crate) fn estimate(&self, inputs: &[f64], memory: &mut Memory) -> Option<Estimate> {
         let Memory {
             scratch,
@@ -413,7 +413,7 @@ mod tests {
         let with = |battery: f64| [&known[..], &[battery]].concat();
         let risk = default.at(&known);
         assert!(risk.is_some());
-        // Also for values out of range: the risk does not depend on this input.
+        // Values out of range do not matter either: the risk does not depend on this input.
         for level in [80.0, f64::NAN, 250.0] {
             assert_eq!(motors.at(&with(level)), risk, "{level}");
             let plan = motors.plan().unwrap();

@@ -40,7 +40,8 @@ const WHOLE_SHARE: f64 = 0.95;
 const MOST_FINDINGS: usize = 1000;
 /// The number of steps that are kept of a flight: seven hours at 10 Hz.
 pub const MOST_STEPS: usize = 250_000;
-/// Judged risks closer together than this, in seconds, are merged while a landing could still take them back.
+/// While a landing could still withdraw judged risks, those closer together than this, in seconds,
+/// are merged.
 const PENDING_S: f64 = 1e-4;
 
 /// The margin below which a motor counts as saturated.
@@ -105,7 +106,7 @@ struct Flight {
     losses: Losses,
     /// The indices of the inputs whose values were assumed in the air.
     assumed: Vec<usize>,
-    /// Judged risks that a landing would still take back, in order of time.
+    /// Judged risks that a landing would still withdraw, in order of time.
     pending: VecDeque<Pending>,
 }
 
@@ -357,14 +358,14 @@ impl Flight {
         }
     }
 
-    /// Keeps a judged risk pending until a landing can no longer take it back.
+    /// Keeps a judged risk pending until a landing can no longer withdraw it.
     fn wait(&mut self, risk: Pending) {
         match self.pending.back_mut() {
             Some(last) if risk.t_s - last.t_s < PENDING_S => {
                 last.held_s += risk.held_s;
                 last.risk_times_s += risk.risk_times_s;
                 last.risk_pct = last.risk_pct.max(risk.risk_pct);
-                // Unknown is less than any number.
+                // An unknown value is smaller than any number.
                 if risk.elevated_risk_pct > last.elevated_risk_pct {
                     last.elevated_risk_pct = risk.elevated_risk_pct;
                 }
@@ -407,7 +408,7 @@ impl Flight {
         self.widened_step_s = Some(self.widened_step_s.map_or(mean_s, |s| mean_s.max(2.0 * s)));
     }
 
-    /// Counts the pending risks up to a time, which a landing can no longer take back.
+    /// Counts the pending risks up to the given time, which a landing can no longer withdraw.
     fn settle(&mut self, until_s: f64) {
         while let Some(risk) = self.pending.front().filter(|risk| risk.t_s <= until_s) {
             self.judged_s += risk.held_s;
@@ -420,7 +421,7 @@ impl Flight {
         }
     }
 
-    /// Handles a landing: nothing after `from_s` is judged.
+    /// Handles a landing: the time after `from_s` is not judged.
     fn take_back(&mut self, from_s: f64) {
         self.settle(from_s);
         self.pending.clear();
@@ -453,8 +454,9 @@ impl Flight {
         }
     }
 
-    /// The verdict. Without findings the flight is GOOD only if the risk is known for most of the time in the air,
-    /// every motor except for moments, and the clock never went back.
+    /// The verdict. Without findings the flight is GOOD only if the risk was known for most of the
+    /// time in the air, the commands of all motors were known except for moments, and the clock
+    /// never went back.
     fn verdict(&self, summary: &Summary, profile: &Profile) -> Verdict {
         let knows_enough =
             summary.assessed_s > 0.0 && summary.assessed_s >= KNOWN_SHARE * summary.in_air_s;

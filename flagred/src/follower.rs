@@ -35,7 +35,8 @@ pub(crate) struct Follower {
     settled: bool,
     /// Since when the vehicle seems to be on the ground, in seconds; the flight may continue within [`TOUCH_S`].
     down_since_s: Option<f64>,
-    /// Whether the motors idle, and whether a high risk came before.
+    /// The state of idle motors, including whether a high risk preceded it; `None` while they do
+    /// not idle.
     idle: Option<Idle>,
     /// The last time at which the motors did not idle since the autopilot reported that the vehicle is on the ground,
     /// in seconds.
@@ -44,7 +45,8 @@ pub(crate) struct Follower {
     falls: bool,
     last_high_s: Option<f64>,
     last_known_s: Option<f64>,
-    /// While an alarm lasts: the last time at which it was unknown whether the motors work as before, in seconds.
+    /// During an alarm, the last time at which the motors were not known to work as before it, in
+    /// seconds.
     in_doubt_s: Option<f64>,
 }
 
@@ -59,7 +61,7 @@ const TROUBLE_S: f64 = 2.0;
 /// up to 2.3 s (docs/profiles.md).
 const FALL_S: f64 = 3.0;
 
-/// How a flight, or the knowledge about it, ends.
+/// The reason why a flight or its observation ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
     Landing,
@@ -208,7 +210,7 @@ impl Follower {
         note((feed.channels, feed.inputs), room.seen, sample.signals);
         let together = motor::take(room.motors, &mut self.bin, t_s, sample.motors);
         let rests = self.rests(sample, room.motors);
-        // A risk that does not depend on the motors is estimated during a fall too.
+        // During a fall, a risk that does not depend on the motors is still estimated.
         self.falls = self.falls && feed.needs_motors();
         if rests {
             room.inputs.fill(f64::NAN);
@@ -327,8 +329,8 @@ impl Follower {
         ended
     }
 
-    /// The worst level of the risk and of the other findings. After an alarm it is WARN until the motors work as
-    /// before.
+    /// The worst level of the risk and of the other findings. After an alarm it stays at least WARN
+    /// until the motors work as they did before.
     pub(crate) fn level(&self) -> Level {
         let noticed = self.notices.open().map_or(Level::Good, |f| f.severity);
         let doubted = self.in_doubt_s.map_or(Level::Good, |_| Level::Warn);
@@ -368,7 +370,7 @@ impl Follower {
             return false;
         }
         let is_long = |lifted_s: f64| t_s - lifted_s >= FALL_S;
-        // During an alarm the rules decide.
+        // During an alarm, only the rules decide: a fall does not begin.
         self.falls = (fell || self.alert.level() == Level::Good)
             && sample.in_air == Some(true)
             && self.lifted_s.is_some_and(is_long);
@@ -382,7 +384,7 @@ impl Follower {
         idle == Idle::Landing && !self.falls
     }
 
-    /// Some time after take-off, discards it from the long windows and from the elevated risk.
+    /// Some time after take-off, discards the take-off from the long windows and the elevated risk.
     fn settle(&mut self, t_s: f64, in_air_since_s: f64, room: &mut FlightMemory<'_>) {
         let Sampling {
             take_off_s,

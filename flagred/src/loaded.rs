@@ -27,7 +27,8 @@ pub struct Loaded {
     pub rules: Source,
     /// Warnings, which do not prevent the use of the profile.
     pub warnings: Findings,
-    /// The files that it may have been read from; empty for a shipped profile.
+    /// The files that the profile and its rule set may have been read from; empty for a shipped
+    /// profile.
     pub files: Vec<PathBuf>,
 }
 
@@ -260,17 +261,17 @@ pub fn rules<E>(
                 "profile `{}` names the rule set `{}`, which is not in the profile's folder",
                 profile.name, profile.rules
             ))
-            .help("move it there, or allow its folder with FLAGRED_RULES=FOLDER"));
+            .help("move the rule set there, or allow its folder with FLAGRED_RULES=FOLDER"));
         }
         let text = read(&path).map_err(LoadError::Read)?;
         return Ok((path.display().to_string(), text));
     }
     Err(LoadError::unusable(format!(
-        "profile `{}` names the rule set `{}`, which is neither a file beside it nor built in",
+        "profile `{}` names the rule set `{}`, which is neither a file next to it nor built in",
         profile.name, profile.rules
     ))
     .help(format!(
-        "built in are {}; a path starts at the folder of the profile",
+        "built in are {}; paths are relative to the folder of the profile",
         built_in()
     )))
 }

@@ -38,7 +38,8 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     }
     let needed = profile.signals();
     let carried = carried(flight, &needed);
-    // If a signal that only one of several risks needs is missing, the others are still assessed.
+    // With several risks, a signal that only one of them needs may be missing: the other risks are
+    // still assessed.
     let signals = match profile.other_risks.is_empty() {
         true => carried.clone(),
         false => needed,
@@ -75,7 +76,8 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     {
         match unknown {
             Unknown::TooFewSamples { .. } => *help = slow.help(),
-            // Two samples or none in a window: the reason is the low sample rate, not the signal of the motors.
+            // With at most two samples in a window, the sample rate is too low; the signal of the
+            // motors is not missing.
             Unknown::NoValue { input } | Unknown::WarmingUp { input } if reads_motors(*input) => {
                 assessment.verdict = Verdict::NotAvailable(Reason::Log(slow.clone()));
             }

@@ -10,7 +10,7 @@ use crate::{
 /// Marks an input that the risk does not depend on, instead of its index among the inputs of the profile.
 pub(crate) const UNREAD: u32 = u32::MAX;
 
-/// The data that an estimate needs in addition to the rules.
+/// The data that an estimate of the risk needs in addition to the rules.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lookup<'a> {
     /// For each input of the rule set its index in the profile, or [`UNREAD`].

@@ -27,7 +27,7 @@ impl Moments {
         max: f64::NEG_INFINITY,
     };
 
-    /// Memory for moments, all zeros.
+    /// All-zero memory for moments.
     pub(crate) const IDLE: Moments = Moments {
         min: 0.0,
         max: 0.0,
@@ -66,8 +66,8 @@ impl Moments {
         }
     }
 
-    /// The moments of values with weight 1 each, after applying `counted`; [`EMPTY`](Self::EMPTY) if one of them is not
-    /// finite.
+    /// The moments of the results of `counted`, each with weight 1; [`EMPTY`](Self::EMPTY) if one
+    /// value is not finite.
     pub(crate) fn alike(
         values: impl Iterator<Item = f64> + Clone,
         counted: impl Fn(f64) -> f64,

@@ -62,7 +62,7 @@ impl Unknown {
                 format!("the command of motor {} is unknown", motor + 1)
             }
             Unknown::CommandOutside { motor, command } => format!(
-                "the command of motor {} is `{command}`, and a command is a fraction from 0 to 1",
+                "the command of motor {} is `{command}`, but a command is a fraction from 0 to 1",
                 motor + 1
             ),
         }
@@ -74,16 +74,16 @@ impl Unknown {
 #[non_exhaustive]
 pub enum MonitorError {
     /// The profile needs a signal that the samples do not have.
-    #[error("the profile needs the signal `{signal}`, which the flight does not carry")]
+    #[error("the profile needs the signal `{signal}`, which the flight does not contain")]
     NoSignal {
         /// The signal.
         signal: String,
     },
     /// The profile reads the motors, but the flight has none.
-    #[error("the flight has no motors, and the profile reads them")]
+    #[error("the profile reads motors, but the flight has none")]
     NoMotors,
     /// The profile reads a motor that the flight does not have.
-    #[error("the profile needs motor {motor}, and the flight has {motors} motors")]
+    #[error("the profile needs motor {motor}, but the flight has only {motors} motors")]
     FewMotors {
         /// The number of the motor, from 1.
         motor: usize,
@@ -127,7 +127,7 @@ pub struct Monitor {
     unknown: Option<Unknown>,
 }
 
-/// A finding of another risk of the profile.
+/// A finding about another risk of the profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OfRisk {
     /// The index of the risk in [`Profile::other_risks`].
@@ -298,7 +298,7 @@ impl Monitor {
         elsewhere.or_else(|| self.follower.open_finding())
     }
 
-    /// The finding behind the current level if it is one of another risk.
+    /// The finding behind the current level, if the finding is about another risk.
     pub fn open_elsewhere(&self) -> Option<OfRisk> {
         let first = self.follower.open_finding().map(|found| found.severity);
         let others = self.others.iter().enumerate();
@@ -306,7 +306,7 @@ impl Monitor {
             let found = other.follower.open_finding()?;
             Some(OfRisk { risk, found })
         });
-        // Of equal ones, the first counts.
+        // Among findings of equal level, the first counts.
         let worst = open.reduce(
             |worst, next| match next.found.severity > worst.found.severity {
                 true => next,

@@ -27,29 +27,31 @@ const NONE: u32 = u32::MAX;
 /// The state of one motor.
 #[derive(Debug, Clone, Copy)]
 pub struct Motor {
-    /// Its effective command in the latest sample; NaN is unknown.
+    /// The effective command of the motor in the latest sample; NaN is unknown.
     pub(crate) command: f64,
     /// The command without the part that commands yaw.
     pub(crate) less_yaw: f64,
-    /// Its yaw factor, and the contribution of one unit of its command to each effort; zeros if the geometry is
-    /// unknown.
+    /// The yaw factor of the motor, and the contribution of one unit of its command to each effort;
+    /// zeros if the geometry is unknown.
     yaw: f64,
     share: Efforts,
     /// The index of the opposite motor; `u32::MAX` if there is none or the geometry is unknown.
     pub(crate) opposite: u32,
-    /// The sum of its commands in the current bin, and their mean in the previous bin; NaN is unknown.
+    /// The sum of the commands in the current bin, and the mean of the commands in the previous
+    /// bin; NaN is unknown.
     bin_sum: f64,
     bin_before: f64,
-    /// The difference of its command to the mean of all motors, averaged over the last seconds and as a trim.
+    /// The difference between the command and the mean of all motors, averaged over the last
+    /// seconds and as a trim.
     pub(crate) difference: Average,
     pub(crate) trim: Average,
-    /// The time for which its command has been 0, in seconds.
+    /// The time for which the command has been 0, in seconds.
     pub(crate) at_zero_s: f64,
-    /// Its margins while a level was being reached, since the first time.
+    /// The margins of the motor while a level was being reached, since it was first reached.
     pub(crate) record: MotorRecord,
 }
 
-/// The margins of a motor over a time.
+/// The margins of a motor over a period.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MotorRecord {
     pub(crate) samples: u32,

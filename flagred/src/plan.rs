@@ -7,7 +7,7 @@ use fuzzy::{Engine, table::ClosedForm};
 
 use crate::board::Rules;
 
-/// The reason why a rule set, with or without a profile, cannot be exported.
+/// The reason why a rule set or a profile cannot be exported.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoPlan {
@@ -21,14 +21,16 @@ pub enum NoPlan {
     },
     /// An output keeps its previous value.
     #[error(
-        "output `{output}` keeps its previous value where no rule fires, so it does not depend on the inputs alone"
+        "output `{output}` keeps its previous value where no rule fires, so it depends on more than the inputs"
     )]
     KeepsPrevious {
         /// The output.
         output: String,
     },
     /// The profile has several risks.
-    #[error("the profile has the risks `{output}` and `{other}`, but exported code has one")]
+    #[error(
+        "the profile has the risks `{output}` and `{other}`, but exported code supports only one"
+    )]
     SeveralRisks {
         /// The first risk.
         output: String,
@@ -43,11 +45,11 @@ impl NoPlan {
         match self {
             NoPlan::NoClosedForm { .. } => {
                 "the defuzzifiers have a closed form with `implication: minimum` or `product` and `aggregation: maximum` or \
-                 `sum` (maxima: `maximum` only), over terms that are no functions, without `samples`; those of Takagi-Sugeno \
+                 `sum` (maxima: `maximum` only), over terms that are not functions, without `samples`; those of Takagi-Sugeno \
                  and Tsukamoto have one always"
             }
             NoPlan::KeepsPrevious { .. } => {
-                "give the output a value for where no rule fires, as `when_no_rule_fires: 0`, or leave that key out"
+                "set `when_no_rule_fires` to a number, such as 0, or leave that key out"
             }
             NoPlan::SeveralRisks { .. } => {
                 "write a profile for each risk, and run a monitor of each: the findings are the same"

@@ -110,7 +110,7 @@ pub enum Unknown {
     CommandOutside {
         /// The first such motor, counted from 0.
         motor: usize,
-        /// Its command.
+        /// The command of that motor.
         command: f64,
     },
 }

@@ -92,7 +92,7 @@ impl Signal {
         all.map(|(name, _)| *name)
     }
 
-    /// The signal with this name; an unknown name is a signal of the flight.
+    /// The signal with the given name; any other name denotes a signal of the flight.
     pub fn named(name: &str) -> Signal {
         OF_MOTORS
             .into_iter()
@@ -101,7 +101,7 @@ impl Signal {
             .map_or_else(|| Signal::Named(name.into()), |(_, signal)| signal)
     }
 
-    /// The names of the signals that samples must have for it.
+    /// The names of the signals that samples must contain to compute this signal.
     pub fn carried(&self) -> impl Iterator<Item = &str> {
         let (first, second) = match self {
             Signal::Named(name) => (Some(name), None),

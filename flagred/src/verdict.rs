@@ -199,17 +199,17 @@ pub struct Limit {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NoticeSettings {
-    /// The noise of the commands above which it is reported: vibration, or gains that are too high.
+    /// The threshold on the noise of the commands: vibration, or gains that are too high.
     pub noise: Option<Limit>,
-    /// The reserve of the mean command to the upper limit below which it is reported.
+    /// The threshold on the reserve of the mean command to the upper limit.
     pub reserve: Option<Limit>,
-    /// The deviation of motors from their own part of the thrust earlier in the flight above which it is reported;
-    /// twice this between opposite motors, half of it if one motor alone is higher.
+    /// The threshold on the deviation of motors from their own part of the thrust earlier in the
+    /// flight. It is doubled for opposite motors, and halved if only one motor is higher.
     pub imbalance: Option<Limit>,
 }
 
 impl NoticeSettings {
-    /// Whether any finding is enabled. All of them read the motors.
+    /// Whether any finding is enabled. All these findings read the motors.
     pub(crate) fn any(&self) -> bool {
         *self != NoticeSettings::default()
     }
@@ -290,17 +290,19 @@ pub struct Finding {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MotorFinding {
-    /// Its number, from 1: the number of the autopilot in logs and vehicles, otherwise its position in the samples.
+    /// The number of the motor, from 1: as numbered by the autopilot, or otherwise its position in
+    /// the samples.
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub number: usize,
     /// The number of a second motor that may be the cause instead, if the commands do not show which of the two.
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub or_number: Option<usize>,
-    /// The nearest limit. For an imbalance, whether it is below or above its part.
+    /// The nearest limit. For an imbalance, whether the motor is below or above its usual part of
+    /// the thrust.
     pub side: Side,
-    /// Its mean margin.
+    /// The mean margin of the motor.
     pub margin_mean: f64,
-    /// Its smallest margin.
+    /// The smallest margin of the motor.
     pub margin_min: f64,
 }
 

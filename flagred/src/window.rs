@@ -110,7 +110,7 @@ impl Window {
         self.clear();
     }
 
-    /// Its length in seconds.
+    /// The length in seconds.
     pub(crate) fn length_s(&self) -> f64 {
         self.length_s
     }

@@ -294,7 +294,8 @@ pub fn nearest<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
 ) -> Option<&'a str> {
-    // A comparison takes time proportional to the product of the lengths. Longer words are not typing errors.
+    // The maximum length of a word that is compared: the time of a comparison grows with the
+    // product of the lengths, and longer words are not typing errors.
     const LONGEST: usize = 64;
     let fold = |s: &str| {
         s.chars()
@@ -311,9 +312,9 @@ pub fn nearest<'a>(
         let other = fold(candidate);
         let longest = word.len().max(other.len());
         let allowed = match longest {
-            // Any letter would be near any other.
+            // For single letters, every candidate of one letter would be near.
             0 | 1 => 0,
-            // `mild` is not `cold`.
+            // For short words only one edit is allowed: `mild` is not a misspelt `cold`.
             2..=4 => 1,
             _ => longest.div_ceil(3),
         };

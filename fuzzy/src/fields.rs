@@ -37,7 +37,7 @@ pub(crate) struct Fields {
     key: String,
 }
 
-/// Serializers that accept only a number, or only a name.
+/// A serializer that accepts only a number, and one that accepts only a name.
 struct Number;
 struct Name;
 
@@ -173,7 +173,7 @@ macro_rules! take_numbers {
     };
 }
 
-/// Accepts a number, or the absence of one.
+/// Serializes a number or a missing value; all other types are rejected.
 impl Serializer for Number {
     type Ok = Option<f64>;
 

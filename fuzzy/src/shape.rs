@@ -50,37 +50,37 @@ pub enum MembershipFunction {
     /// 0 at `left`, 1 at `peak` and 0 at `right`, with straight lines between them. `left = peak` or `peak = right`
     /// gives a vertical edge. MATLAB's `trimf`.
     Triangle {
-        /// The value at which it starts to rise from 0.
+        /// The value at which the degree starts to rise from 0.
         left: f64,
-        /// The value at which it is 1.
+        /// The value at which the degree is 1.
         peak: f64,
-        /// The value at which it returns to 0.
+        /// The value at which the degree returns to 0.
         right: f64,
     },
     /// 0 at `left`, 1 from `left_top` to `right_top` and 0 at `right`, with straight lines between them. MATLAB's
     /// `trapmf`.
     Trapezoid {
-        /// The value at which it starts to rise from 0.
+        /// The value at which the degree starts to rise from 0.
         left: f64,
-        /// The value at which it reaches 1.
+        /// The value at which the degree reaches 1.
         left_top: f64,
-        /// The value at which it starts to fall from 1.
+        /// The value at which the degree starts to fall from 1.
         right_top: f64,
-        /// The value at which it returns to 0.
+        /// The value at which the degree returns to 0.
         right: f64,
     },
     /// 1 up to `top`, then a straight line to 0 at `foot`. MATLAB's `linzmf`.
     LeftShoulder {
-        /// The last value at which it is 1.
+        /// The last value at which the degree is 1.
         top: f64,
-        /// The first value at which it is 0.
+        /// The first value at which the degree is 0.
         foot: f64,
     },
     /// 0 up to `foot`, then a straight line to 1 at `top`. MATLAB's `linsmf`.
     RightShoulder {
-        /// The last value at which it is 0.
+        /// The last value at which the degree is 0.
         foot: f64,
-        /// The first value at which it is 1.
+        /// The first value at which the degree is 1.
         top: f64,
     },
     /// 1 from `left` to `right`, including both ends, else 0. fuzzylite's `Rectangle`.
@@ -92,7 +92,7 @@ pub enum MembershipFunction {
     },
     /// 1 only at `at`, else 0.
     Singleton {
-        /// The value at which it is 1.
+        /// The value at which the degree is 1.
         at: f64,
     },
     /// Straight lines between points. Beyond them it keeps the first and the last degree. fuzzylite's `Discrete`.
@@ -131,9 +131,9 @@ pub enum MembershipFunction {
     },
     /// `1 / (1 + exp(-slope (x - inflection)))`. MATLAB's `sigmf`.
     Sigmoid {
-        /// The value at which it is 0.5.
+        /// The value at which the degree is 0.5.
         inflection: f64,
-        /// The steepness; it falls if this is negative.
+        /// The steepness; the degree falls if the slope is negative.
         slope: f64,
     },
     /// `|sigmoid1 - sigmoid2|`. MATLAB's `dsigmf`.
@@ -160,27 +160,27 @@ pub enum MembershipFunction {
     },
     /// 0 up to `foot`, then two parabolas up to 1 at `top`. MATLAB's `smf`.
     SShape {
-        /// The last value at which it is 0.
+        /// The last value at which the degree is 0.
         foot: f64,
-        /// The first value at which it is 1.
+        /// The first value at which the degree is 1.
         top: f64,
     },
     /// 1 up to `top`, then two parabolas down to 0 at `foot`. MATLAB's `zmf`.
     ZShape {
-        /// The last value at which it is 1.
+        /// The last value at which the degree is 1.
         top: f64,
-        /// The first value at which it is 0.
+        /// The first value at which the degree is 0.
         foot: f64,
     },
     /// An S-shape from `left` to `left_top`, 1 up to `right_top`, and a Z-shape from there to `right`. MATLAB's `pimf`.
     PiShape {
-        /// The value at which it starts to rise from 0.
+        /// The value at which the degree starts to rise from 0.
         left: f64,
-        /// The value at which it reaches 1.
+        /// The value at which the degree reaches 1.
         left_top: f64,
-        /// The value at which it starts to fall from 1.
+        /// The value at which the degree starts to fall from 1.
         right_top: f64,
-        /// The value at which it returns to 0.
+        /// The value at which the degree returns to 0.
         right: f64,
     },
     /// `(1 + cos(2 pi (x - center) / width)) / 2` within half a width of the center, else 0. fuzzylite's `Cosine`.
@@ -200,25 +200,25 @@ pub enum MembershipFunction {
     /// `(end - inflection) / (2 end - inflection - x)` up to `end`, and 1 beyond it, if `inflection <= end`; otherwise
     /// mirrored. fuzzylite's `Concave`.
     Concave {
-        /// The value at which it is 0.5.
+        /// The value at which the degree is 0.5.
         inflection: f64,
-        /// The value at which it reaches 1.
+        /// The value at which the degree reaches 1.
         end: f64,
     },
     /// `sqrt(t (2 - t))` with `t = (x - start) / (end - start)`, a quarter of an ellipse: 0 up to `start` and 1 beyond
     /// `end`; mirrored if `end` is below `start`. fuzzylite's `Arc`.
     Arc {
-        /// The value at which it starts to rise from 0.
+        /// The value at which the degree starts to rise from 0.
         start: f64,
-        /// The value at which it reaches 1.
+        /// The value at which the degree reaches 1.
         end: f64,
     },
     /// `2 sqrt(t (1 - t))` with `t = (x - left) / (right - left)`, the upper half of an ellipse, else 0. fuzzylite's
     /// `SemiEllipse`.
     SemiEllipse {
-        /// The value at which it starts to rise from 0.
+        /// The value at which the degree starts to rise from 0.
         left: f64,
-        /// The value at which it returns to 0.
+        /// The value at which the degree returns to 0.
         right: f64,
     },
     /// The same degree for all values; in a Takagi-Sugeno output, the constant `z`.

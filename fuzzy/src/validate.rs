@@ -80,7 +80,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         .map(|(variable, _)| variable.name.as_str());
     let mut validator = Validator {
         model,
-        // If two share a name, the first one is used.
+        // If two inputs share a name, the first one is used.
         inputs: model
             .inputs
             .iter()
@@ -142,7 +142,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             spans.unwrap_or(&RuleSpans::default()),
         );
         if spans.is_none() {
-            // Without a text, the message names the rule.
+            // If there is no text, the message names the rule instead of a position.
             for finding in validator.findings.iter_mut().skip(first) {
                 finding.message = format!("rule {}: {}", i + 1, finding.message);
             }

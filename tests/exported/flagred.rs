@@ -1,12 +1,12 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
 // 4360 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123344 bytes of memory.
 
-/// Memory for a monitor of so many motors.
+/// The memory of a monitor for this number of motors.
 #[allow(dead_code)]
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<35, 6, 1, 6, MOTORS>;
 
-/// What a pilot reads of a finding with a cause, by its proposition.
+/// The texts of findings with a cause, by the proposition of the cause.
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub static CAUSES: [::flagred::board::Words<'static>; 21] = [
@@ -33,7 +33,7 @@ pub static CAUSES: [::flagred::board::Words<'static>; 21] = [
     ::flagred::board::Words { code: "motor_at_limit", brief: "motors at limits", text: "Over 2 s, {percent} % of the motor commands were at a limit, where a motor cannot correct anything.", advice: "Land now and gently, without hard climbs, descents and turns. Reduce payload if this is usual." },
 ];
 
-/// What a pilot reads of a finding without a cause, by its measure.
+/// The texts of findings without a cause, by their measure.
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub static NOTICES: [::flagred::board::Words<'static>; 8] = [

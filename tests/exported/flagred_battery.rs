@@ -2,12 +2,12 @@
 // 9780 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72264 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
-/// Memory for a monitor of so many motors.
+/// The memory of a monitor for this number of motors.
 #[allow(dead_code)]
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<29, 7, 1, 3, MOTORS>;
 
-/// What a pilot reads of a finding with a cause, by its proposition.
+/// The texts of findings with a cause, by the proposition of the cause.
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub static CAUSES: [::flagred::board::Words<'static>; 33] = [
@@ -46,7 +46,7 @@ pub static CAUSES: [::flagred::board::Words<'static>; 33] = [
     ::flagred::board::Words { code: "battery", brief: "battery empty", text: "battery was empty: {value} % (what is left in the battery).", advice: "Reduce speed or land until the risk falls." },
 ];
 
-/// What a pilot reads of a finding without a cause, by its measure.
+/// The texts of findings without a cause, by their measure.
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub static NOTICES: [::flagred::board::Words<'static>; 8] = [

@@ -1,12 +1,12 @@
 // The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Do not edit.
 // 3876 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 55208 bytes of memory.
 
-/// Memory for a monitor of so many motors.
+/// The memory of a monitor for this number of motors.
 #[allow(dead_code)]
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<14, 12, 1, 2, MOTORS>;
 
-/// What a pilot reads of a finding with a cause, by its proposition.
+/// The texts of findings with a cause, by the proposition of the cause.
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub static CAUSES: [::flagred::board::Words<'static>; 20] = [
@@ -32,7 +32,7 @@ pub static CAUSES: [::flagred::board::Words<'static>; 20] = [
     ::flagred::board::Words { code: "unsteady_motors", brief: "unsteady motors", text: "The motor commands varied strongly, with a standard deviation of {percent} % of their range.", advice: "Reduce speed or land." },
 ];
 
-/// What a pilot reads of a finding without a cause, by its measure.
+/// The texts of findings without a cause, by their measure.
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub static NOTICES: [::flagred::board::Words<'static>; 8] = [

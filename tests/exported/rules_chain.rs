@@ -3,7 +3,7 @@
 // Outputs, in this order: risk (0 to 100), strain (0 to 10), trend (0 to 10), comfort (0 to 10).
 // 4552 bytes of constants. An evaluation takes 736 bytes of memory.
 
-/// The outcome of each output at values of the inputs. It depends on nothing else.
+/// Returns the outcome of each output at the given values of the inputs.
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub fn evaluate(inputs: &[f64; 2]) -> [::fuzzy::table::Outcome; 4] {

@@ -53,18 +53,18 @@ pub fn estimator(profile: &str) -> Estimator {
 /// A [`Sample`] that owns its numbers.
 #[derive(Debug, Clone)]
 pub struct Moment {
-    /// Its time in seconds.
+    /// The time in seconds.
     pub t_s: f64,
-    /// Effective commands.
+    /// The effective command of each motor.
     pub motors: Vec<f64>,
-    /// Whether in the air.
+    /// Whether the vehicle is in the air.
     pub in_air: bool,
-    /// Signals, in the order of the profile.
+    /// The values of the signals, in the order of the profile.
     pub signals: Vec<f64>,
 }
 
 impl Moment {
-    /// The borrowed sample.
+    /// Returns a sample that borrows these numbers.
     pub fn sample(&self) -> Sample<'_> {
         Sample {
             t_s: self.t_s,
@@ -194,7 +194,7 @@ pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
         Ok(plan) => {
             let mut ranges = vec![(0.0, 1.0); plan_inputs];
             for (input, index) in plan.rules.table.inputs.iter().zip(plan.order) {
-                // The risk may not depend on every input.
+                // The risk need not depend on every input.
                 if let Some(range) = ranges.get_mut(*index as usize) {
                     *range = (input.low, input.high);
                 }

@@ -120,7 +120,7 @@ pub struct ULog {
 }
 
 impl ULog {
-    /// A file of a log that began at this time.
+    /// Creates the file of a log that began at the given time.
     pub fn new(start_us: u64) -> Self {
         let mut bytes = b"ULog\x01\x12\x35\x01".to_vec();
         bytes.extend(start_us.to_le_bytes());
@@ -197,7 +197,7 @@ pub const NAV_CONTROLLER_OUTPUT: Message = (62, 183, 26);
 pub const STATUSTEXT: Message = (253, 83, 51);
 
 impl Tlog {
-    /// Writes a packet of MAVLink 1 or 2, from a system and a component.
+    /// Writes a packet of MAVLink 1 or 2, sent by the given system and component.
     pub fn packet(
         &mut self,
         stamp_us: u64,
@@ -211,7 +211,7 @@ impl Tlog {
     }
 }
 
-/// A packet of MAVLink 1 or 2, from a system and a component.
+/// Returns a packet of MAVLink 1 or 2, sent by the given system and component.
 pub fn packet(
     version: u8,
     (system, component): (u8, u8),

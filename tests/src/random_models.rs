@@ -214,7 +214,7 @@ fn model(seed: u64) -> Option<Model> {
     let Variable { low, high, .. } = output.variable;
     for term in &mut output.variable.terms {
         if let MembershipFunction::Constant { value } = term.membership_function {
-            // A fuzzy output has no constants; this is the same set.
+            // A fuzzy output cannot have constants; this term is the same set.
             term.height *= value;
             term.membership_function = MembershipFunction::Rectangle {
                 left: low,
@@ -265,7 +265,7 @@ fn point(rng: &mut Rng, model: &Model) -> Vec<f64> {
     inputs.map(|v| between(rng, v.low, v.high)).collect()
 }
 
-/// This many models with three points each, from a first seed on.
+/// Returns a number of models with three points each, for consecutive seeds.
 pub fn models(first: u64, count: usize) -> impl Iterator<Item = (u64, Model, Vec<Vec<f64>>)> {
     let models = (first..).filter_map(|seed| Some((seed, model(seed)?)));
     models.take(count).map(|(seed, model)| {

@@ -35,9 +35,10 @@ pub struct Simulated {
     pub judged: Span,
     /// The attitude error.
     pub errors: ErrorRecord,
-    /// When the flight ended by a loss of control in the air.
+    /// The time at which the flight ended by a loss of control in the air, in seconds; `None` if it
+    /// did not.
     pub lost_s: Option<f64>,
-    /// Its steps, and whether the error becomes critical after them.
+    /// The times of the steps, and whether the error becomes critical after each.
     pub steps: Vec<(f64, bool)>,
     /// The events during the flight: time in seconds, event, time constant of the wind in seconds.
     pub events: Vec<(f64, String, f64)>,

@@ -44,7 +44,7 @@ pub struct StandIn {
     pub heard: Inbox,
     /// Messages received on the second link.
     pub heard_elsewhere: Inbox,
-    /// When the motor commands of each time, in ms of the vehicle's clock, were sent.
+    /// The times in ms of the vehicle's clock of the motor commands, and when they were sent.
     pub sent: Vec<(u32, Instant)>,
     /// The progress of the other side. A flight at full speed waits for it, because the buffers of the machine would lose
     /// packets.
@@ -55,12 +55,13 @@ pub struct StandIn {
     pub clock_s: f64,
     /// Whether requests are answered.
     pub answers: bool,
-    /// How often it reads incoming packets while it waits for its next command.
+    /// The interval at which incoming packets are read while the vehicle waits for its next
+    /// command.
     pub look_every: Duration,
     asked: bool,
     /// The minimum interval of motor commands.
     pub every: Duration,
-    /// Whether it sends motor commands at the requested rate.
+    /// Whether the vehicle sends motor commands at the requested rate.
     pub obeys: bool,
     /// The offset of its motors from the outputs of the log.
     shift: usize,

@@ -118,7 +118,7 @@ impl Watch {
         self.address.unwrap()
     }
 
-    /// Its resident memory, in kB.
+    /// The resident memory of the watch, in kB.
     pub fn resident_kb(&self) -> u64 {
         let status =
             std::fs::read_to_string(format!("/proc/{}/status", self.child.0.id())).unwrap();
@@ -127,19 +127,19 @@ impl Watch {
         kb.parse().unwrap()
     }
 
-    /// A vehicle that sends datagrams to it.
+    /// Creates a vehicle that sends datagrams to the watch.
     pub fn vehicle(&self, flight: &Flight, link: Link) -> StandIn {
         self.vehicle_on(flight, Wire::udp(self.address()), link, Version::V2)
     }
 
-    /// A vehicle on a wire to it.
+    /// Creates a vehicle on a wire to the watch.
     pub fn vehicle_on(&self, flight: &Flight, wire: Wire, link: Link, version: Version) -> StandIn {
         let mut vehicle = StandIn::new(flight, wire, link, version);
         vehicle.progress = Some(Arc::clone(&self.progress));
         vehicle
     }
 
-    /// Interrupts it and returns its output.
+    /// Interrupts the watch and returns its output.
     pub fn end(mut self) -> WatchOutput {
         // The `kill` of the shell: the program of that name is not on every machine.
         let interrupted = Command::new("sh")
@@ -153,9 +153,9 @@ impl Watch {
 }
 
 pub struct WatchOutput {
-    /// The events that it printed.
+    /// The events that the watch printed.
     pub events: Vec<Value>,
-    /// Its exit code.
+    /// The exit code.
     pub code: Option<i32>,
 }
 
@@ -173,7 +173,7 @@ impl WatchOutput {
         all[0]
     }
 
-    /// The worst verdict of its flights; `NA` only if no flight has another.
+    /// The worst verdict of the flights; `NA` only if no flight has another verdict.
     pub fn verdict(&self) -> String {
         let order = ["NA", "GOOD", "WARN", "FAIL"];
         let is_end = |event: &&Value| {

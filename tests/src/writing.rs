@@ -108,7 +108,7 @@ impl Writing {
         command
     }
 
-    /// The contents of its files.
+    /// The contents of the files that the command wrote.
     pub fn contents(&self) -> Vec<Vec<u8>> {
         self.files
             .iter()

@@ -1,4 +1,4 @@
-//! The statements of ARCHITECTURE.md about packages, modules and their dependencies.
+//! Verifies the statements of ARCHITECTURE.md about packages, modules and their dependencies.
 
 use std::{
     collections::{BTreeMap, BTreeSet},

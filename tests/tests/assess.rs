@@ -175,7 +175,7 @@ fn a_file_that_is_not_a_log_is_identified() {
         (
             "semicolons.csv",
             b"t_s;pwm1;pwm2\n0;1500;1500\n",
-            "is a table with `;` between its cells, not a flight log",
+            "is a table with semicolons between its cells, not a flight log",
         ),
     ] {
         let output = assess(&[&folder.file(name, bytes)]);
@@ -383,7 +383,7 @@ fn a_given_range_replaces_only_an_assumed_one() {
         STEADY,
         ["1100", "1900"],
         3,
-        "has a range of its own, 1000 to 2000 us (MOT_PWM_MIN/MAX)",
+        "reports its own range, 1000 to 2000 us (MOT_PWM_MIN/MAX)",
     );
     refused(
         log,

@@ -50,7 +50,7 @@ fn a_frame_with_fewer_motors_than_columns_is_refused() {
     for (header, said) in [
         (
             "# frame: TRI\n",
-            "line 3: `frame` is `TRI`, which has 3 motors, and there are columns `pwm1` to `pwm4`",
+            "line 3: `frame` is `TRI`, which has 3 motors, but there are columns `pwm1` to `pwm4`",
         ),
         (
             "# frame_class: 7\n",
@@ -73,7 +73,7 @@ fn a_frame_with_fewer_motors_than_columns_is_refused() {
         "line 1: `frame` is `QUAD/X`, which has 4 motors",
         "correct it",
     );
-    // Factors of all motors replace the table of the frame.
+    // If the factors of all motors are given, they replace the table of the frame.
     let factors: String = (1..=6)
         .map(|motor| format!("# motor{motor}_factors: 1 1 1\n"))
         .collect();
@@ -227,7 +227,7 @@ fn a_clock_of_whole_numbers_is_named() {
     let csv = at(&|i| format!("{}", i / 3 * 5));
     refused(
         &csv,
-        "line 7: `t_s` goes from 0 to 5 in one row",
+        "line 7: `t_s` jumps from 0 to 5 in one row",
         "divide milliseconds by 1000",
     );
     // Repeated fractions are assessed.

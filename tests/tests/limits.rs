@@ -204,7 +204,7 @@ fn rows_headers_and_columns_of_a_flight_csv_are_bounded() {
         "line 1: there are 4097 columns, more than 4096",
     );
     let twice = folder.file("twice.csv", "t_s,a,b,a\n");
-    refused(&["inspect", &twice], "the column `a` is there twice");
+    refused(&["inspect", &twice], "the column `a` occurs twice");
 }
 
 /// One damaged time must not make all later times go back.

@@ -130,7 +130,8 @@ fn a_table_of_all_cells() {
     assert_eq!((code, text.lines().count()), (Some(0), 1 + 5usize.pow(5)));
 }
 
-/// Without a profile, a map has the values of `flagred eval`, cell by cell, also where the rules hardly fire.
+/// Without a profile, each cell of a map has the value of `flagred eval`, even where the rules
+/// hardly fire.
 #[test]
 fn the_map_of_a_rule_set_agrees_with_eval() {
     let shown = map(&[PAPER, "--csv"]).1;

@@ -162,7 +162,8 @@ fn push_all(assessor: &mut Assessor, samples: &[Sample]) {
     }
 }
 
-/// Statistics of signals: the end of the range of the input in the rule set, and its source.
+/// The sources of the inputs: the upper end of each input's range in the rule set, and its
+/// statistic of a signal.
 const SOURCES: [(f64, &str); 22] = [
     (0.5, "{mean: {motor: 3, of: motor_margin}}"),
     (0.2, "{std: {motor: 8, of: motor_command_less_yaw}}"),

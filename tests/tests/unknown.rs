@@ -323,7 +323,7 @@ fn cells_with_another_unit_are_refused_with_their_position() {
         (
             "0.5",
             40.0,
-            "line 3: `t_s` goes from 0 to 40 in one row, and is in seconds",
+            "line 3: `t_s` jumps from 0 to 40 in one row, but is in seconds",
         ),
     ] {
         let row = |i: u32| format!("{},{motor},0.5,0.5,0.5\n", f64::from(i) * t_step);

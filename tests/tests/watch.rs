@@ -157,7 +157,8 @@ fn reference_flights_get_the_verdict_of_assess_in_real_time() {
     });
 }
 
-/// One flight after the other, for a whole day, as fast as possible: `scripts/measure-live`.
+/// Replays flights one after the other, a whole day of them, as fast as possible; run by
+/// `scripts/measure-live`.
 #[test]
 #[ignore = "a day of flights"]
 fn a_day_of_flights_takes_no_more_memory_than_an_hour() {

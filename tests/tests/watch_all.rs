@@ -98,7 +98,7 @@ fn fly(seconds: u32) -> Watched {
                     let at = sent.lock().unwrap().remove(&(vehicle, t_ms));
                     late_ms.extend(at.map(|at| (now - at).as_secs_f64() * 1e3));
                 }
-                // The risks of ten minutes are millions of lines.
+                // Risks are not kept, because ten minutes have millions of such lines.
                 if line["watch"]["event"] != "risk"
                     || line["vehicle"].as_str().unwrap().starts_with("7@")
                 {

@@ -131,7 +131,8 @@ fn px4_streams_get_the_verdict_of_assess_with_the_same_assumptions() {
             .all("left_in_air")
             .filter(|part| part["why"] == "set_up_anew");
         assert_eq!(parts.count(), 0, "{name}");
-        // The risk is known soon after take-off, although thrust coefficients, which that watch did not request, never came.
+        // The risk is known soon after take-off, although the thrust coefficients were never
+        // received, because that watch did not request them.
         let first_s = |name: &str, is: &dyn Fn(&&Value) -> bool| {
             let first = replay.all(name).find(is).unwrap();
             first["t_s"].as_f64().unwrap()

@@ -267,7 +267,7 @@ fn unavailable_ports_are_reported_with_a_remedy() {
 
     let (code, told) = refused("/dev/flagred-no-such-port:57600", &["--no-wait"]);
     assert!(
-        code == Some(3) && told.contains("is the cable plugged in?"),
+        code == Some(3) && told.contains("check that the cable is plugged in"),
         "{told}"
     );
     let (code, told) = refused("somewhere", &[]);
@@ -371,7 +371,7 @@ fn an_unknown_risk_is_not_good() {
     let ended = said.one("ended");
     assert_eq!(
         (&ended["worst"], &ended["reason"]),
-        (&json!("NA"), &json!("no flight was seen"))
+        (&json!("NA"), &json!("no flight was observed"))
     );
     assert_eq!(said.code, Some(3));
 }

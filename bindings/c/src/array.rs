@@ -23,7 +23,7 @@ impl<T> Array<T> {
         if self.items.is_null() || !self.items.is_aligned() {
             return Err(Status::NullPointer);
         }
-        // No object can be larger: the count is damaged.
+        // No object can be larger, so the count is damaged.
         let bytes = self.count.checked_mul(size_of::<T>());
         if bytes.is_none_or(|bytes| bytes > isize::MAX as usize) {
             return Err(Status::DamagedPlan);

@@ -140,7 +140,7 @@ pub(crate) unsafe extern "C" fn flagred_rules_evaluate(
         return Status::WrongCount as i32;
     };
     for (i, outcome) in evaluated.iter().enumerate() {
-        // SAFETY: there is room for as many by the caller's promise.
+        // SAFETY: the caller promises room for this number of outcomes.
         unsafe { outcomes.add(i).write(Outcome::of(outcome)) };
     }
     Status::Ok as i32

@@ -71,7 +71,7 @@ pub extern "C" fn flagred_version() -> *const c_char {
     VERSION.as_ptr()
 }
 
-/// The text of a status.
+/// Returns a description of a status, as a static C string.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "a name that C can call")]
 pub extern "C" fn flagred_status_text(status: i32) -> *const c_char {
@@ -150,7 +150,7 @@ unsafe fn start(
         items: limits,
         count: if limits.is_null() { 0 } else { motors },
     };
-    // SAFETY: by the caller's promise there is one for each motor.
+    // SAFETY: the caller promises one item for each motor.
     let limits: &'static [Limits] = unsafe { limits.read() }?;
     let ranges = block.fill(limits.len(), Range::FULL)?;
     for (range, Limits { low, high }) in ranges.iter_mut().zip(limits) {

@@ -116,7 +116,7 @@ impl Plan {
     pub(crate) unsafe fn bytes(&self, motors: usize) -> Result<usize, Status> {
         // SAFETY: the caller's promise.
         let plan = unsafe { self.whole(&[], &[]) }?;
-        // Plus the channels and inputs, which are converted into the memory.
+        // The channels and inputs are converted into the memory, too.
         let channel = size_of::<Channel>() + size_of::<channel::ChannelState>();
         let input = size_of::<channel::Input>() + size_of::<f64>();
         let channels = self.channels.count.checked_mul(channel);
@@ -209,7 +209,7 @@ impl CSource {
     }
 }
 
-/// A limit; NaN means that there is none.
+/// Converts a limit from C, where NaN means no limit.
 fn known(limit: f64) -> Option<f64> {
     (!limit.is_nan()).then_some(limit)
 }

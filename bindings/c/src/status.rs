@@ -16,7 +16,7 @@ pub(crate) enum Status {
     WrongCount = 8,
 }
 
-/// The text of a status.
+/// Returns a description of a status, as a static C string.
 pub(crate) fn text(status: i32) -> &'static CStr {
     match status {
         0 => c"ok",
@@ -26,7 +26,7 @@ pub(crate) fn text(status: i32) -> &'static CStr {
         4 => c"the profile reads a motor that the vehicle does not have",
         5 => c"the memory is too small, or not aligned to 16 bytes",
         6 => c"the lower limit of a motor is not below its upper limit",
-        7 => c"the geometry does not tell roll, pitch, yaw and thrust of all motors apart",
+        7 => c"the geometry does not distinguish roll, pitch, yaw and thrust of the motors",
         8 => c"not one value for each input, not one outcome for each output, or too many commands",
         _ => c"unknown status",
     }

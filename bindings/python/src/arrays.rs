@@ -3,14 +3,15 @@
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::{prelude::*, sync::PyOnceLock, types::PyList};
 
-/// Contiguous arrays of one shape.
+/// Contiguous arrays of the same shape.
 pub(crate) struct Arrays<'py> {
     arrays: Vec<PyReadonlyArrayDyn<'py, f64>>,
     pub(crate) shape: Vec<usize>,
 }
 
 impl<'py> Arrays<'py> {
-    /// Values as arrays of one shape. Values in another form are copied by `flagred._arrays.alike`.
+    /// Converts values to arrays of the same shape. Values in another form are copied by
+    /// `flagred._arrays.alike`.
     pub(crate) fn new(py: Python<'py>, values: &[Bound<'py, PyAny>]) -> PyResult<Self> {
         if let Some(arrays) = Self::of(values) {
             return Ok(arrays);
@@ -19,11 +20,14 @@ impl<'py> Arrays<'py> {
         let alike = ALIKE.import(py, "flagred._arrays", "alike")?;
         let made: Vec<Bound<'py, PyAny>> = alike.call1((PyList::new(py, values)?,))?.extract()?;
         Self::of(&made).ok_or_else(|| {
-            crate::errors::data_error("the inputs are no arrays of numbers of one shape", None)
+            crate::errors::data_error(
+                "the inputs must be arrays of numbers of the same shape",
+                None,
+            )
         })
     }
 
-    /// The values without a copy; `None` unless all are contiguous arrays of one shape.
+    /// The values without a copy; `None` unless all are contiguous arrays of the same shape.
     fn of(values: &[Bound<'py, PyAny>]) -> Option<Self> {
         let arrays = values.iter().map(|value| {
             let array = value.cast::<PyArrayDyn<f64>>().ok()?;

@@ -123,7 +123,7 @@ struct SchemaLayout {
 }
 
 impl Imported {
-    /// The names of the columns.
+    /// The names of the columns, in their order.
     pub(crate) fn names(&self) -> Vec<String> {
         self.fields
             .iter()
@@ -157,14 +157,14 @@ fn content(capsule: &Bound<'_, PyAny>, name: &CStr) -> PyResult<NonNull<c_void>>
 
 fn mismatched(wanted: &str) -> PyErr {
     data_error(
-        format!("the table does not give {wanted}, as Arrow asks"),
+        format!("the table does not provide {wanted}, which Arrow requires"),
         None,
     )
 }
 
 fn taken(what: &str) -> PyErr {
     let help = "ask the table for new capsules".to_owned();
-    data_error(format!("the Arrow {what} was taken already"), Some(help))
+    data_error(format!("the Arrow {what} was already consumed"), Some(help))
 }
 
 fn last_error(stream: &mut FFI_ArrowArrayStream, code: i32) -> String {

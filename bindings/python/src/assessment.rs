@@ -33,9 +33,9 @@ pub(crate) struct AssessmentData {
     flight: Py<FlightData>,
     loaded: Arc<Loaded>,
     step_s: Option<f64>,
-    /// Created again at its first use after unpickling.
+    /// The flight and its assessment; after unpickling, created again at the first use.
     subject: OnceLock<Arc<Subject>>,
-    /// Pickled verdict, findings and summary, in JSON.
+    /// Verdict, findings and summary in JSON, as they are pickled.
     said: Option<String>,
 }
 

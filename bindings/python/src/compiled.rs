@@ -28,9 +28,9 @@ use crate::{
     table::{self, Table},
 };
 
-/// A rule set that can be evaluated.
+/// A compiled rule set, with the information that Python needs to evaluate it.
 pub(crate) struct Compiled {
-    /// Unique during the life of the process.
+    /// An id that is unique within the process.
     id: u64,
     pub(crate) engine: Engine,
     inputs: Vec<Py<PyString>>,
@@ -51,9 +51,9 @@ const MOST_KEPT: usize = 8;
 
 /// The values to evaluate: numbers, or a value for each row.
 pub(crate) enum Inputs<'py> {
-    /// In the order of the inputs.
+    /// Values in the order of the inputs.
     Numbers(Vec<f64>),
-    /// In the order of the inputs.
+    /// Values in the order of the inputs.
     Arrays(Vec<Bound<'py, PyAny>>),
     /// A table, or a dict by the names of the inputs.
     Frame(Bound<'py, PyAny>),
@@ -71,7 +71,7 @@ impl Compiled {
         }
     }
 
-    /// Arguments in the order of the inputs.
+    /// Returns the arguments in the order of the inputs.
     pub(crate) fn asked<'py>(
         &self,
         py: Python<'py>,
@@ -88,7 +88,7 @@ impl Compiled {
             Some(_) => {
                 let help = "write `model(8, 9)` or `model(service=8, food=9)`".to_owned();
                 return Err(data_error(
-                    "values are given by place and by name",
+                    "values are given both by position and by name",
                     Some(help),
                 ));
             }
@@ -131,7 +131,7 @@ impl Compiled {
         let message = format!("input `{}` has no value", missing.unwrap_or_default());
         Err(data_error(
             message,
-            Some("None and NaN say that it is unknown".into()),
+            Some("use None or NaN for an unknown value".into()),
         ))
     }
 
@@ -258,7 +258,7 @@ impl Compiled {
                 }
                 (Some(_), Some(_)) => {
                     let message = format!("the table has the column `{name}` more than once");
-                    let help = "rename all but the one that is meant".to_owned();
+                    let help = "rename all of them except one".to_owned();
                     Err(data_error(message, Some(help)))
                 }
             }
@@ -268,7 +268,8 @@ impl Compiled {
         let schema = table::schema(&outputs, with_reasons);
         let mut evaluator = Evaluator::new(&self.engine, threads, with_reasons)?;
         let mut batches = Vec::new();
-        // The stream may be implemented in Python, and then acquires the interpreter itself.
+        // The interpreter is released, because a stream that is implemented in Python acquires it
+        // itself.
         while let Some(batch) = py.detach(|| imported.next()) {
             let batch = batch.map_err(|error| data_error(error, None))?;
             let columns = names.iter().zip(&places);

@@ -30,7 +30,7 @@ pub(crate) struct Evaluator<'e> {
     with_reasons: bool,
 }
 
-/// The part of the result that one block fills.
+/// The part of the result into which one block of rows is evaluated.
 struct Block<'a> {
     first: usize,
     outputs: Vec<BlockOutput<'a>>,
@@ -68,7 +68,7 @@ impl<'e> Evaluator<'e> {
         columns: &[&[f64]],
     ) -> PyResult<Vec<Columns>> {
         if columns.is_empty() {
-            let message = "the rule set has no inputs, so rows say nothing to it";
+            let message = "the rule set has no inputs, so it takes no rows";
             return Err(data_error(message, Some("call it without values".into())));
         }
         let outputs = self.engine.output_names().len();
@@ -126,7 +126,7 @@ impl<'e> Evaluator<'e> {
     }
 }
 
-/// The result in blocks of rows.
+/// Divides the result into blocks of rows.
 fn blocks(rows: usize, results: &mut [Columns]) -> Vec<Block<'_>> {
     let mut blocks: Vec<Block<'_>> = (0..rows.div_ceil(BLOCK))
         .map(|i| Block {

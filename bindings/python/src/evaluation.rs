@@ -59,7 +59,7 @@ enum Source {
     Path(PathBuf),
 }
 
-/// The reason why there is no result.
+/// The reason why the work gave no result.
 enum Failed {
     Unusable(Unusable),
     NoSteps,
@@ -71,9 +71,9 @@ impl Failed {
             Failed::Unusable(Unusable::Read(error)) => read_error(py, &error),
             Failed::Unusable(why) => log_error(&why, why.help()),
             Failed::NoSteps => log_error(
-                "there is no step to evaluate in these logs",
+                "there are no steps to evaluate in these logs",
                 Some(
-                    "it takes motors, attitude, and 20 s in the air; `flagred.read_log(log).gaps` lists what is missing in a log",
+                    "a log needs motor commands, attitude, and 20 s in the air; `flagred.read_log(log).gaps` lists what is missing in a log",
                 ),
             ),
         }
@@ -173,7 +173,10 @@ fn row_cases(rows: &FlightRows<'_>, estimators: &Estimators) -> PyResult<(Vec<Ca
         let numbers = rows.numbers.get(column).and_then(Option::as_ref);
         let number = numbers.and_then(|numbers| numbers.as_array().get(row).copied());
         number.filter(|number| number.is_finite()).ok_or_else(|| {
-            let message = format!("row {row}, column `{}`: no finite number", columns[column]);
+            let message = format!(
+                "row {row}, column `{}`: not a finite number",
+                columns[column]
+            );
             data_error(message, Some("correct the cell or remove the row".into()))
         })
     };
@@ -208,7 +211,7 @@ impl EvaluationData {
         if !(horizon_s > 0.0 && horizon_s.is_finite()) {
             let help = "write a number of seconds above 0".to_owned();
             return Err(data_error(
-                format!("a horizon of {horizon_s} s is none"),
+                format!("`horizon_s` is {horizon_s}"),
                 Some(help),
             ));
         }

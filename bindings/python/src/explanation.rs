@@ -30,7 +30,7 @@ pub(crate) struct Explanation {
 /// An input with the degree of each of its terms.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct ExplainedInput {
-    /// Its name.
+    /// The name of the input.
     name: String,
     /// The given value.
     given: f64,
@@ -43,7 +43,7 @@ pub(crate) struct ExplainedInput {
 /// A rule that fired.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct FiredRule {
-    /// Its rule number in the model, from 1.
+    /// The number of the rule in the model, from 1.
     rule: usize,
     /// The text of the rule.
     text: String,
@@ -56,7 +56,7 @@ pub(crate) struct FiredRule {
 /// An output, and the rules that contribute to it.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct ExplainedOutput {
-    /// Its name.
+    /// The name of the output.
     name: String,
     /// The value; None if it is unknown.
     value: Option<f64>,
@@ -64,7 +64,7 @@ pub(crate) struct ExplainedOutput {
     is_default: bool,
     /// The largest firing strength of a rule of this output.
     coverage: f64,
-    /// The rules that contribute to it, largest share first.
+    /// The rules that contribute to the output, largest share first.
     rules: Vec<Py<Share>>,
     /// The degree of the value in each term.
     terms: Py<PyDict>,
@@ -77,13 +77,13 @@ pub(crate) struct ExplainedOutput {
 /// The contribution of a rule to an output.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct Share {
-    /// Its rule number in the model, from 1.
+    /// The number of the rule in the model, from 1.
     rule: usize,
-    /// The term it concludes.
+    /// The term in the consequent of the rule.
     term: String,
-    /// Its firing strength.
+    /// The firing strength of the rule.
     strength: f64,
-    /// Its share of the result, in [0, 1].
+    /// The share of the rule in the result, in [0, 1].
     share: f64,
     /// In a Takagi-Sugeno or Tsukamoto output, the value of the rule.
     value: Option<f64>,

@@ -23,7 +23,7 @@ use crate::{
 /// The data of a flight, inside `flagred.types.Flight`.
 #[pyclass(frozen, subclass, module = "flagred._core")]
 pub(crate) struct FlightData {
-    /// Read at its first use after unpickling.
+    /// The flight; after unpickling, read at the first use.
     flight: OnceLock<Arc<Flight>>,
     pub(crate) name: String,
     source: Source,
@@ -77,7 +77,7 @@ fn table(columns: Vec<(String, &str, Vec<f64>)>) -> PyResult<Table> {
 }
 
 impl FlightData {
-    /// The flight. Its log is read if necessary, interruptible by Ctrl-C.
+    /// Returns the flight. Its log is read if necessary; Ctrl-C interrupts the reading.
     pub(crate) fn flight(&self, py: Python<'_>) -> PyResult<&Arc<Flight>> {
         if let Some(flight) = self.flight.get() {
             return Ok(flight);
@@ -183,13 +183,13 @@ impl FlightData {
         Ok((self.bytes(py)?, name, signals, self.range))
     }
 
-    /// The name of its source.
+    /// The name of the source of the flight.
     #[getter]
     fn name(&self) -> &str {
         &self.name
     }
 
-    /// All but commands and signals, in JSON.
+    /// All data except commands and signals, in JSON.
     fn _json(&self, py: Python<'_>) -> PyResult<String> {
         let flight = self.flight(py)?;
         let json = json!({

@@ -47,8 +47,8 @@ impl DecisionMap {
         Slice::new(self.compiled.engine.model(), &self.map).ok_or_else(|| {
             let axes = self.map.grid().axes().len();
             data_error(
-                format!("a picture has one or two axes, and the map has {axes}"),
-                Some("hold the other inputs at a value: `model.map(bill=80)`".into()),
+                format!("a picture has one or two axes, but the map has {axes}"),
+                Some("fix the other inputs at a value: `model.map(bill=80)`".into()),
             )
         })
     }
@@ -130,12 +130,12 @@ impl DecisionMap {
             "map" => Ok(map_svg(&slice)),
             "rules" => Ok(rules_svg(&slice, self.compiled.engine.model())),
             "surface" => surface_svg(&slice).ok_or_else(|| {
-                let help = "leave one more input free".to_owned();
-                data_error("a surface has two axes, and the map has one", Some(help))
+                let help = "fix one input less".to_owned();
+                data_error("a surface has two axes, but the map has one", Some(help))
             }),
             other => Err(data_error(
-                format!("there is no picture `{other}` of a map"),
-                Some("there are `map`, `rules` and `surface`".into()),
+                format!("`{other}` is not a kind of picture"),
+                Some("write `map`, `rules` or `surface`".into()),
             )),
         }
     }

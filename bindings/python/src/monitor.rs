@@ -31,7 +31,7 @@ pub(crate) struct Update {
     elevated_risk: Option<f64>,
     /// ``GOOD``, ``INFO``, ``WARN`` or ``FAIL``; None on the ground and while a risk is unknown, unless an alarm is raised.
     level: Option<String>,
-    /// The new level, if this sample changed it.
+    /// The new level if this sample changed it; None otherwise, or if the new level is unknown.
     change: Option<String>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: Option<f64>,
@@ -128,7 +128,7 @@ impl MonitorData {
         {
             return Err(data_error(
                 format!(
-                    "the command of motor {} is `{}`, and a command is a fraction from 0 to 1",
+                    "the command of motor {} is `{}`, but a command is a fraction from 0 to 1",
                     motor + 1,
                     commands[motor]
                 ),
@@ -146,7 +146,7 @@ impl MonitorData {
         ] {
             if expected != given {
                 return Err(data_error(
-                    format!("{expected} {what} are followed, and {given} were given"),
+                    format!("expected {expected} {what}, but {given} were given"),
                     None,
                 ));
             }

@@ -43,7 +43,7 @@ impl Outcome {
             coverage,
             dominant_rule,
             clamped,
-            state: state.ok_or_else(|| data_error("no state of an outcome", None))?,
+            state: state.ok_or_else(|| data_error("not a state of an outcome", None))?,
         })
     }
 
@@ -120,7 +120,7 @@ pub(crate) struct Outcomes {
 
 /// The outcomes of one output, row by row.
 pub(crate) struct Columns {
-    /// NaN is unknown.
+    /// The values; NaN is unknown.
     pub(crate) value: Vec<f64>,
     pub(crate) reasons: Option<Reasons>,
 }
@@ -133,7 +133,7 @@ pub(crate) struct Reasons {
     pub(crate) clamped: Vec<bool>,
 }
 
-/// A placeholder for a rule number; it is masked or null before it is returned.
+/// A placeholder if no rule fires; it is masked or becomes null before it is returned.
 pub(crate) const NO_RULE: i32 = -1;
 
 /// The rule number, from 1.

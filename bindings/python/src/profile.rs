@@ -36,7 +36,7 @@ use crate::{
 #[pyclass(frozen, module = "flagred")]
 pub(crate) struct Profile {
     pub(crate) loaded: Arc<Loaded>,
-    /// The name or path that it was loaded by.
+    /// The name or path by which the profile was loaded.
     pub(crate) file: String,
 }
 
@@ -105,20 +105,20 @@ impl Profile {
         Ok((slf.getattr("_of_texts")?, texts))
     }
 
-    /// Its name.
+    /// The name of the profile.
     #[getter]
     fn name(&self) -> &str {
         &self.loaded.estimator.profile().name
     }
 
-    /// The inputs of its rule set, in their order.
+    /// The inputs of the rule set, in their order.
     #[getter]
     fn inputs(&self) -> Vec<String> {
         let inputs = self.loaded.estimator.profile().inputs.iter();
         inputs.map(|input| input.name.clone()).collect()
     }
 
-    /// The signals that it requires besides the commands of the motors.
+    /// The signals that the profile requires besides the commands of the motors.
     #[getter]
     fn signals(&self) -> Vec<String> {
         let signals = self.loaded.estimator.profile().signals();
@@ -131,7 +131,7 @@ impl Profile {
         self.loaded.profile.text()
     }
 
-    /// The text of its rule set.
+    /// The text of the rule set.
     #[getter]
     fn rules_text(&self) -> &str {
         self.loaded.rules.text()
@@ -160,7 +160,7 @@ impl Profile {
         code.map_err(|error| data_error(error, None))
     }
 
-    /// The warnings about it.
+    /// The warnings about the profile and its rule set.
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         diagnostics(

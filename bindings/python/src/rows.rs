@@ -42,7 +42,7 @@ impl Rows<'_> {
     }
 }
 
-/// The reason why there is no result.
+/// The reason why the work gave no result.
 pub(crate) enum Failed {
     Refused(Vec<String>),
     /// A message, and help.
@@ -80,7 +80,7 @@ pub(crate) fn with_step(begun_with: &str, model: &Model, step: Step) -> Result<S
     provenance::rule_set(begun_with, model.clone(), step).map_err(Failed::Findings)
 }
 
-/// The choice with this name.
+/// Returns the choice with the given name.
 pub(crate) fn choice<T: Copy>(key: &str, word: &str, choices: &[(&str, T)]) -> PyResult<T> {
     if let Some((_, choice)) = choices.iter().find(|(name, _)| *name == word) {
         return Ok(*choice);
@@ -94,7 +94,7 @@ pub(crate) fn choice<T: Copy>(key: &str, word: &str, choices: &[(&str, T)]) -> P
     Err(data_error(format!("`{key}` is `{word}`"), Some(help)))
 }
 
-/// Inputs that the output must not fall with, then those that it must not rise with, each with its direction.
+/// The inputs of `rising`, then those of `falling`, each with its direction.
 pub(crate) fn directed<D: Copy>(
     rising: &[String],
     falling: &[String],

@@ -445,7 +445,7 @@ impl RuleSet {
             }
             Inputs::Arrays(_) => {
                 let help = "give a number for each input, or a frame with a column for each input";
-                let message = "arrays are not explained";
+                let message = "arrays cannot be explained";
                 return Err(data_error(message, Some(help.into())));
             }
         };

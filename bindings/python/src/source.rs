@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 
 use crate::{compiled::Compiled, errors::rule_set_error};
 
-/// A rule set as it was read; an edit creates a new one.
+/// A rule set as it was read; an edit creates another source.
 pub(crate) struct Source {
     pub(crate) file: String,
     pub(crate) text: String,
@@ -20,7 +20,7 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// Reads a text in any format; an `unfinished` rule set is in YAML.
+    /// Reads a rule set in any format; `unfinished` accepts YAML without rules.
     pub(crate) fn read(
         py: Python<'_>,
         text: String,

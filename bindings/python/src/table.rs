@@ -83,7 +83,7 @@ impl Table {
         arrow::export(py, self.batches.clone(), Arc::clone(&self.schema))
     }
 
-    /// The names of the columns.
+    /// The names of the columns, in their order.
     fn keys(&self) -> Vec<String> {
         let fields = self.schema.fields().iter();
         fields.map(|field| field.name().clone()).collect()

@@ -31,7 +31,7 @@ pub(crate) fn count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
             .repr()
             .map_or_else(|_| "?".into(), |text| text.to_string());
         let message = format!(
-            "`threads` is {}; it must be a whole number from 1",
+            "`threads` is {}; it must be a whole number of at least 1",
             quoted(&shown)
         );
         data_error(
@@ -41,7 +41,7 @@ pub(crate) fn count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
     })
 }
 
-/// Refuses 0 threads.
+/// Returns an error for 0 threads.
 pub(crate) fn checked(threads: Option<usize>) -> PyResult<()> {
     match threads {
         Some(0) => Err(data_error(
@@ -109,7 +109,7 @@ fn listening<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
     mut heard: impl FnMut(PyErr) -> PyResult<()>,
 ) -> PyResult<T> {
-    /// Short enough not to be noticed as a delay.
+    /// The interval between checks for Ctrl-C, too short to be noticed as a delay.
     const LISTEN_EVERY: Duration = Duration::from_millis(50);
     let (sender, mut receiver) = mpsc::sync_channel(1);
     thread::spawn(move || sender.send(work()));
@@ -119,7 +119,9 @@ fn listening<T: Send + 'static>(
             Ok(done) => return Ok(done),
             Err(mpsc::RecvTimeoutError::Timeout) => py.check_signals().or_else(&mut heard)?,
             Err(mpsc::RecvTimeoutError::Disconnected) => {
-                return Err(PyRuntimeError::new_err("the work ended without a result"));
+                return Err(PyRuntimeError::new_err(
+                    "the calculation ended without a result",
+                ));
             }
         }
     }

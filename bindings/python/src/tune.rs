@@ -55,7 +55,7 @@ pub(crate) struct Tuned {
     validation: Option<Validation>,
 }
 
-/// Each figure with its interval.
+/// The figures of the cross-validation, each with its interval.
 #[derive(IntoPyObject)]
 struct Validation {
     folds: usize,
@@ -158,7 +158,7 @@ fn tune_numbers(
     let left_out = validation.as_ref().map(|validation| {
         let [before, after] = [&validation.before, &validation.after].map(|f| short(f.value));
         let folds = validation.folds;
-        format!("on rows left out, in {folds} parts: {before} before, {after} after")
+        format!("cross-validation in {folds} folds: {before} before, {after} after")
     });
     let moved = |one: &flagred_tuning::Moved| {
         let [before, after] = [one.before, one.after].map(short);

@@ -49,7 +49,7 @@ def test_arrays_that_are_not_aligned_are_copied():
 @pytest.mark.parametrize("threads", [-1, 1.5, "two", 2**70])
 def test_threads_are_a_whole_number(threads):
     model = flagred.loads(ONE_INPUT)
-    told = "`threads` is .*; it must be a whole number from 1"
+    told = "`threads` is .*; it must be a whole number of at least 1"
     for call in (model, model.evaluate):
         with pytest.raises(ValueError, match=told):
             call(np.arange(5.0), threads=threads)
@@ -168,7 +168,7 @@ def test_a_matrix_has_a_column_for_each_input(tip):
     assert np.array_equal(tip(np.asfortranarray(X)), expected)
     assert np.array_equal(tip.evaluate(X).coverage, tip.evaluate(X[:, 0], X[:, 1]).coverage)
     assert tip(np.empty((0, 2))).shape == (0,)
-    with pytest.raises(flagred.DataError, match="the matrix has 3 columns, and the model has 2 inputs"):
+    with pytest.raises(flagred.DataError, match="the matrix has 3 columns, but the model has 2 inputs"):
         tip(np.zeros((4, 3)))
     with pytest.raises(flagred.DataError, match="but 1 value was given\n  help: give a value for each input, or a matrix"):
         tip(np.zeros(2))

@@ -157,18 +157,18 @@ def test_logs_that_cannot_be_used(folder, tmp_path):
     assert [Path(file.file).name for file in some.left_out] == ["notes.txt", "none.bin"]
     assert some.estimators == flagred.evaluate(good).estimators
     bare = flagred.read_log(b"t_s,motor1,motor2,motor3,motor4,in_air\n0,0.4,0.4,0.5,0.5,1\n1,0.4,0.4,0.5,0.5,1\n")
-    with pytest.raises(flagred.LogError, match="`<bytes>` cannot be evaluated: attitude and its set point"):
+    with pytest.raises(flagred.LogError, match="`<bytes>` cannot be evaluated: the attitude or its set point"):
         flagred.evaluate(bare)
     for nothing in ([], tmp_path, [bare]):
-        with pytest.raises(flagred.LogError, match="no step to evaluate"):
+        with pytest.raises(flagred.LogError, match="no steps to evaluate"):
             flagred.evaluate(nothing, skip_bad_logs=True)
 
 
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"horizon_s": 0}, "a horizon of 0 s is none"),
-        ({"horizon_s": float("nan")}, "a horizon of NaN s is none"),
+        ({"horizon_s": 0}, "`horizon_s` is 0"),
+        ({"horizon_s": float("nan")}, "`horizon_s` is NaN"),
         ({"threads": 0}, "at least 1"),
         ({"rows": {"att_rmse_deg": [1]}}, "logs and rows are given"),
         ({"profiles": "flagged"}, "No such file"),
@@ -209,9 +209,9 @@ def test_whole_flights_are_evaluated_as_by_the_command_line(tmp_path):
 def test_rows_that_cannot_be_used():
     with pytest.raises(flagred.DataError, match="no column `att_rmse_deg`"):
         flagred.evaluate(rows={"c_mean": [0.5]})
-    with pytest.raises(flagred.DataError, match="row 1, column `att_rmse_deg`: no finite number"):
+    with pytest.raises(flagred.DataError, match="row 1, column `att_rmse_deg`: not a finite number"):
         flagred.evaluate(rows={**columns(), "att_rmse_deg": [1, None, 2, 3]})
-    with pytest.raises(flagred.DataError, match="row 0, column `c_mean`: no finite number"):
+    with pytest.raises(flagred.DataError, match="row 0, column `c_mean`: not a finite number"):
         flagred.evaluate(rows={**columns(), "c_mean": ["a", "b", "c", "d"]})
     with pytest.raises(flagred.DataError, match="different lengths"):
         flagred.evaluate(rows={**columns(), "c_mean": [1.0]})

@@ -88,7 +88,7 @@ def test_rare_findings_are_listed(dataset):
     assert sum(row["logs"] for row in asked["unread"]) == sum(row["status"] == "unreadable" for row in flights(dataset))
     times = [row["at_risk_s"] for row in asked["time_at_risk"]]
     assert times == sorted(times, reverse=True) and len(times) == 10
-    with pytest.raises(fleet.FleetError, match="there is no question `weather`"):
+    with pytest.raises(fleet.FleetError, match="`weather` is not a question"):
         fleet.ask(str(dataset), "weather")
     with pytest.raises(fleet.FleetError, match="there are no flights"):
         fleet.ask(str(dataset / "nothing"), "worst")
@@ -173,7 +173,7 @@ def test_names_sites_and_pilots(dataset, tmp_path, capsys):
     for wrong, message in (
         (["--only", "site=East"], "no flight has site `East`"),
         (["--only", "colour=red"], "there is no filter `colour`"),
-        (["--only", "site=North", "--only", "site=South"], "a filter is given twice"),
+        (["--only", "site=North", "--only", "site=South"], "a filter is repeated"),
     ):
         assert main([*arguments, *wrong]) == 2 and message in capsys.readouterr().err
     assert main(["report", str(dataset), "-o", str(page), "--only", "site=North"]) == 2

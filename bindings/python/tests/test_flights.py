@@ -77,7 +77,7 @@ def test_a_given_range_is_used_where_the_log_has_none(steady):
         flagred.read_log(pulses, range=(1900, 1100))
     with pytest.raises(ValueError, match="`read_log"):
         flagred.assess(flight, range=(1100, 1900))
-    with pytest.raises(flagred.LogError, match="has a range of its own"):
+    with pytest.raises(flagred.LogError, match="reports its own range"):
         flagred.read_log(steady, range=(1100, 1900))
 
 
@@ -178,7 +178,7 @@ def test_a_monitor_agrees_with_the_assessment():
     assert followed.summary.risk_max == assessment.summary.risk_max
     assert monitor.finish() is None
     assert monitor.push(0.0, [0.5] * 4, in_air=False).unknown == "on the ground"
-    with pytest.raises(flagred.DataError, match="4 commands are followed, and 3 were given"):
+    with pytest.raises(flagred.DataError, match="expected 4 commands, but 3 were given"):
         monitor.push(1.0, [0.5] * 3)
 
 
@@ -205,7 +205,7 @@ def test_a_monitor_clamps_rounding_and_refuses_other_units():
     assert levels(1.0000001) == levels(1.0) and levels(1.0)[-1] == "FAIL"
     monitor = flagred.Monitor("flagred-paper")
     for command in [1500, 50.0, -1.0, float("inf")]:
-        with pytest.raises(flagred.DataError, match="the command of motor 2 is `.*`, and a command is a fraction from 0 to 1"):
+        with pytest.raises(flagred.DataError, match="the command of motor 2 is `.*`, but a command is a fraction from 0 to 1"):
             monitor.push(0.0, [0.5, command, 0.5, 0.5])
     # A refused sample leaves no state behind.
     fresh = flagred.Monitor("flagred-paper")
@@ -344,8 +344,8 @@ def test_other_files_are_reported_with_a_remedy(steady):
         flagred.read_log(3)
     monitor = flagred.Monitor("flagred-paper")
     monitor.push(0, [0.5, 0.5, 0.5, 0.5])
-    with pytest.raises(flagred.DataError, match="4 commands are followed, and 3 were given"):
+    with pytest.raises(flagred.DataError, match="expected 4 commands, but 3 were given"):
         monitor.push(0.1, [0.5, 0.5, 0.5])
     for bad in (1500, -3, 1.6):
-        with pytest.raises(flagred.DataError, match=f"the command of motor 2 is `{bad}`, and a command is a fraction"):
+        with pytest.raises(flagred.DataError, match=f"the command of motor 2 is `{bad}`, but a command is a fraction"):
             monitor.push(0.1, [0.5, bad, 0.5, 0.5])

@@ -176,21 +176,21 @@ def test_capsules_that_are_used_up_or_do_not_fit_are_refused(capfd):
     other, numbers = pyarrow.record_batch({"service": [8.0]}).__arrow_c_array__(), pyarrow.array([1.0]).__arrow_c_array__()
     for table in (Capsules("array", array), Capsules("stream", stream)):
         MODEL(table)
-        with pytest.raises(flagred.DataError, match="was taken already"):
+        with pytest.raises(flagred.DataError, match="was already consumed"):
             MODEL(table)
     imported = batch.__arrow_c_array__()
     pyarrow.RecordBatch._import_from_c_capsule(*imported)
     fresh = [batch.__arrow_c_array__() for _ in range(4)]
     for kind, capsules, told in [
-        ("array", imported, "was taken already"),
+        ("array", imported, "was already consumed"),
         ("array", (other[0], fresh[0][1]), "does not have the columns of its schema"),
         ("array", (fresh[1][0], numbers[1]), "does not have the columns of its schema"),
         ("array", pyarrow.array([1.0]).__arrow_c_array__(), "is not a table"),
-        ("array", fresh[2][::-1], "does not give a capsule `arrow_schema`"),
-        ("array", 7, "does not give a pair of capsules"),
-        ("array", (7, 8), "does not give a capsule"),
-        ("stream", 7, "does not give a capsule `arrow_array_stream`"),
-        ("stream", fresh[3][0], "does not give a capsule `arrow_array_stream`"),
+        ("array", fresh[2][::-1], "does not provide a capsule `arrow_schema`"),
+        ("array", 7, "does not provide a pair of capsules"),
+        ("array", (7, 8), "does not provide a capsule"),
+        ("stream", 7, "does not provide a capsule `arrow_array_stream`"),
+        ("stream", fresh[3][0], "does not provide a capsule `arrow_array_stream`"),
     ]:
         with pytest.raises(flagred.DataError, match=told):
             MODEL(Capsules(kind, capsules))

@@ -82,7 +82,7 @@ def test_settings_of_tuning_are_used(fan):
     assert np.all(np.diff(rising(np.linspace(0, 40, 500))) >= 0)
     with pytest.raises(flagred.DataError, match="not decreasing in `heat`"):
         flagred.tune(fan, data, columns={"speed": "flow"}, falling=["heat"])
-    with pytest.raises(flagred.DataError, match="nothing may move"):
+    with pytest.raises(flagred.DataError, match="no number is allowed to change"):
         flagred.tune(fan, data, columns={"speed": "flow"}, fix=["heat", "speed"])
     with pytest.raises(flagred.DataError, match="no variable and no term `heet`"):
         flagred.tune(fan, data, columns={"speed": "flow"}, only=["heet"])
@@ -340,7 +340,7 @@ def test_options_of_another_type_are_reported_in_plain_words():
     fan = flagred.load("flagred-paper")
     rows = {"margin": [0.1, 0.5], "spread": [0.1, 0.2], "risk": [50, 10]}
     for call, message in (
-        (lambda: flagred.tune(fan, rows, seed=-1), "`seed` is -1; it must be a whole number from 0"),
+        (lambda: flagred.tune(fan, rows, seed=-1), "`seed` is -1; it must be a whole number of at least 0"),
         (lambda: flagred.tune(fan, rows, folds="a"), "`folds` is 'a'"),
         (lambda: flagred.learn(fan, rows, min_support=1.5), "`min_support` is 1.5"),
         (lambda: flagred.simplify(fan, seed="x"), "`seed` is 'x'"),

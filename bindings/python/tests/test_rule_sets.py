@@ -56,14 +56,14 @@ def test_unknown_is_not_a_number(tip, gaps):
         (lambda tip: tip(1), "the model has 2 inputs, but 1 value was given"),
         (lambda tip: tip(servce=1, food=2), "there is no input `servce`\n  help: did you mean `service`?"),
         (lambda tip: tip(service=1), "input `food` has no value"),
-        (lambda tip: tip(1, food=2), "values are given by place and by name"),
+        (lambda tip: tip(1, food=2), "values are given both by position and by name"),
         (lambda tip: tip("a", "b"), "text is not a number"),
         (lambda tip: tip([1, 2], [1, 2, 3]), "cannot be broadcast together"),
         (lambda tip: tip([1], [2], threads=0), "at least 1"),
         (lambda tip: tip.map(bill=3), "there is no input `bill`"),
         (lambda tip: tip.map(points=1), "at least 2 points"),
         (lambda tip: tip.map(output="top"), "did you mean `tip`?"),
-        (lambda tip: tip.explain([1, 2], [3, 4]), "arrays are not explained"),
+        (lambda tip: tip.explain([1, 2], [3, 4]), "arrays cannot be explained"),
         (lambda tip: tip.explain(1, math.nan), "not a finite number"),
         (lambda tip: tip.check(rising=["servce"]), "did you mean `service`?"),
         (lambda tip: tip.check(rising=3), "3 is not a list of inputs"),
@@ -396,7 +396,7 @@ def test_code_for_firmware_is_saved_by_its_ending(tip, tmp_path):
     assert "pub fn" in (tmp_path / "tip.rs").read_text()
     with pytest.raises(flagred.DataError, match="`python` is not a language"):
         flagred.Profile().to_code("python")
-    with pytest.raises(flagred.DataError, match="exported code has one"):
+    with pytest.raises(flagred.DataError, match="exported code supports only one"):
         flagred.Profile("flagred-battery").to_code("lua")
 
 

@@ -189,7 +189,7 @@ def test_intervals_by_hand():
     assert len(regressor.errors_) == 9
     assert regressor.predict_interval([[3]], 0.5).tolist() == [[-regressor.errors_[4], regressor.errors_[4]]]
     assert regressor.predict_interval([[3]], 0.9)[0, 1] == regressor.errors_[8]
-    with pytest.raises(ValueError, match="intervals of 95% need 19 calibration rows, and there are 9"):
+    with pytest.raises(ValueError, match="intervals of 95% need 19 calibration rows, but there are 9"):
         regressor.predict_interval([[3]], 0.95)
 
 

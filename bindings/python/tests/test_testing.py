@@ -44,7 +44,7 @@ def test_a_snapshot_is_written_and_compared(tmp_path: Path, monkeypatch: pytest.
 def test_a_table_without_the_columns_is_refused(tmp_path: Path) -> None:
     model, path = flagred.loads(FAN), tmp_path / "points.csv"
     for text, message in [
-        ("temperature,humidity\n1,2\n", "has no column of an output: fan"),
+        ("temperature,humidity\n1,2\n", "has no column for an output: fan"),
         ("temperature,fan\n1,2\n", "has no column `humidity`"),
         ("temperature,humidity,fan\n", "has no rows"),
         ("temperature,humidity,fan\n1,2\n", "row 1: 2 cells, but the header has 3"),

@@ -133,7 +133,7 @@ export interface FlightDocument {
   verdict: VerdictWord;
   /** Only with `NA`: why there is no verdict. */
   reason?: string;
-  /** Only with `NA`: how the pilot can get a verdict next time. */
+  /** Only with `NA`: how to get a verdict for the next flight. */
   help?: string | null;
   /** The findings, the gravest first, those of equal severity in order of time; at most 1,000. */
   findings: FlightFinding[];
@@ -270,25 +270,25 @@ export interface Motor {
 
 /** The motor that caused a finding. */
 export interface MotorFinding {
-  /** Its number, from 1: the number of the autopilot in logs and vehicles, otherwise its position in the samples. */
+  /** The number of the motor, from 1: as numbered by the autopilot, or otherwise its position in the samples. */
   number: number;
   /** The number of a second motor that may be the cause instead, if the commands do not show which of the two. */
   or_number: number | null;
-  /** The nearest limit. For an imbalance, whether it is below or above its part. */
+  /** The nearest limit. For an imbalance, whether the motor is below or above its usual part of the thrust. */
   side: Side;
-  /** Its mean margin. */
+  /** The mean margin of the motor. */
   margin_mean: number;
-  /** Its smallest margin. */
+  /** The smallest margin of the motor. */
   margin_min: number;
 }
 
 /** The limits of the findings that are not about the risk; null disables a finding. */
 export interface NoticeSettings {
-  /** The noise of the commands above which it is reported: vibration, or gains that are too high. */
+  /** The threshold on the noise of the commands: vibration, or gains that are too high. */
   noise: Limit | null;
-  /** The reserve of the mean command to the upper limit below which it is reported. */
+  /** The threshold on the reserve of the mean command to the upper limit. */
   reserve: Limit | null;
-  /** The deviation of motors from their own part of the thrust earlier in the flight above which it is reported; twice this between opposite motors, half of it if one motor alone is higher. */
+  /** The threshold on the deviation of motors from their own part of the thrust earlier in the flight. It is doubled for opposite motors, and halved if only one motor is higher. */
   imbalance: Limit | null;
 }
 

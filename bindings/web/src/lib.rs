@@ -3,8 +3,8 @@
 //! Errors are thrown as an `Error` with the words of the command line. Documents are JSON, the same as those of the
 //! command line; columns and maps are `Float64Array`.
 //!
-//! It is compiled once for each feature: a page that shows flights need not load what rule sets are edited with, nor an editor what
-//! tunes them.
+//! It is compiled once for each feature: a page that shows flights does not load the code for
+//! editing rule sets, and an editor does not load the code for tuning.
 
 #[cfg(feature = "data")]
 pub mod data;
@@ -21,7 +21,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 /// The message of the last panic. After a panic only the function that returns this message may be called.
 static PANIC: Mutex<String> = Mutex::new(String::new());
 
-/// Runs when the module is loaded.
+/// Sets up the handling of panics when the module is loaded.
 #[wasm_bindgen(start)]
 fn start() {
     std::panic::set_hook(Box::new(|panic| {

@@ -80,7 +80,7 @@ impl Document {
                 let outvoted = outvoted.into_iter().flat_map(|findings| findings.0);
                 Findings(findings.0.iter().cloned().chain(outvoted).collect())
             }
-            // Only claims can be rejected, and there are none.
+            // This fails only for invalid claims, and there are no claims.
             None => examine(&self.source, &check::Options::default()).map_or_else(
                 |finding| Findings::locate(vec![*finding], self.text()),
                 |examined| examined.findings,
@@ -103,7 +103,7 @@ impl Document {
         self.estimator().map(alone).unwrap_or_default()
     }
 
-    /// Whether it is a profile.
+    /// Whether the text is a profile.
     pub fn is_profile(&self) -> bool {
         self.profile.is_some()
     }
@@ -198,7 +198,7 @@ fn unusable_rules(text: &str, rules: &str) -> Findings {
     let place = text.find("rules:").unwrap_or(0);
     let message = format!("the rule set `{rules}` cannot be used");
     let finding = Diagnostic::error("rule-set", place..place + 5, message).help(
-        "`flagred check` shows why; a rule set is a shipped one, or a file beside the profile",
+        "`flagred check` shows why; a rule set must be a shipped one, or a file next to the profile",
     );
     Findings::locate(vec![finding], text)
 }

@@ -17,9 +17,9 @@ const WIDTH: usize = 120;
 pub enum Unformatted {
     /// The text is not YAML.
     NotYaml(Findings),
-    /// It is neither a rule set nor a profile, so it may belong to another program.
+    /// The text is neither a rule set nor a profile, so it may belong to another program.
     Foreign,
-    /// Formatting would change its meaning, or the formatter does not support it.
+    /// Formatting would change the meaning of the text, or the formatter does not support it.
     Other(String),
 }
 

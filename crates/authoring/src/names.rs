@@ -179,8 +179,7 @@ pub(crate) fn check_name(new: &str) -> Result<(), String> {
 /// # Errors
 /// The reason why it cannot be renamed.
 pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range<usize>>, String> {
-    let (rules, _, meaning) =
-        at(document, offset).ok_or("there is no variable and no term here")?;
+    let (rules, _, meaning) = at(document, offset).ok_or("there is no variable or term here")?;
     if rules.names_unread {
         return Err(
             "a rule or a term cannot be read, so its names are unknown; correct it first".into(),
@@ -195,7 +194,7 @@ pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range
             .is_some_and(|known| known.variable.terms.iter().any(|term| term.name == new)),
     };
     if taken {
-        return Err(format!("there is a `{new}` already"));
+        return Err(format!("the name `{new}` is already used"));
     }
     let places = all(rules).into_iter();
     let mut spans: Vec<Range<usize>> = places

@@ -30,14 +30,15 @@ pub fn rule_set(begun_with: &str, mut model: Model, step: Step) -> Result<String
     match fuzzy::yaml::parse(&text)?.model == model {
         true => Ok(text),
         false => {
-            let message = "the text of the new rule set means another one";
+            let message = "the text of the new rule set does not read back as the same rule set";
             let finding = Diagnostic::error("read-back", 0..0, message);
             Err(Findings::locate(vec![finding], &text))
         }
     }
 }
 
-/// A text with the numbers and the last step of a rule set; `None` if anything else differs.
+/// Replaces the numbers and the last step in a text by those of a rule set; `None` if anything else
+/// differs.
 fn in_place(text: &str, model: &Model) -> Option<String> {
     let document = fuzzy::yaml::parse(text).ok()?;
     let mut edits = numbers::of_model(text, &document, model)?;
@@ -137,7 +138,7 @@ fn edited_since(document: &Document) -> Option<Diagnostic> {
         document.spans.provenance.clone(),
         format!("the rule set was edited after `{}` made it", last.command),
     );
-    let help = "`provenance` describes an earlier version of the rule set; run the command again, or add a step of your own";
+    let help = "`provenance` describes an earlier version of the rule set; run the command again, or add a step that describes your edit";
     (!is_same).then(|| finding.help(help))
 }
 
@@ -193,7 +194,7 @@ rules:
         }
     }
 
-    /// The rule set with the peak of `hot` at 30, and a step.
+    /// A rule set whose peak of `hot` was moved to 30, with a provenance step.
     fn moved(text: &str, note: &str) -> String {
         let mut model = fuzzy::yaml::parse(text).unwrap().model;
         let mut heat = model.inputs.remove(0);

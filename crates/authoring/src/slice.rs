@@ -24,11 +24,11 @@ pub struct Mapped<'a> {
     pub filling: Option<(&'a Filling, &'static str)>,
 }
 
-/// The maximum number of combinations of held values that are tried.
+/// The maximum number of combinations of fixed values that are tried.
 const MOST_TRIED: usize = 1000;
 
-/// An input is held at another value than its middle only if the variation of the output then increases by this share
-/// of its range.
+/// An input is fixed at another value than its middle only if the variation of the output then
+/// increases by this share of its range.
 const NOTICEABLE: f64 = 0.01;
 
 /// Evaluates the output at a point.

@@ -63,7 +63,7 @@ pub fn add_variable(
     let rules = readable(document)?;
     check_name(name)?;
     if variables(rules).any(|known| known.name == name) {
-        return Err(format!("there is a `{name}` already"));
+        return Err(format!("the name `{name}` is already used"));
     }
     if !(low.is_finite() && high.is_finite() && low < high) {
         return Err("the range needs two numbers, the smaller one first".into());
@@ -131,7 +131,7 @@ pub fn add_term(document: &Document, variable: usize, name: &str) -> Result<Vec<
         .nth(variable)
         .ok_or("there is no such variable")?;
     if known.terms.iter().any(|term| term.name == name) {
-        return Err(format!("there is a `{name}` already"));
+        return Err(format!("the name `{name}` is already used"));
     }
     let text = document.text();
     let node = variable_node(document, rules, variable).ok_or(UNREADABLE)?;
@@ -338,7 +338,7 @@ const UNREADABLE: &str = "this part of the text cannot be changed here; change i
 enum Change {
     Added(Part),
     Removed(Part),
-    /// Only this part may differ.
+    /// A change in which only this part may differ.
     Other(Part),
 }
 
@@ -404,9 +404,7 @@ fn verified(
 }
 
 fn readable(document: &Document) -> Result<&Partial, String> {
-    let rules = document
-        .rules()
-        .ok_or("there is no rule set that can be read")?;
+    let rules = document.rules().ok_or("the rule set cannot be read")?;
     match rules.names_unread {
         true => Err("a rule or a term cannot be read; correct it first".into()),
         false => Ok(rules),
@@ -611,7 +609,8 @@ fn inserted(text: &str, node: &Node, index: usize, item: &str) -> Option<Edit> {
     }
 }
 
-/// The edit that removes an entry. In a block its lines are removed; comments on separate lines are kept.
+/// Returns the edit that removes an entry. In a block, the lines of the entry are removed; comments
+/// on separate lines are kept.
 fn removed(text: &str, node: &Node, index: usize) -> Option<Edit> {
     let (first, last) = entry(node, index)?;
     let behind = match last.span.is_empty() {

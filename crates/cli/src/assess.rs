@@ -1,4 +1,4 @@
-//! `flagred assess`: how risky was this flight?
+//! `flagred assess`: the verdict, findings and risk of flights.
 
 use std::{io::Write, path::PathBuf, sync::Arc};
 
@@ -45,7 +45,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     csv: bool,
 
-    /// List every finding with its measurements; of several logs, all of each instead of one line
+    /// List every finding with its measurements; for several logs, print all findings instead of
+    /// one line per log
     #[arg(short, long, conflicts_with_all = ["json", "csv"])]
     verbose: bool,
 
@@ -82,9 +83,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::usage("standard input can be read only once").help("name `-` once"));
     }
     if several && arguments.svg.is_some() {
-        return Err(
-            Failure::usage("--svg draws one flight").help("compare several with --html FILE")
-        );
+        return Err(Failure::usage("--svg draws only one flight")
+            .help("to compare several flights, use --html FILE"));
     }
     let inputs = arguments.logs.iter().map(PathBuf::from);
     let mut files = Files::reading(inputs.chain(loaded.files.iter().cloned()))?;

@@ -31,7 +31,7 @@ pub(crate) fn help_to_edit(path: &Path) -> Option<String> {
     let known = profile_at(path).filter(|_| !path.exists())?;
     let name = known.name;
     Some(format!(
-        "`{name}` is built in; `flagred new NAME --from {name}` writes a copy of the rule set to edit, `flagred new NAME --profile {name}` one of the profile"
+        "`{name}` is built in; `flagred new NAME --from {name}` writes a copy of the rule set to edit, `flagred new NAME --profile {name}` a copy of the profile"
     ))
 }
 

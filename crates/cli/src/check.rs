@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     /// Warn where no rule fires with at least this strength
     #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = numbers::degree_above_0)]
     coverage: f64,
-    /// Exit with 1 for findings of this severity, too; by default only for errors
+    /// Also exit with 1 for findings of this severity [default: only for errors]
     #[arg(long, value_name = "SEVERITY")]
     deny: Option<Deny>,
 }
@@ -122,7 +122,11 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                     write_alone(&mut out, &file, alone)?;
                     let reads_motors = profile.as_ref().is_none_or(Profile::reads_motors);
                     if !reads_motors {
-                        writeln!(out, "{}: reads no motor, and needs none", visible(&file))?;
+                        writeln!(
+                            out,
+                            "{}: the profile reads no motors, so logs without motors can be assessed",
+                            visible(&file)
+                        )?;
                     }
                 }
                 writeln!(out, "{}: {}", visible(&file), summary(findings))?;
@@ -155,7 +159,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     Ok(exit)
 }
 
-/// All findings, and the analysis if the rule set can be analysed.
+/// Returns all findings, and the analysis if the rule set can be analysed.
 fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>, Failure> {
     let mut options = check::Options::default();
     options.coverage = arguments.coverage;
@@ -192,7 +196,7 @@ fn write_alone(out: &mut impl Write, file: &str, alone: &[Alone]) -> Result<(), 
     let file = visible(file);
     writeln!(
         out,
-        "{file}: the highest risk of each input while all others are calm:"
+        "{file}: the highest risk that each input causes while all others are calm:"
     )?;
     let rows: Vec<[String; 3]> = alone.iter().map(row).collect();
     let width = |column: usize| {

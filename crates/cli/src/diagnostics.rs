@@ -25,12 +25,13 @@ pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: boo
     diagnostics::draw(findings, file, text, style)
 }
 
-/// Returns whether a text is meant as a profile or as a rule set, also one of another program.
+/// Returns whether a text looks like a profile or a rule set, including those of other programs.
 pub(crate) fn is_meant_as_rules(text: &str) -> bool {
     flagred_interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
 }
 
-/// The command that helps with a finding. It is added here, since the engine does not contain commands.
+/// Returns the command that helps with a finding. It is added here because the engine does not know
+/// the command line.
 fn command(code: &str) -> Option<&'static str> {
     match code {
         "empty-file" => Some("`flagred new NAME` writes a rule set to start from"),
@@ -99,7 +100,7 @@ pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
     matches!(bytes.get(..2), Some([0xff, 0xfe] | [0xfe, 0xff]))
 }
 
-/// Why bytes are not text.
+/// The reason why bytes are not valid text.
 struct NoText {
     /// The line with the first invalid byte, and that byte; `None` in UTF-16.
     at: Option<(usize, u8)>,
@@ -111,13 +112,16 @@ impl NoText {
             Some((line, byte)) => {
                 format!("`{file}` is not UTF-8: line {line} contains the byte {byte:02X}")
             }
-            None => format!("`{file}` is not UTF-16, which its first two bytes announce"),
+            None => format!(
+                "`{file}` is not valid UTF-16, although it begins with a UTF-16 byte order mark"
+            ),
         });
         failure.help(match self.at {
-            // Smaller bytes are control characters in Latin-1, so the file is probably not text in it.
+            // Smaller bytes are control characters in Latin-1, so the file is probably not Latin-1
+            // text.
             Some((_, byte)) if byte >= 0xa0 => {
                 let letter = char::from(byte);
-                format!("it may be Latin-1, where the byte is `{letter}`; save the file as UTF-8")
+                format!("the file may be in Latin-1, where the byte is `{letter}`; save the file as UTF-8")
             }
             _ => String::from("save the file as UTF-8"),
         })
@@ -160,7 +164,8 @@ fn decoded(bytes: Vec<u8>) -> Result<String, NoText> {
     }
 }
 
-/// Reads all bytes, or one more than the limit.
+/// Reads all bytes, but at most one more than the limit, so that the caller can detect larger
+/// files.
 fn read_up_to_limit(source: impl Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     source

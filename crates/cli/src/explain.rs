@@ -48,7 +48,9 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
     let Some((name, value)) = text.split_once('=') else {
         if std::path::Path::new(text).is_file() {
             let failure = Failure::usage(format!("`{text}` is a file, not the value of an input"));
-            return Err(failure.help(format!("explain each row of a table with `--rows {text}`")));
+            return Err(failure.help(format!(
+                "to explain each row of a table, use `--rows {text}`"
+            )));
         }
         let inputs = model.inputs.iter();
         let names = inputs.zip(given.iter().map(Some).chain(std::iter::repeat(None)));
@@ -65,7 +67,7 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
         Ok(number) if number.is_finite() => Ok((name.trim().into(), number)),
         _ => {
             let failure = Failure::usage(format!(
-                "`{value}` is not a finite number: the value of `{name}`"
+                "the value of `{name}` is not a finite number: `{value}`"
             ));
             let term = model.inputs.iter().find(|input| input.name == name.trim());
             let is_term =
@@ -85,7 +87,7 @@ fn number_advice(text: &str) -> Option<String> {
         .iter()
         .any(|unknown| text.eq_ignore_ascii_case(unknown))
     {
-        return Some("an unknown value leaves nothing to explain; write a number".into());
+        return Some("an unknown value cannot be explained; write a number".into());
     }
     if text.contains('=') {
         return Some("separate the values by spaces".into());
@@ -111,7 +113,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let model = arguments.model.display().to_string();
     if model.contains('=') && !arguments.model.exists() {
         let failure = Failure::usage(format!("`{model}` is not a rule set"));
-        return Err(failure.help("the rule set comes first, then the values of its inputs"));
+        return Err(failure.help("name the rule set first, then the values of its inputs"));
     }
     let engine = rule_set::load(&arguments.model)?;
     let model = engine.model();
@@ -124,13 +126,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         arguments.output.as_ref().filter(|it| is_table(it)),
     ) {
         let message = format!(
-            "`{}` is the name of a table, and this writes text",
+            "`{}` is the name of a table, but the output is text",
             path.display()
         );
         return Err(Failure::usage(message).help("`--rows` writes tables"));
     }
     if let (None, Some(option)) = (&arguments.rows, arguments.format.given()) {
-        let failure = Failure::usage(format!("`{option}` is for tables"));
+        let failure = Failure::usage(format!("`{option}` needs a table"));
         return Err(failure.help("name a table with `--rows`, or leave the option out"));
     }
     if let Some(points) = &arguments.rows {

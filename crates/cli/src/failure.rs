@@ -32,7 +32,7 @@ impl Exit {
     }
 }
 
-/// Why a command failed. Messages are lower case; the help contains what to do.
+/// The reason why a command failed, in lower case, with help that describes what to do.
 #[derive(Debug)]
 pub(crate) struct Failure {
     code: u8,
@@ -125,7 +125,7 @@ impl Failure {
     }
 }
 
-/// Without colours, for a reader who is not at the terminal.
+/// Formats the failure without colours, for output that is not a terminal.
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)?;
@@ -148,8 +148,8 @@ pub(crate) fn command_forgotten(error: &clap::Error) -> Option<Failure> {
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
         let rules = ["yaml", "yml", "fis", "fll", "fcl", "fml"];
         let help = match rules.iter().any(|rules| ending == *rules) {
-            true => format!("the errors of a rule set or profile: `flagred check {word}`"),
-            false => format!("how risky a flight was: `flagred assess {word}`"),
+            true => format!("`flagred check {word}` lists the errors of a rule set or profile"),
+            false => format!("`flagred assess {word}` assesses a flight"),
         };
         Failure::usage(format!("`{word}` is a file, not a command")).help(help)
     })
@@ -166,7 +166,7 @@ pub(crate) fn cannot_read(shown: &str, error: &io::Error) -> Failure {
             let built_in = built_in::profile_names();
             failure.help(match nearest(shown, built_in) {
                 Some(name) => format!("did you mean the built-in `{name}`?"),
-                None if shown.contains('*') => "no file has a name of this form".to_owned(),
+                None if shown.contains('*') => "no file matches this pattern".to_owned(),
                 None => "check the path".to_owned(),
             })
         }
@@ -186,11 +186,11 @@ pub(crate) fn refuse(error: &clap::Error) -> u8 {
     let text = error.render().to_string();
     let mut shown = visible_lines(&text).into_owned();
     if let Some(tip) = shown.find("  tip: to pass '-") {
-        // Removes the advice for values that begin with `-`: hardly anybody has one.
+        // Removes clap's advice for values that begin with `-`, which rarely applies.
         let end = shown.get(tip..).and_then(|tip| tip.find("\n\n"));
         shown.replace_range(tip..end.map_or(shown.len(), |end| tip + end + 2), "");
     }
-    // A closed stream cannot be reported.
+    // If the stream is closed, that cannot be reported.
     if shown == text {
         let _ = error.print();
     } else {

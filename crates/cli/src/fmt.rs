@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
     /// Rule sets or profiles in YAML; `-` is standard input, written to standard output
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Only list files with another layout, and exit with 1 if there are any
+    /// Only list files that are not formatted, and exit with 1 if there are any
     #[arg(long)]
     check: bool,
 }
@@ -38,14 +38,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             }
             Unformatted::Other(why) => {
                 Failure::unreadable(format!("`{file}` cannot be formatted: {why}"))
-                    .help("`flagred check` shows its mistakes")
+                    .help("`flagred check` shows its errors")
             }
         })?;
         let is_stdin = file == "-";
         if arguments.check {
             if formatted != text {
                 exit = Exit::Findings;
-                writeln!(out, "{}: has another layout", visible(&file))?;
+                writeln!(out, "{}: is not formatted", visible(&file))?;
             }
         } else if is_stdin {
             write!(out, "{formatted}")?;

@@ -117,7 +117,7 @@ pub fn checked(text: &str) -> (Findings, String, Option<check::Report>) {
             examined.findings,
             examined.analysed.map(|(_, report)| report),
         ),
-        // Only claims can be refused, and there are none.
+        // This fails only for invalid claims, and there are no claims.
         Err(finding) => (Findings(vec![*finding]), None),
     };
     let drawn = draw(&findings.0, "rules.yaml", text, false);
@@ -149,9 +149,9 @@ pub struct WatchOutput {
 /// The vehicle that is followed.
 #[derive(Debug, Clone, Copy)]
 pub struct Followed {
-    /// Its MAVLink system number.
+    /// The MAVLink system number of the vehicle.
     pub system: u8,
-    /// Whether it or its motor commands are lost.
+    /// Whether the vehicle or its motor commands are lost.
     pub is_lost: bool,
     /// The vehicle's clock at its latest sample.
     pub t_s: Option<f64>,

@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         None => flagred_interchange::read(&text, format, losses),
         Some(name) if format == Format::Fcl => flagred_interchange::read_block(&text, name, losses),
         Some(_) => {
-            let message = format!("`--block` is for FCL, and `{file}` is {}", format.name());
+            let message = format!("`--block` is for FCL, but `{file}` is {}", format.name());
             return Err(Failure::usage(message));
         }
     };

@@ -38,7 +38,7 @@ pub(crate) fn confusion(
     let width = lengths.map(|text| text.chars().count()).max().unwrap_or(0);
     writeln!(
         out,
-        "classes     {:.1} % of rows left out are predicted as their class; for each class, the rows predicted as",
+        "classes     {:.1} % of the cross-validated rows are predicted as their class; for each class, the rows predicted as",
         100.0 * confusion.accuracy()
     )?;
     let line = |cells: &mut dyn Iterator<Item = String>| {
@@ -58,7 +58,7 @@ pub(crate) fn confusion(
     Ok(())
 }
 
-/// The unit that cross-validation divides into parts: rows or groups.
+/// Returns the unit that cross-validation divides into folds: rows or groups.
 pub(crate) fn divided(group_by: Option<&String>) -> String {
     match group_by {
         Some(column) => format!("groups of `{}`", visible(column)),
@@ -66,7 +66,7 @@ pub(crate) fn divided(group_by: Option<&String>) -> String {
     }
 }
 
-/// The confusion table of rows left out.
+/// The confusion matrix of the cross-validation.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Confusion")]
 pub(crate) struct OfClasses {
@@ -88,7 +88,7 @@ impl From<&Confusion> for OfClasses {
     }
 }
 
-/// A figure of rows left out, with its 95 % interval.
+/// A cross-validated figure with its 95 % confidence interval.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Interval")]
 pub(crate) struct OfInterval {

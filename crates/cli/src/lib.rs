@@ -58,7 +58,8 @@ use std::{
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use failure::{Exit, Failure};
 
-/// Estimates the risk that a multirotor loses control from its motor commands; checks, explains and learns fuzzy rule sets.
+/// Estimates the risk that a multirotor loses control, from its motor commands; checks, explains
+/// and learns fuzzy rule sets.
 ///
 /// Exit codes: 0 done; 1 done, with findings (the help of a command names them); 2 wrong usage, or an output cannot be written;
 /// 3 no answer: the input cannot be read or used.

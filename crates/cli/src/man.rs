@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             let shown = folder.display();
             match folder.is_file() {
                 true => Failure::usage(format!("`{shown}` is a file, not a folder")),
-                false => Failure::usage(format!("`{shown}` cannot be made: {error}")),
+                false => Failure::usage(format!("`{shown}` cannot be created: {error}")),
             }
         })?;
         let mut files = Files::reading::<PathBuf>([])?;

@@ -25,7 +25,7 @@ pub(crate) fn seed(text: &str) -> Result<u64, String> {
 pub(crate) fn share(text: &str) -> Result<f64, String> {
     real(text)
         .filter(|share| (0.0..1.0).contains(share))
-        .ok_or_else(|| "write a share, at least 0 and less than 1".into())
+        .ok_or_else(|| "write a fraction of at least 0 and less than 1".into())
 }
 
 /// Parses a degree: above 0, at most 1.

@@ -21,7 +21,7 @@ pub(crate) fn rule_set(begun_with: &str, model: Model, step: Step) -> Result<Str
         let problems = findings.0.into_iter().map(|finding| finding.message);
         Failure::unreadable("the new rule set could not be read back, and nothing was written")
             .details(problems.collect())
-            .help("look for extreme values in the rows")
+            .help("check the rows for extreme values")
     })
 }
 

@@ -117,7 +117,7 @@ impl Claims {
             .find(|claim| self.falling.contains(claim))
         {
             let message = format!("`{both}` is given with `--rising` and with `--falling`");
-            return Err(Failure::usage(message).help("keep the direction that the output has"));
+            return Err(Failure::usage(message).help("keep the direction that applies"));
         }
         let rising = self.rising.iter();
         let rising = rising.map(|claim| Monotone::new(claim, Direction::Increasing));
@@ -127,7 +127,7 @@ impl Claims {
             .collect())
     }
 
-    /// Refuses claims about inputs that the rule set does not have.
+    /// Returns an error for claims about inputs that the rule set does not have.
     pub(crate) fn check_inputs(&self, model: &Model) -> Result<(), Failure> {
         let names = || model.inputs.iter().map(|input| input.name.as_str());
         let claims = self.rising.iter().chain(&self.falling);
@@ -151,7 +151,10 @@ impl Claims {
         for claim in &mut claims {
             match claim.output.replace(output.to_owned()) {
                 Some(other) if other != output => {
-                    let message = format!("`{}:{other}`: `{other}` is not learned", claim.input);
+                    let message = format!(
+                        "`{}:{other}`: `{other}` is not the learned output",
+                        claim.input
+                    );
                     return Err(Failure::usage(message)
                         .help(format!("write `{0}` or `{0}:{output}`", claim.input)));
                 }

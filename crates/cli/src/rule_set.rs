@@ -23,7 +23,7 @@ pub(crate) fn read(path: &Path) -> Result<Source, Failure> {
     Ok(source)
 }
 
-/// Parses a rule set that was read from a file. Its errors are drawn on standard error.
+/// Parses a rule set that was read from a file. Errors are drawn on standard error.
 pub(crate) fn document<'s>(source: &'s Source, file: &str) -> Result<&'s Document, Failure> {
     source.document().map_err(|findings| {
         profile_instead(file, source).unwrap_or_else(|| refuse(&findings, file, source.text()))

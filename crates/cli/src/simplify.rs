@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let simplified = simplify(model, &rows, &settings).map_err(|error| {
         let help = match error {
             SimplifyError::NoRows => {
-                "the tables have a header and no rows; leave out `--rows-only`"
+                "the tables contain no rows; leave out `--rows-only`"
             }
             SimplifyError::TooManyRules { .. } => {
                 "learn it with fewer rules, such as with a higher `--min-support`, or split it by outputs"
@@ -323,13 +323,13 @@ pub(crate) struct Document<'a> {
     rules: Rules,
     /// The inputs that no rule needs.
     dropped_inputs: &'a [String],
-    /// The disjunction; it changes only where no rule has an OR.
+    /// The disjunction; it changes only if no rule contains OR.
     or: Change,
-    /// Where both rule sets were compared.
+    /// The points at which both rule sets were compared.
     points: Points<'a>,
-    /// By how much an output may differ; null: by 1e-12 of its range.
+    /// The allowed difference of an output; null means 1e-12 of its range.
     tolerance: Option<f64>,
-    /// The largest difference; null where there is none at all.
+    /// The largest difference; null if the outputs are equal.
     difference: Option<OfDifference<'a>>,
 }
 
@@ -339,10 +339,10 @@ struct Rules {
     before: usize,
     /// The number of rules after.
     after: usize,
-    /// The numbers, before, of the rules without effect.
+    /// The numbers in the original rule set of the rules that had no effect.
     #[schemars(inner(range(min = 1)))]
     dropped: Vec<usize>,
-    /// The rules after.
+    /// The rules of the simplified rule set.
     list: Vec<OfRule>,
 }
 
@@ -350,28 +350,28 @@ struct Rules {
 struct OfRule {
     /// The rule in words.
     rule: String,
-    /// The numbers, before, of the rules that it stands for.
+    /// The numbers in the original rule set of the rules that it replaces.
     #[schemars(inner(range(min = 1)))]
     of: Vec<usize>,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Change {
-    /// Before.
+    /// The disjunction before.
     before: &'static str,
-    /// After.
+    /// The disjunction after.
     after: &'static str,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Points<'a> {
-    /// The points at which both were compared.
+    /// The number of all points.
     all: usize,
-    /// The rows among them.
+    /// The number of these points that are rows of the data.
     rows: usize,
-    /// The rows without use.
+    /// The number of rows that cannot be used.
     refused: usize,
-    /// Why these rows have no use.
+    /// The reasons why these rows cannot be used.
     reasons: &'a [String],
 }
 
@@ -385,7 +385,7 @@ struct OfDifference<'a> {
     before: f64,
     /// The value after.
     after: f64,
-    /// Where it was seen.
+    /// The values of the inputs at this difference.
     inputs: Vec<OfInput<'a>>,
 }
 
@@ -393,6 +393,6 @@ struct OfDifference<'a> {
 struct OfInput<'a> {
     /// The input.
     input: &'a str,
-    /// Its value.
+    /// The value of this input.
     value: f64,
 }

@@ -135,7 +135,7 @@ impl Format {
         let column = |name: &&str| {
             let named = self.column.iter().find(|(n, _)| n == name);
             let column = named.map_or(*name, |(_, column)| column.as_str());
-            let help = format!("or say which one it is with `--column {name}=COLUMN`");
+            let help = format!("or name the column that contains it with `--column {name}=COLUMN`");
             header.require(column, &help)
         };
         names.iter().map(column).collect()
@@ -186,10 +186,10 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
         let message = match names.len() {
             0 if path == Path::new("-") => "standard input is empty".to_owned(),
             0 => format!("`{file}` is empty"),
-            cells => format!("the header of `{file}` names none of its {cells} columns"),
+            cells => format!("the header of `{file}` does not name its {cells} columns"),
         };
         return Err(Failure::unreadable(message)
-            .help("the first line names the columns, the others hold the rows"));
+            .help("the first line must name the columns, the other lines are the rows"));
     }
     let header = Header {
         file,
@@ -214,12 +214,12 @@ impl Header {
         if self.names.iter().filter(|column| *column == name).count() > 1 {
             let name = quoted(name);
             let message = format!("`{}` has the column `{name}` more than once", self.file);
-            return Err(Failure::unreadable(message).help("rename all but the one that is meant"));
+            return Err(Failure::unreadable(message).help("rename all of them except one"));
         }
         self.column(name).ok_or_else(|| {
             let failure = Failure::unreadable(format!("`{}` has no column `{name}`", self.file));
             if self.names.first().is_some_and(|name| name.starts_with("sep=")) {
-                return failure.help("delete the first line; `--delimiter` has its meaning");
+                return failure.help("delete the first line, and use `--delimiter` instead");
             }
             if let Some(other) = self.other_delimiter() {
                 return failure.help(format!(
@@ -232,7 +232,7 @@ impl Header {
             }
             let columns = self.names.iter().map(String::as_str);
             let columns = columns.filter(|name| !name.is_empty());
-            // Capitals are the commonest difference.
+            // Different capitals are the most frequent mistake.
             if let Some(column) = columns.clone().find(|it| it.eq_ignore_ascii_case(name)) {
                 let column = quoted(column);
                 return failure.help(format!("did you mean `{column}`? then add `--column {name}={column}`"));
@@ -240,7 +240,7 @@ impl Header {
             if let [only] = self.names.as_slice()
                 && only.contains(' ')
             {
-                return failure.help("the first line must hold the names of the columns; cells are separated by `--delimiter`");
+                return failure.help("the first line must contain the names of the columns, separated as `--delimiter` says");
             }
             let meant = fuzzy::diagnostic::suggest(name, columns).unwrap_or_default();
             failure.help(format!("{meant}; {help}"))
@@ -266,13 +266,13 @@ impl Header {
                 "its cells seem to be separated by another character: `--delimiter {other}`"
             ),
             None if self.delimiter == b',' => {
-                "every row has as many cells as the header; a decimal comma splits a number: write a point".to_owned()
+                "write as many cells in every row as in the header; a decimal comma splits a number, so write a point".to_owned()
             }
-            None => "every row has as many cells as the header".to_owned(),
+            None => "write as many cells in every row as in the header".to_owned(),
         }
     }
 
-    /// The problem of a row with this number of cells, if any.
+    /// Returns the problem of a row with `cells` cells, if any.
     pub(crate) fn misfit(&self, cells: usize) -> Option<String> {
         let expected = self.names.len();
         (cells != expected).then(|| {
@@ -296,7 +296,7 @@ pub(crate) enum Cell {
     Number(f64),
     /// Empty, `NA`, `NaN` or `#N/A`, as spreadsheets write it.
     Unknown,
-    /// Anything else.
+    /// Any other text.
     Bad,
 }
 
@@ -381,7 +381,7 @@ fn not_a_table(start: &[u8]) -> Option<Foreign> {
     if lines.any(|line| line.starts_with(b"fuzzy:") || line.starts_with(b"flagred:")) {
         return is(
             "a rule set or profile",
-            "the rule set comes first, then the tables: see `--help`",
+            "name the rule set first, then the tables: see `--help`",
         );
     }
     None
@@ -429,7 +429,7 @@ impl Table {
         if records.is_empty() {
             return Err(
                 Failure::unreadable(format!("`{file}` has a header, but no rows"))
-                    .help("the lines below the header hold the rows"),
+                    .help("write the rows below the header"),
             );
         }
         Ok(Table { header, records })

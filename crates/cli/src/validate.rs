@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(table) => (rows(table, &estimators)?, Exit::Clean),
         None => flights(arguments, &estimators)?,
     };
-    // Only now are the flights in folders known.
+    // The flights in folders are known only after the folders have been listed.
     let mut files = Files::reading(evaluation.records().iter().map(Record::file))?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let drawn = match &svg {
@@ -117,8 +117,8 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
         Evaluation::of_flights(estimators, arguments.horizon, records, left_out, done)
     });
     let evaluation = evaluation.ok_or_else(|| {
-        Failure::unreadable("there is no step to evaluate in these files").help(
-            "`flagred inspect` shows what is in a log: it takes motors, attitude, and 20 s in the air",
+        Failure::unreadable("there are no steps to evaluate in these files").help(
+            "a log needs motor commands, attitude, and 20 s in the air; `flagred inspect` shows what it contains",
         )
     })?;
     Ok((evaluation, exit))

@@ -1,5 +1,6 @@
-//! Correct and wrong rule sets: every file of `tests/authoring` is a case, and its findings are a snapshot next to it.
-//! To add a case, add a file; `INSTA_UPDATE=always cargo test -p flagred-cli --test authoring` writes its snapshot.
+//! Rule sets with and without errors: every file of `tests/authoring` is a case, and its findings
+//! are a snapshot next to it. To add a case, add a file; `INSTA_UPDATE=always cargo test -p
+//! flagred-cli --test authoring` writes its snapshot.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::{

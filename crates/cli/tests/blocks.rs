@@ -50,7 +50,7 @@ fn explain_and_map_report_a_missing_previous_row() {
     }
     let (code, _, errors) = flagred(folder.path(), &["map", "fan.yaml", "--of", "speed"]);
     assert_eq!(code, Some(0), "{errors}");
-    let note = "note: `speed` keeps its previous value where no rule fires; a map has none before its cells";
+    let note = "note: `speed` keeps its previous value where no rule fires; the cells of a map have no previous value";
     assert!(errors.contains(note), "{errors}");
 }
 
@@ -99,7 +99,7 @@ fn a_risk_does_not_keep_its_previous_value() {
     std::fs::write(path, keeping).unwrap();
     let (code, found, errors) = flagred(folder.path(), &["check", "profile.yaml"]);
     assert_eq!(code, Some(1), "{errors}");
-    let told = "error[keeps-previous]: output `risk` keeps its previous value where no rule fires, which a risk does not";
+    let told = "error[keeps-previous]: output `risk` keeps its previous value where no rule fires, which is not allowed for a risk";
     assert!(found.contains(told), "{found}");
 }
 

@@ -95,7 +95,7 @@ fn the_advice_for_mistakes_works() {
         (
             "learn fan.yaml header.csv -o out.yaml",
             3,
-            "the lines below the header hold the rows",
+            "write the rows below the header",
         ),
         (
             "tune fan.yaml rows.csv --only temperature.hat -o out.yaml",
@@ -114,7 +114,7 @@ fn the_advice_for_mistakes_works() {
             3,
             "`flagred assess --profile PROFILE FLIGHT`",
         ),
-        ("assess semicolons.csv", 3, "commas between its cells"),
+        ("assess semicolons.csv", 3, "separates cells by commas"),
         (
             "map fan.yaml -o map.svg",
             2,
@@ -125,7 +125,7 @@ fn the_advice_for_mistakes_works() {
         (
             "explain fan.yaml temperature=nan humidity=3",
             2,
-            "an unknown value leaves nothing to explain",
+            "an unknown value cannot be explained",
         ),
         (
             "explain fan.yaml temperature=1,000.5 humidity=3",
@@ -144,7 +144,7 @@ fn the_advice_for_mistakes_works() {
         (
             "map fan.yaml --coverage-below 0.2",
             2,
-            "choose one with `--fill`",
+            "choose an interpolation with `--fill`",
         ),
         (
             "learn fan.yaml rows.csv -o out.yaml --min-support 9",
@@ -194,7 +194,7 @@ fn the_advice_for_mistakes_works() {
         (
             "tune fan.yaml rows.csv -o out.yaml --checkpoint out.yaml",
             2,
-            "`out.yaml` is to be written, and it is written, too",
+            "`out.yaml` cannot be written: it is also another output",
         ),
         (
             "tune fan.yaml units.csv -o out.yaml",
@@ -221,7 +221,7 @@ fn the_advice_for_mistakes_works() {
         (
             "eval fan.yaml cells.csv --suffix _model",
             1,
-            "help: every row has as many",
+            "help: write as many cells",
         ),
         (
             "eval fan.yaml comments.csv",
@@ -267,7 +267,7 @@ fn the_advice_for_mistakes_works() {
         (
             "explain fan.yaml temperature=20 humidity=3 --delimiter ;",
             2,
-            "`--delimiter` is for tables",
+            "`--delimiter` needs a table",
         ),
         (
             "explain fan.yaml temperature=20 humidity=3 -o x.csv",
@@ -277,7 +277,7 @@ fn the_advice_for_mistakes_works() {
         (
             "map fan.yaml --hold humidity=5 --hold humidity=6",
             2,
-            "`humidity` is held twice",
+            "`humidity` has two values",
         ),
         (
             "map fan.yaml --points 0",

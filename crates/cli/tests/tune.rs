@@ -51,7 +51,7 @@ fn moved_numbers_are_printed_and_written() {
         "{out}"
     );
     assert!(
-        out.contains("(4 parts of groups of `room`, 95 % intervals)"),
+        out.contains("(4 folds of groups of `room`, 95 % intervals)"),
         "{out}"
     );
     let written = written.unwrap();
@@ -123,7 +123,7 @@ fn a_checkpoint_is_the_starting_point_unless_it_is_of_another_rule_set() {
         &[("best.yaml", &better)],
         &["--checkpoint", "best.yaml", "--no-validation"],
     );
-    assert!(out.contains("begun       with the checkpoint\n"), "{out}");
+    assert!(out.contains("started     with the checkpoint\n"), "{out}");
     assert!(out.contains("moved       heat.cool peak 19 -> 20"), "{out}");
     let other = FAN.replace("hot", "warm");
     let (code, _, err, written) = tune(&[("best.yaml", &other)], &["--checkpoint", "best.yaml"]);
@@ -139,7 +139,7 @@ fn a_start_that_is_not_monotone_is_refused() {
     let (code, _, err, _) = tune(&[], &["--falling", "heat"]);
     assert_eq!(code, Some(3));
     assert!(
-        err.contains("the output is not decreasing in `heat` to begin with"),
+        err.contains("the output is not decreasing in `heat` before tuning"),
         "{err}"
     );
 }
@@ -224,7 +224,7 @@ fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
     assert_eq!(code, Some(0), "{err}");
     assert!(
         out.contains(
-            "at bounds   speed.slow, speed.fast: the rows ask for values beyond the range;"
+            "at bounds   speed.slow, speed.fast: the rows require values beyond the range;"
         ),
         "{out}"
     );
@@ -303,7 +303,7 @@ rules:
       note: as the old one did
 ";
 
-/// The text without its digits.
+/// Returns the text without its digits.
 fn shape(text: &str) -> String {
     text.chars()
         .filter(|c| !c.is_ascii_digit() && *c != '.' && *c != '-')
@@ -440,7 +440,8 @@ fn a_checkpoint_with_other_fixed_numbers_is_refused() {
     }
 }
 
-/// At 1e15 only one of two constants was named, and at 1e20 the report claimed that no step helps.
+/// A regression test: at 1e15 the report named only one of two constants, and at 1e20 it claimed
+/// that no step helps.
 #[test]
 fn targets_that_leave_no_digit_of_the_loss_are_refused() {
     for target in ["1e8", "-1e15", "1e20", "1e49"] {
@@ -480,7 +481,7 @@ fn a_header_without_names_is_reported() {
     let (code, _, err, _) = tune(&[("rows.csv", ",,\n1,2,3\n")], &[]);
     assert_eq!(code, Some(3));
     assert!(
-        err.contains("the header of `rows.csv` names none of its 3 columns"),
+        err.contains("the header of `rows.csv` does not name its 3 columns"),
         "{err}"
     );
     let (code, _, err, _) = tune(&[("rows.csv", "")], &[]);

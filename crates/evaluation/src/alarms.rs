@@ -199,7 +199,7 @@ pub(crate) struct Upsets {
     pub(crate) never: usize,
     /// Upsets of flights without a verdict.
     pub(crate) not_assessed: usize,
-    /// The median lead time in seconds.
+    /// The median time from an alarm to its upset, in seconds.
     pub(crate) lead_s_median: Option<f64>,
 }
 

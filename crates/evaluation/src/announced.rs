@@ -27,7 +27,8 @@ impl Answer {
         self.lead_s().is_some_and(|lead_s| lead_s > 0.0)
     }
 
-    /// How long before the episode the warning began, in seconds; negative if it came after its start.
+    /// The lead time: how long before the episode the warning began, in seconds; negative if it
+    /// began after the start of the episode.
     pub fn lead_s(&self) -> Option<f64> {
         self.warned_s.map(|warned_s| self.episode.from_s - warned_s)
     }
@@ -36,7 +37,7 @@ impl Answer {
 /// A period during which a profile warned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Warning {
-    /// The period, within the judged times.
+    /// The period of the warning, limited to the judged times.
     pub span: Span,
     /// Whether no episode followed.
     pub is_false: bool,
@@ -47,7 +48,7 @@ pub struct Warning {
 pub struct Judged {
     /// The episodes that start within the judged times.
     pub answers: Vec<Answer>,
-    /// The warnings within them.
+    /// The warnings within the judged times.
     pub warnings: Vec<Warning>,
 }
 

@@ -33,7 +33,7 @@ pub struct Baseline {
 /// How the statistics of single motors are combined into one value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PerMotor {
-    /// Their mean.
+    /// The mean of the motors.
     Mean,
     /// The smallest value.
     Min,
@@ -107,7 +107,7 @@ impl Baseline {
                 per_motor: Some(PerMotor::Min),
                 ..of(
                     "least_margin",
-                    "mean margin of each motor over 2 s, of the motor with the least",
+                    "lowest mean margin of a motor over 2 s",
                     of_each(Statistic::Mean, Signal::MotorMargin),
                     false,
                 )
@@ -126,7 +126,7 @@ impl Baseline {
             ),
             of(
                 "true_wind",
-                "the wind as it was, where it is known",
+                "the true wind, where it is known",
                 last("wind_m_s"),
                 true,
             ),

@@ -10,7 +10,7 @@ use crate::span::Span;
 #[non_exhaustive]
 pub enum Incomplete {
     /// The log exceeds the limits of a reader, which left part of it out.
-    #[error("not all of it is kept, which leaves out {0}")]
+    #[error("the log exceeds the limits of the reader; left out: {0}")]
     LeftOut(LeftOut),
     /// Required information is missing from the log.
     #[error(transparent)]
@@ -21,7 +21,7 @@ impl Incomplete {
     /// Advice on what to do, in addition to the message.
     pub fn help(&self) -> Option<&'static str> {
         match self {
-            Incomplete::LeftOut(_) => Some("docs/limits.md has the bounds"),
+            Incomplete::LeftOut(_) => Some("docs/limits.md lists the limits"),
             Incomplete::Gap(gap) => gap.help(),
         }
     }

@@ -33,11 +33,11 @@ pub struct Document<'a> {
     horizon_s: Option<f64>,
     /// The number of flights.
     flights: usize,
-    /// The number of cases of an estimator.
+    /// The number of steps that were scored.
     steps: Option<usize>,
     /// The number of files that are not complete flights.
     left_out: usize,
-    /// These files.
+    /// The files that were left out, with the reasons.
     left_out_files: &'a [LeftOut],
     /// The profiles, then the predictors without rules.
     estimators: Vec<EstimatorDocument<'a>>,
@@ -96,23 +96,23 @@ struct OfKind<'a, T> {
 struct ScoresDocument {
     /// The area under the ROC curve.
     auc: Option<f64>,
-    /// Its 95 % interval, by resampling whole flights.
+    /// The 95 % interval of this area, by resampling whole flights.
     auc_interval: Option<[f64; 2]>,
     /// The area under the precision-recall curve.
     pr_auc: Option<f64>,
-    /// Its 95 % interval.
+    /// The 95 % interval of this area.
     pr_auc_interval: Option<[f64; 2]>,
     /// The reason why there is no area, such as `no critical step`.
     no_auc: Option<String>,
     /// The mean over the flights that have both critical and other cases.
     within_flight_auc: Option<f64>,
-    /// Its 95 % interval.
+    /// The 95 % interval of this area.
     within_flight_auc_interval: Option<[f64; 2]>,
-    /// The number of those flights.
+    /// The number of flights in this mean.
     within_flight_flights: usize,
     /// The number of cases with a score.
     cases: usize,
-    /// The number of critical ones among them.
+    /// The number of critical ones among these.
     critical: usize,
     /// The number of cases without a score.
     unknown: usize,
@@ -127,11 +127,11 @@ struct BandDocument {
     to_pct: f64,
     /// The number of cases with such a risk.
     cases: u64,
-    /// The number of critical ones among them.
+    /// The number of critical ones among these.
     critical: u64,
     /// The share of critical cases, from 0 to 1.
     critical_share: Option<f64>,
-    /// The mean of these risks in %.
+    /// The mean risk of these cases, in %.
     risk_mean_pct: Option<f64>,
 }
 
@@ -246,7 +246,7 @@ struct RecordDocument<'a> {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct SaidDocument<'a> {
-    /// Its verdict of the flight.
+    /// The verdict of the profile on the flight.
     verdict: VerdictWord,
     /// Periods of WARN or FAIL.
     alarms: &'a [Span],
@@ -265,7 +265,8 @@ struct EpisodeDocument {
     episode: Span,
     /// The start of the warning that announced or answered the episode, in seconds.
     warned_s: Option<f64>,
-    /// How long before the episode the warning began, in seconds; negative after its start.
+    /// How long before the episode the warning began, in seconds; negative if it began after the
+    /// start of the episode.
     lead_s: Option<f64>,
 }
 

@@ -10,7 +10,7 @@ pub struct Estimators {
     pub(crate) baselines: [Baseline; 9],
 }
 
-/// A profile with the name that identifies it.
+/// A profile, and the name under which its results are listed.
 pub(crate) struct Named {
     pub(crate) name: String,
     pub(crate) estimator: Estimator,
@@ -52,7 +52,7 @@ impl Estimators {
         profiles.chain(baselines.map(|baseline| (baseline.name, baseline.description)))
     }
 
-    /// The signals, except those of the motors, that any of them reads.
+    /// The signals, except those of the motors, that any estimator reads.
     pub fn signals(&self) -> Vec<&str> {
         let profiles = self.profiles.iter();
         let mut names: Vec<&str> = profiles

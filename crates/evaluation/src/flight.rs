@@ -97,7 +97,7 @@ pub enum Unusable {
     Incomplete {
         /// The name of the flight for the user.
         name: String,
-        /// The missing information.
+        /// Description of the missing information.
         lacks: Incomplete,
     },
     /// The baselines cannot be computed for the flight.
@@ -205,7 +205,7 @@ impl Record {
         })
     }
 
-    /// The name of its file.
+    /// The name of the file of the log.
     pub fn file(&self) -> &str {
         &self.file
     }
@@ -342,7 +342,7 @@ fn follow(
     Ok(said.collect())
 }
 
-/// The periods of findings of a level or a higher one.
+/// Returns the periods of the findings whose severity is at least the given level.
 fn alarms(findings: &[Finding], least: Level) -> Vec<Span> {
     let findings = findings.iter().filter(|finding| finding.severity >= least);
     Span::joined(findings.map(|finding| Span {

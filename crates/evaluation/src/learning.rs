@@ -262,7 +262,7 @@ fn fingerprint(values: &[f64]) -> u64 {
 pub struct GapComparison {
     /// The number of rules that were removed, one at a time: those with samples in the gap they leave.
     pub rules: u32,
-    /// The errors of the rules themselves, none removed: a lower bound to aim for.
+    /// The errors without removing any rule: a lower bound for the methods.
     pub with_the_rule: MethodErrors,
     /// The errors of each method.
     pub methods: Vec<(GapMethod, MethodErrors)>,
@@ -455,7 +455,8 @@ rules: []
         assert_eq!(compared.rules, 10);
         assert_eq!(compared.methods.len(), 4);
         for (method, errors) in &compared.methods {
-            // Half way between two terms the neighbour covers the row as well, which applies to 20 of 400 rows.
+            // Half way between two terms, the rule of the neighbouring term covers the row as well;
+            // this applies to 20 of the 400 rows.
             assert_eq!(errors.by_row.rows, 380, "{method:?}");
             // A neighbour along the spread predicts the same as the removed rule.
             assert!(errors.by_rule_mean_absolute < 15.0, "{method:?} {errors:?}");

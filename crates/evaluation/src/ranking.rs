@@ -89,7 +89,7 @@ pub struct Intervals {
 pub struct WithinGroups {
     /// The mean over the groups of the area under the receiver operating characteristic.
     pub roc: f64,
-    /// Its interval; `None` without resamples.
+    /// The 95 % interval of this mean; `None` without resamples.
     pub interval: Option<Interval>,
     /// The number of groups with both critical and other predictions.
     pub groups: usize,
@@ -291,7 +291,7 @@ pub struct Band {
     pub to_pct: f64,
     /// The number of predictions in the band.
     pub predictions: u64,
-    /// The number of critical ones among them.
+    /// The number of critical ones among these.
     pub critical: u64,
     /// The mean of their risks in %; `None` without predictions.
     pub mean_risk_pct: Option<f64>,

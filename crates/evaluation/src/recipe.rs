@@ -10,7 +10,7 @@ use flagred::source::{Motors, Signal, Source, Statistic};
 
 /// How an input is computed from columns, and from the limits of the effective range.
 pub struct Recipe {
-    /// The columns that it reads.
+    /// The columns that the recipe reads.
     pub columns: &'static [&'static str],
     make: Make,
 }

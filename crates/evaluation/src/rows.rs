@@ -14,7 +14,7 @@ pub const ERROR: &str = "att_rmse_deg";
 
 /// A table with one row for each flight.
 pub struct Rows<'a, E> {
-    /// The names of the columns.
+    /// The names of the columns, in their order.
     pub columns: Vec<&'a str>,
     /// The number of rows.
     pub len: usize,
@@ -37,11 +37,11 @@ impl<E> Rows<'_, E> {
 
 /// The columns of a table that contain the value of an input.
 enum Column {
-    /// A column of its own.
+    /// A separate column.
     Own(usize),
     /// Columns from which it is computed.
     Of(Recipe),
-    /// None, because the rules do not read the input.
+    /// No column, because the rules do not read the input.
     Unread,
 }
 
@@ -111,7 +111,8 @@ pub fn cases<E>(
         .baselines
         .iter()
         .map(|baseline| {
-            // The name of the mean margin in tables of `flagred dataset`, and of the wind in tables of flights.
+            // Tables of `flagred dataset` use another name for the mean margin, and tables of
+            // flights for the wind.
             let other = match baseline.name {
                 "margin_mean" => "margin",
                 "true_wind" => "wind_mean",

@@ -11,7 +11,7 @@ use crate::ranking::{
 /// The kind of flight that is reported separately: its attitude errors are real, but commanded.
 pub(crate) const APART: &str = "manoeuvre";
 
-/// The number of resamples of whole flights for an interval, and their random seed.
+/// The number of resamples of whole flights from which an interval is computed.
 pub(crate) const RESAMPLES: usize = 1000;
 pub(crate) const SEED: u64 = 1;
 
@@ -30,9 +30,9 @@ pub struct Case {
     pub kind: String,
     /// Whether it was critical.
     pub is_critical: bool,
-    /// Whether there was no critical error in the 5 s before.
+    /// Whether no error was critical in the 5 s before the case.
     pub is_quiet: bool,
-    /// Whether there was no critical error in the 10 s before.
+    /// Whether no error was critical in the 10 s before the case.
     pub is_onset: bool,
     /// The score of each estimator; NaN is unknown.
     pub scores: Vec<f64>,
@@ -72,7 +72,7 @@ pub(crate) struct ProfileScores {
     pub(crate) description: String,
     /// The scores over all kinds except [`APART`].
     pub(crate) all: Scores,
-    /// The scores over the quiet steps of those, and over the onsets.
+    /// The scores over the quiet steps of these kinds, and over the onsets.
     pub(crate) quiet: Scores,
     pub(crate) onset: Scores,
     pub(crate) by_vehicle: Vec<(String, Scores)>,
@@ -82,7 +82,8 @@ pub(crate) struct ProfileScores {
     pub(crate) roc: Vec<RocPoint>,
 }
 
-/// Scores every estimator; the first `risks` of them are risks in %. `done` is called after each.
+/// Scores every estimator; the first `risks` estimators give risks in %. `done` is called after
+/// each estimator.
 pub(crate) fn score<'a>(
     names: impl Iterator<Item = (&'a str, &'a str)>,
     risks: usize,

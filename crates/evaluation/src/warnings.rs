@@ -20,7 +20,7 @@ pub(crate) struct Warnings {
     pub(crate) flights: usize,
     /// The judged time in hours.
     pub(crate) hours: f64,
-    /// The number of periods of critical error.
+    /// The number of episodes, that is, periods of critical error.
     pub(crate) episodes: usize,
     /// The number of episodes at whose start a warning was on that began earlier.
     pub(crate) announced: usize,
@@ -34,7 +34,7 @@ pub(crate) struct Warnings {
     pub(crate) group_lead_s_median: Option<f64>,
     /// The number of episodes that were not announced, but during which a warning began.
     pub(crate) answered: usize,
-    /// The median time from their start to that warning, in seconds.
+    /// The median time from the start of such an episode to that warning, in seconds.
     pub(crate) answer_s_median: Option<f64>,
     /// The number of periods of WARN or FAIL.
     pub(crate) warnings: usize,

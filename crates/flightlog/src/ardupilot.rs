@@ -104,7 +104,7 @@ pub(crate) fn air_from_commands(
         known.iter().sum::<f64>() > 0.2 * known.len() as f64 || before && known.len() < row.len()
     };
     let mut intervals = |state: &dyn Fn(&[f64], bool) -> bool, rule: &str| {
-        let rule = format!("{rule} (the log has no events that tell)");
+        let rule = format!("{rule} (the log has no events for it)");
         let mut changes: Vec<(f64, bool)> = Vec::new();
         let (mut last, mut end_s) = (None, None);
         for (t_s, row) in flight.commands.rows() {
@@ -216,10 +216,10 @@ pub(crate) fn effective_doubt(parameters: &Parameters) -> Option<String> {
     let [low, high] = ["MOT_SPIN_MIN", "MOT_SPIN_MAX"].map(|name| parameters.get(name));
     let (low, high) = low.zip(high)?;
     (!FRACTIONS.allow((low, high)))
-        .then(|| format!("MOT_SPIN_MIN/MAX, {low} and {high}, are no limits"))
+        .then(|| format!("MOT_SPIN_MIN/MAX, {low} and {high}, are not valid limits"))
 }
 
-/// Whether there are parameters with limits of the commands, even if these are implausible.
+/// Whether the parameters contain limits of the commands, even implausible ones.
 pub(crate) fn has_limits(parameters: &Parameters) -> bool {
     let is_known = |name: &str| parameters.get(name).is_some();
     is_known("MOT_SPIN_MIN") && is_known("MOT_SPIN_MAX") || is_known("THR_MIN")
@@ -285,10 +285,7 @@ pub(crate) fn range_in_force(parameters: &Parameters, flight: &Flight) -> Range 
     }
     Range {
         high: 1.0,
-        source: format!(
-            "{}; the commands go beyond the upper limit",
-            effective.source
-        ),
+        source: format!("{}; the commands exceed the upper limit", effective.source),
         ..effective
     }
 }
@@ -301,7 +298,7 @@ mod tests {
         pairs.iter().copied().collect()
     }
 
-    /// Limits that no speed controller has would hide a motor at its limit.
+    /// Impossible limits are ignored, because they would hide a motor at its limit.
     #[test]
     fn impossible_limits_are_ignored() {
         for (low, high) in [

@@ -91,7 +91,7 @@ mod tests {
     fn errors_in_roll_and_pitch_add_up() {
         assert_eq!(error(3.0, 0.0, 4.0, 0.0), 25.0);
         assert_eq!(error(0.0, 3.0, 0.0, 4.0), 25.0);
-        // With the printed minus this would be 0.
+        // With the minus of the printed equation, this error would be 0.
         assert_eq!(error(4.0, 0.0, 4.0, 0.0), 32.0);
     }
 

@@ -19,9 +19,9 @@ const MOST_BOOTS: usize = 1000;
 /// How to handle a message, by its timestamp.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Checked {
-    /// Accept it, at this time.
+    /// Accept the message, at this time.
     At(f64),
-    /// Its time jumps: hold it until the next message confirms or refutes it.
+    /// The time of the message jumps: hold it until the next message confirms or refutes it.
     Wait,
     /// The held message was right: accept it at the first time, and this one at the second.
     Confirmed(f64, f64),
@@ -40,7 +40,7 @@ pub(crate) struct Clock {
     first_s: Option<f64>,
     last_s: Option<f64>,
     waiting_s: Option<f64>,
-    /// The longest step that is accepted now, a multiple of the previous step.
+    /// The longest step that is currently accepted, a multiple of the previous step.
     longest_s: f64,
     boot_hint: bool,
     boots_s: Vec<f64>,
@@ -131,14 +131,15 @@ impl Clock {
         follows
     }
 
-    /// Whether a timestamp may follow the latest accepted one; the first timestamp always may.
+    /// Whether a timestamp is plausible after the latest accepted one; the first timestamp always
+    /// is.
     #[cfg(feature = "mavlink")]
     pub(crate) fn is_next(&self, t_s: f64) -> bool {
         self.last_s
             .is_none_or(|last_s| (BACK_S..=self.longest_s).contains(&(t_s - last_s)))
     }
 
-    /// Whether there were more boots than are kept.
+    /// Whether the maximum number of boots was exceeded.
     pub(crate) fn is_full(&self) -> bool {
         self.boots_s.len() >= MOST_BOOTS
     }

@@ -39,7 +39,7 @@ pub enum ReadError {
         what: String,
     },
     /// The file is a flight log in a format that is not supported.
-    #[error("`{path}` is {what}, a format that is not read")]
+    #[error("`{path}` is {what}, a format that is not supported")]
     NotRead {
         /// The path as the user gave it.
         path: String,
@@ -78,14 +78,14 @@ impl ReadError {
                 ErrorKind::NotFound if path.starts_with("http") => {
                     Some("download the log first, and name the file")
                 }
-                ErrorKind::NotFound if path.contains('*') => {
-                    Some("no file has a name of this form")
-                }
+                ErrorKind::NotFound if path.contains('*') => Some("no file matches this pattern"),
                 ErrorKind::NotFound => Some("check the path"),
                 ErrorKind::IsADirectory => Some("name the logs in it"),
                 _ => None,
             },
-            Self::Empty { .. } => Some("the download or copy may have failed: fetch the log again"),
+            Self::Empty { .. } => {
+                Some("the download or copy may have failed: download the log again")
+            }
             Self::NotALog { what, .. } if what.contains("git-lfs") => {
                 Some("fetch the log itself with `git lfs pull`")
             }
@@ -93,7 +93,7 @@ impl ReadError {
                 "it cannot be converted to ULog: write a flight CSV (docs/flight-csv.md) of its OUT0 messages, or fly with PX4 1.4 or newer, which logs as ULog (.ulg)",
             ),
             Self::NotALog { what, .. } if what == TEXT => Some(
-                "a flight CSV begins with the names of its columns, commas between them: `t_s`, and `pwm1` or `motor1` and so on; a text log of ArduPilot begins with `FMT` lines",
+                "a flight CSV begins with the names of its columns, separated by commas: `t_s`, and `pwm1` or `motor1` and so on; a text log of ArduPilot begins with `FMT` lines",
             ),
             Self::NotALog { what, .. } if what == RULES => {
                 Some("`flagred check` examines a rule set")
@@ -102,7 +102,7 @@ impl ReadError {
                 Some("`flagred assess --profile PROFILE FLIGHT` assesses a flight by it")
             }
             Self::NotALog { what, .. } if what == SEMICOLONS => {
-                Some("a flight CSV has commas between its cells, and points as decimal marks")
+                Some("a flight CSV separates cells by commas, and decimals by a point")
             }
             Self::NotALog { .. } => Some(
                 "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",
@@ -146,7 +146,7 @@ pub(crate) const RULES: &str = "a rule set";
 pub(crate) const PROFILE: &str = "a profile";
 
 /// Description of a table with separators other than commas.
-pub(crate) const SEMICOLONS: &str = "a table with `;` between its cells";
+pub(crate) const SEMICOLONS: &str = "a table with semicolons between its cells";
 
 /// The path in an error until the caller sets it.
 pub(crate) const UNNAMED: &str = "the log";

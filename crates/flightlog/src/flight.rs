@@ -14,7 +14,7 @@ pub enum Format {
     DataFlashText,
     /// PX4 ULog (`.ulg`).
     ULog,
-    /// MAVLink telemetry with time stamps (`.tlog`).
+    /// MAVLink telemetry with timestamps (`.tlog`).
     Tlog,
     /// Flight CSV.
     Csv,
@@ -58,10 +58,10 @@ pub enum VehicleKind {
 }
 
 impl VehicleKind {
-    /// Advice for a name that is not one of a kind.
-    pub(crate) const NAMES_HELP: &str = "there are `multirotor`, `helicopter`, `plane`, `VTOL plane`, `rover`, `submarine` and `other vehicle`";
+    /// Advice for an unknown name of a kind.
+    pub(crate) const NAMES_HELP: &str = "write `multirotor`, `helicopter`, `plane`, `VTOL plane`, `rover`, `submarine` and `other vehicle`";
 
-    /// The kind that is displayed as `name`, in small or capital letters.
+    /// The kind with the given name, in small or capital letters.
     pub(crate) fn from_name(name: &str) -> Option<Self> {
         [
             Self::Multirotor,
@@ -318,7 +318,7 @@ impl Flight {
             motors: Vec::new(),
             geometry: None,
             range: None,
-            effective_range: whole_range("the log names no tighter limits"),
+            effective_range: whole_range("the log contains no tighter limits"),
             effective_range_doubt: None,
             assumed: Vec::new(),
             parameters: Vec::new(),
@@ -400,6 +400,6 @@ pub(crate) fn whole_range(why: &str) -> Range {
         low: 0.0,
         high: 1.0,
         unit: "1",
-        source: format!("whole range: {why}"),
+        source: format!("the whole range: {why}"),
     }
 }

@@ -79,13 +79,13 @@ pub enum Gap {
     #[error("the vehicle was never in the air")]
     NeverInAir,
     /// The log does not record when the vehicle was in the air.
-    #[error("the log does not tell when the vehicle was in the air")]
+    #[error("the log does not report when the vehicle was in the air")]
     AirUnknown {
         /// The format of the log.
         format: Format,
     },
     /// The attitude, its set point or both were not logged.
-    #[error("attitude and its set point are not both in the log")]
+    #[error("the attitude or its set point is not in the log")]
     NoAttitude,
     /// The rate of motor commands is too low to compute a spread.
     #[error("motor commands are logged at {rate_hz:.1} Hz, too slow for a spread")]
@@ -170,7 +170,7 @@ impl Gap {
             }
             Self::TooSlow { format, .. } => match format {
                 DataFlash | DataFlashText => "set bit 0 (fast attitude) of LOG_BITMASK",
-                ULog => "choose a higher rate of logging with SDLOG_PROFILE",
+                ULog => "choose a higher logging rate with SDLOG_PROFILE",
                 Tlog => {
                     "use the log on the vehicle, or raise the rate of SERVO_OUTPUT_RAW (ArduPilot: SRx_RC_CHAN)"
                 }
@@ -201,7 +201,7 @@ impl Flight {
     /// let flight = flagred_flightlog::read(log.as_bytes(), &flagred_flightlog::Options::default())?;
     /// let gaps: Vec<String> = flight.gaps().iter().map(ToString::to_string).collect();
     /// assert_eq!(gaps, [
-    ///     "attitude and its set point are not both in the log",
+    ///     "the attitude or its set point is not in the log",
     ///     "motor commands are logged at 1.0 Hz, too slow for a spread",
     /// ]);
     /// # Ok::<(), flagred_flightlog::ReadError>(())

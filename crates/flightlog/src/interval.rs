@@ -34,9 +34,11 @@ impl Interval {
 pub struct Intervals {
     /// The intervals, in order of time, without overlap.
     pub spans: Vec<Interval>,
-    /// The rule that determined them, such as `EV 28 (not landed) to EV 18 (land complete)`.
+    /// The rule that determined the intervals, such as `EV 28 (not landed) to EV 18 (land
+    /// complete)`.
     pub rule: String,
-    /// Whether they are derived or assumed because the log contains no reports of the autopilot.
+    /// Whether the intervals are derived or assumed because the log contains no reports of the
+    /// autopilot.
     pub is_assumed: bool,
 }
 

@@ -81,7 +81,7 @@ impl<'a> FromIterator<(&'a str, f64)> for Parameters {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Parameter {
-    /// Its name.
+    /// The name of the parameter.
     pub name: String,
     /// The first value, because failure tests and learning change parameters in flight.
     pub value: f64,
@@ -114,7 +114,8 @@ fn is_of_motors(name: &str, throttle: &str) -> bool {
     is_throttle || BEGINNINGS.iter().any(begins) && !name.contains("_FUNC")
 }
 
-/// The name of a number in a table with gaps; `what` and the number if the table has no name.
+/// Returns the name of a number in a table with gaps; for a number without a name, `what` and the
+/// number.
 pub(crate) fn name_of(names: &[&str], number: i64, what: &str) -> String {
     let name = usize::try_from(number)
         .ok()

@@ -22,7 +22,7 @@ pub struct PulseRange {
     high_us: u16,
 }
 
-/// Two pulse widths that are not a valid range of motor outputs.
+/// The error for two pulse widths that are not a valid range of motor outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("`{low_us}` to `{high_us}` us is not a range of motor outputs")]
 pub struct PulseRangeError {
@@ -101,8 +101,8 @@ impl PulseRange {
                 low, high, source, ..
             } = range;
             let own = format!("{low} to {high} {unit}").trim_end().to_owned();
-            let problem = format!("has a range of its own, {own} ({source})");
-            return Some((problem, "assess it without a given range"));
+            let problem = format!("reports its own range, {own} ({source})");
+            return Some((problem, "assess this log without a given range"));
         }
         let in_air = |t_s: f64| flight.is_in_air(t_s) != Some(false);
         let rows = flight.commands.rows().filter(|(t_s, _)| in_air(*t_s));

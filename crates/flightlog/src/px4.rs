@@ -244,7 +244,7 @@ pub(crate) fn output_range(
     }
 }
 
-/// Name of a `nav_state` of vehicle_status.
+/// Returns the name of a `nav_state` of vehicle_status.
 pub(crate) fn nav_state(number: i64) -> String {
     const NAMES: &[&str] = &[
         "MANUAL",

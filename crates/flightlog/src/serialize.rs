@@ -73,9 +73,10 @@ impl<T: Serialize> Serialize for Event<T> {
 #[derive(serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct IntervalsFields<'a> {
-    /// The sum of their lengths, in seconds.
+    /// The total length of the intervals, in seconds.
     duration_s: f64,
-    /// The rule that determined them, such as `EV 28 (not landed) to EV 18 (land complete)`.
+    /// The rule that determined the intervals, such as `EV 28 (not landed) to EV 18 (land
+    /// complete)`.
     rule: &'a str,
     /// The intervals, in order of time, without overlap.
     spans: &'a [Interval],
@@ -96,7 +97,7 @@ impl Serialize for Intervals {
 #[derive(serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct GapFields {
-    /// The missing information.
+    /// Description of the missing information.
     reason: String,
     /// Advice for the pilot.
     help: Option<&'static str>,
@@ -136,7 +137,7 @@ mod tests {
         let gaps = serde_json::to_value(flight.gaps()).unwrap();
         assert_eq!(
             gaps[0]["reason"],
-            "attitude and its set point are not both in the log"
+            "the attitude or its set point is not in the log"
         );
     }
 }

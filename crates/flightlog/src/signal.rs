@@ -77,7 +77,7 @@ impl Series {
             })
     }
 
-    /// Whether it has no signals.
+    /// Whether the series has no signals.
     pub(crate) fn is_empty(&self) -> bool {
         self.labels.is_empty()
     }
@@ -176,11 +176,11 @@ impl Hold<'_> {
 /// one is damaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Order {
-    /// It is later than all rows.
+    /// The row is later than all rows.
     Last,
-    /// It is later than all rows except the last, which was too far ahead and is dropped.
+    /// The row is later than all rows except the last one, which was too far ahead and is dropped.
     Replaces,
-    /// It goes back even then, and is dropped itself.
+    /// The time of the row goes back even then, so the row itself is dropped.
     Back,
 }
 

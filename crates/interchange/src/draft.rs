@@ -176,7 +176,7 @@ impl<'t> Draft<'t> {
         count < most
     }
 
-    /// Whether a variable may have one more term.
+    /// Whether another term may be added to a variable; otherwise an error is reported, once.
     pub(crate) fn has_room_for_term(&mut self, variable: &Variable, part: &str) -> bool {
         let what = format!("terms of `{}`", variable.name);
         self.has_room(variable.terms.len(), MOST_TERMS, &what, part)

@@ -65,10 +65,10 @@ pub enum Format {
 /// How to treat content that cannot be converted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Losses {
-    /// It is an error: a converted rule set always gives the same results.
+    /// Report an error: a converted rule set always gives the same results.
     #[default]
     Refuse,
-    /// It is omitted with a warning, and results may differ.
+    /// Omit the content with a warning; results may differ.
     Accept,
 }
 

@@ -38,7 +38,8 @@ impl Allowed {
         plain
     }
 
-    /// A name for each of these. Allowed names are kept first, so that no converted name replaces them.
+    /// Returns an allowed name for each of the given names. Names that are already allowed are
+    /// assigned first, so that no converted name replaces them.
     fn names(&self, before: &[&str]) -> Vec<String> {
         let mut taken = BTreeSet::new();
         let mut stays = |name: &&str| {

@@ -154,7 +154,7 @@ pub(crate) const DEFUZZIFIERS: &Words<Defuzzifier> = &[
         Defuzzifier::WeightedSum,
         ["wtsum", "WeightedSum", "COGSS", ""],
     ),
-    // fuzzylite derives it from the terms.
+    // fuzzylite derives the defuzzifier from the terms.
     (Defuzzifier::Tsukamoto, ["", "WeightedAverage", "", ""]),
 ];
 

@@ -46,7 +46,7 @@ pub fn options(estimator: &Estimator, drawn: bool) -> Options {
 /// The scale of a percentage.
 const PERCENT: (Scale, &str) = (Scale::new(0.0, 100.0), "%");
 
-/// The maximum number of events that are drawn; the last one shows the number of the rest.
+/// The maximum number of events that are drawn; the last one shows the number of further events.
 const MOST_EVENTS: usize = 200;
 
 /// The stretch that is drawn: from the first take-off to the last landing, or the whole log if there is none.
@@ -112,7 +112,7 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment, shown: Stretch) -
         last.name = format!("and {} more flight modes", more + 1);
         last.stretch.end_s = stretch.end_s;
     }
-    // The gravest finding comes first; it is drawn last, on top of the others.
+    // The most severe finding comes first in the list, and is drawn last, on top of the others.
     let findings = assessed.findings.iter().rev().map(|finding| {
         let span = Stretch {
             start_s: finding.from_s,

@@ -10,12 +10,12 @@ const SPANS: usize = 500;
 /// A stretch shorter than this, in seconds, is drawn with a finer resolution of time.
 const FEW_S: f64 = 2.0;
 
-/// The time that a picture shows, in seconds.
+/// A stretch of time that a picture shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
-    /// The start.
+    /// The start, in seconds.
     pub start_s: f64,
-    /// The end.
+    /// The end, in seconds.
     pub end_s: f64,
 }
 
@@ -143,14 +143,14 @@ impl Pen {
         self.data.push(' ');
         self.data += &number(y, up);
         if !self.down {
-            // A single point is drawn as a dot.
+            // A line of length 0 draws a single point as a dot.
             self.data += "h0";
         }
         self.down = true;
     }
 }
 
-/// The number of rows of a picture as text.
+/// The height of a picture as text, in rows.
 const ROWS: usize = 5;
 
 /// Values in percent over time as text, `width` columns wide.

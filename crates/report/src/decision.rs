@@ -126,7 +126,7 @@ pub(super) fn map(estimator: &Estimator, model: &Model, steps: &[Step]) -> Optio
                 @if !others.is_empty() {
                     " The other inputs are held at their mean: " (others.join(", ")) "."
                 }
-                " The line is the flight's path. A larger dot means more time spent there. "
+                " The line is the path of the flight. A larger dot means more time at that point. "
                 "Hatched: no rule applies, the risk is interpolated."
             }
             p.legend {

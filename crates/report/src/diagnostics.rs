@@ -11,7 +11,8 @@ use fuzzy::{
 /// The maximum number of bytes between two locations of one finding on the same line.
 const MOST_BETWEEN: usize = 1000;
 
-/// The number of findings that are displayed for a file, errors first; the rest is counted.
+/// The maximum number of findings that are displayed for a file, errors first; further findings are
+/// counted.
 const MOST_DRAWN: usize = 100;
 
 /// How findings are displayed.

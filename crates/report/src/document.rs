@@ -111,7 +111,7 @@ pub struct FindingDocument<'a> {
 }
 
 impl<'a> FindingDocument<'a> {
-    /// Creates the document of a finding of the teller's flight.
+    /// Creates the document of a finding, with the words of `teller`.
     pub fn new(finding: &'a Finding, teller: Teller<'a>) -> Self {
         let Words {
             code, text, advice, ..

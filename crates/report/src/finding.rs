@@ -19,7 +19,7 @@ pub struct Teller<'a> {
 
 /// All findings with the same cause.
 pub struct Line<'a> {
-    /// The gravest of them.
+    /// The most severe of these findings.
     pub worst: &'a Finding,
     count: usize,
 }
@@ -59,7 +59,7 @@ fn is_same(a: &Finding, b: &Finding) -> bool {
     }
 }
 
-/// The severity of its peak; for a reserve, smaller is worse.
+/// The severity of the peak of a finding; for a reserve, smaller values are more severe.
 fn gravity(finding: &Finding) -> f64 {
     match finding.measure {
         Measure::Reserve => -finding.value_pct,

@@ -18,7 +18,8 @@ pub use crate::parts::{Part, Report, Subject};
 const CHART_CSS: &str = include_str!("chart.css");
 const PAGE_CSS: &str = include_str!("page.css");
 const PAGE_JS: &str = include_str!("page.js");
-/// The page may not load anything, because it contains all that it shows.
+/// The content security policy: the page loads nothing, because it contains everything that it
+/// shows.
 const POLICY: &str = "default-src 'none';style-src 'unsafe-inline';script-src 'unsafe-inline'";
 
 /// The report of one flight.
@@ -79,7 +80,7 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
     html! {
         h1 { (together(subjects)) }
         p.soft {
-            "All curves have the same scale of time, " (number(longest_s, 0)) " s. "
+            "All curves have the same time scale, " (number(longest_s, 0)) " s. "
             code { "flagred assess LOG --html FILE" } " writes the whole report of one flight."
         }
         .scroll { table {

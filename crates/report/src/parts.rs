@@ -27,7 +27,7 @@ use crate::{
 
 /// An assessed flight.
 pub struct Subject {
-    /// The name of its file.
+    /// The name of the file of the log.
     pub name: String,
     /// The flight.
     pub flight: Arc<Flight>,
@@ -42,7 +42,8 @@ impl Subject {
         file.and_then(|file| file.to_str()).unwrap_or(&self.name)
     }
 
-    /// The time that a report shows by default: from the first take-off to the last landing, or the whole log.
+    /// The time that a report shows by default: from the first take-off to the last landing, or the
+    /// whole log if there is none.
     pub fn stretch(&self) -> Stretch {
         charts::stretch(&self.flight)
     }
@@ -314,9 +315,9 @@ fn figures(subject: &Subject) -> Markup {
             @for (name, value) in figures.into_iter().chain(at_limit) { div { dt { (name) } dd { (value) } } }
         }
         @if has_motors {
-            p.soft { "The highest and mean values are without the seconds around take-off and landing." }
+            p.soft { "The highest and mean values exclude the seconds around take-off and landing." }
         } @else {
-            p.soft { "The highest and mean values are without the first seconds in use and the last ones before a stop." }
+            p.soft { "The highest and mean values exclude the first seconds in use and the last seconds before a stop." }
         }
     }
 }
@@ -329,8 +330,7 @@ fn reliability(rows: &[Reliability]) -> Markup {
             details {
                 summary { "How sure a risk is" }
                 p.soft {
-                    "Of the moments with such a risk on the flights that the rules were tested on, the share that was followed by an attitude \
-                     error over 5 degrees within 5 s."
+                    "The share of moments with such a risk that were followed by an attitude error over 5 degrees within 5 s, on the flights that the rules were tested on."
                 }
                 table.rules {
                     thead { tr { th.n { "Risk" } th.n { "Real vehicles" } th.n { "Simulated vehicles" } } }
@@ -408,7 +408,7 @@ fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
     let flight = &subject.flight;
     let report = &flight.report;
     let end = if report.truncated {
-        "; cut off at the end"
+        "; the end is missing"
     } else {
         ""
     };

@@ -28,7 +28,7 @@ pub(crate) struct Timeline {
 pub(crate) struct Phase {
     /// The time of the phase.
     pub(crate) stretch: Stretch,
-    /// What it is called.
+    /// The name of the phase.
     pub(crate) name: String,
     /// The kind of the phase: phases of one kind have the same shade.
     pub(crate) kind: usize,
@@ -113,7 +113,7 @@ impl Panel {
         }
     }
 
-    /// Whether there is anything to draw.
+    /// Whether the panel contains a curve with data.
     pub(crate) fn has_data(&self) -> bool {
         self.lines.iter().any(|line| !line.data.is_empty())
     }
@@ -249,7 +249,7 @@ impl Panel {
         for Phase { stretch, name, .. } in &timeline.phases {
             let from = timeline.stretch.share(stretch.start_s);
             let room = (timeline.stretch.share(stretch.end_s) - from) * width;
-            // A name that does not fit would overlap the next one.
+            // A name that does not fit is omitted, because it would overlap the next one.
             if length(name) < room {
                 text("phase", left + width * from + 4.0, top + 24.0, name);
             }

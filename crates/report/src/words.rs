@@ -114,8 +114,8 @@ pub fn write(
     Ok(())
 }
 
-/// Writes the assessment of one of several flights on one line: the verdict, the log, and its gravest finding or the
-/// reason why there is no verdict.
+/// Writes the assessment of one of several flights on one line: the verdict, the log, and its most
+/// severe finding or the reason why there is no verdict.
 pub fn write_line(
     out: &mut impl Write,
     name: &str,
@@ -213,7 +213,7 @@ pub fn effective_range(effective: &flagred_flightlog::Range) -> String {
 /// The maximum number of spans of time that are listed on a line.
 const MOST_SPANS: usize = 12;
 
-/// The first of many spans, with the number of the rest.
+/// The first spans, with the number of further spans.
 pub fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
     let first: Vec<String> = spans.by_ref().take(MOST_SPANS).collect();
     match spans.len() {
@@ -245,7 +245,7 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     let left_out = &flight.report.left_out;
     if !left_out.is_empty() {
         notes.push(format!(
-            "not all of the log is kept: {left_out} are left out"
+            "the log exceeds the limits of the reader: {left_out} are left out"
         ));
     }
     if assessed.findings_left_out > 0 {
@@ -316,7 +316,7 @@ pub fn conversion(name: &str, flight: &Flight) -> Vec<String> {
         .map(|reason| format!("`{name}` is damaged: {reason}; the undamaged part is converted"));
     let left_out = &report.left_out;
     let left_out = (!left_out.is_empty())
-        .then(|| format!("not all of `{name}` is converted: {left_out} are left out"));
+        .then(|| format!("`{name}` exceeds the limits of the reader: {left_out} are left out"));
     damage.into_iter().chain(left_out).collect()
 }
 

@@ -2,18 +2,18 @@
 
 use fastrand::Rng;
 
-/// How clusters are searched for.
+/// The settings of the search for clusters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// The number of clusters, at least 2.
     pub clusters: usize,
-    /// The fuzzifier, above 1: the larger, the softer the clusters.
+    /// The fuzzifier, above 1: larger values give softer clusters.
     pub fuzzifier: f64,
-    /// The most iterations of a start.
+    /// The maximum number of iterations per start.
     pub iterations: u32,
-    /// How often the search starts, each time from other rows; the best result counts.
+    /// The number of starts, each from different rows; the best result is returned.
     pub starts: u32,
-    /// The random seed of the rows that the search starts from.
+    /// The random seed for choosing the rows from which the search starts.
     pub seed: u64,
 }
 
@@ -38,11 +38,11 @@ pub struct Clusters {
     pub degrees: Vec<Vec<f64>>,
     /// The sum of squared distances to the centers, weighted by the degrees to the power of the fuzzifier.
     pub loss: f64,
-    /// The iterations of the start that was best.
+    /// The number of iterations of the best start.
     pub iterations: u32,
 }
 
-/// Why rows cannot be clustered.
+/// The reason why rows cannot be clustered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ClusterError {
     /// Fewer than two clusters.
@@ -51,26 +51,27 @@ pub enum ClusterError {
     /// The fuzzifier is not above 1.
     #[error("`fuzzifier` is {0}; it must be above 1")]
     Fuzzifier(f64),
-    /// No iteration or no start.
+    /// The number of iterations or starts is 0.
     #[error("`iterations` and `starts` must be at least 1")]
     Search,
     /// A value is not a finite number.
     #[error("row {0} has an unknown value")]
     Unknown(usize),
-    /// Too few different rows.
-    #[error("{clusters} clusters need as many different rows, and there are {rows}")]
+    /// There are fewer distinct rows than clusters.
+    #[error("{clusters} clusters need as many distinct rows, but there are {rows}")]
     Rows {
-        /// The clusters.
+        /// The number of clusters.
         clusters: usize,
-        /// The different rows.
+        /// The number of distinct rows.
         rows: usize,
     },
 }
 
-/// The search ends when no degree changes by more.
+/// The search ends when no degree changes by more than this.
 const ENOUGH: f64 = 1e-9;
 
-/// Finds clusters of rows. Columns count by their values: scale them before if their units differ.
+/// Finds clusters of rows. Distances are computed from the unscaled values, so scale the columns
+/// first if their units differ.
 ///
 /// # Errors
 /// The settings or the rows cannot be used.
@@ -120,7 +121,8 @@ pub fn c_means(rows: &[Vec<f64>], settings: &Settings) -> Result<Clusters, Clust
     best.map(ascending).ok_or(ClusterError::Search)
 }
 
-/// Rows far from each other: each next one by a chance that grows with its squared distance (k-means++).
+/// Chooses initial centers that are far from each other: each further row is drawn with a
+/// probability proportional to its squared distance (k-means++).
 fn begin(different: &[&Vec<f64>], settings: &Settings, random: &mut Rng) -> Vec<Vec<f64>> {
     let mut centers = vec![different[random.usize(..different.len())].clone()];
     while centers.len() < settings.clusters {
@@ -300,7 +302,7 @@ mod tests {
         assert_eq!(of(&[1.0, f64::NAN], 2), "row 1 has an unknown value");
         assert_eq!(
             of(&[1.0, 1.0, 2.0], 3),
-            "3 clusters need as many different rows, and there are 2"
+            "3 clusters need as many distinct rows, but there are 2"
         );
     }
 }

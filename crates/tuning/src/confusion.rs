@@ -1,11 +1,12 @@
-//! Classes: what was predicted for the rows of each.
+//! The confusion matrix of predictions for classes.
 
 use crate::Data;
 
-/// The rows of each class by the class that was predicted for them: the one nearest to the prediction.
+/// The numbers of rows by their class and their predicted class, which is the class nearest to the
+/// prediction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Confusion {
-    /// The classes, ascending: the values of the output that rows have.
+    /// The classes, ascending: the values of the output that occur in the rows.
     pub classes: Vec<f64>,
     /// For each class, the number of its rows that were predicted as each class.
     pub rows: Vec<Vec<usize>>,
@@ -21,13 +22,13 @@ impl Confusion {
     }
 }
 
-/// More classes than this are a quantity.
+/// The maximum number of classes; an output with more values counts as a quantity.
 const MOST_CLASSES: usize = 10;
-/// Fewer rows for each class than this are a quantity, too.
+/// The minimum mean number of rows per class; with fewer, the output counts as a quantity.
 const LEAST_ROWS: usize = 5;
 
-/// The confusion table if the truths are classes: 2 to 10 whole numbers, with 5 rows each on average. Rows without a prediction
-/// are left out.
+/// Returns the confusion matrix if the truths are classes: 2 to 10 whole numbers with at least 5
+/// rows each on average. Rows without a prediction are left out.
 pub(crate) fn confusion(predictions: &[f64], data: &Data) -> Option<Confusion> {
     let mut classes: Vec<f64> = Vec::new();
     for &truth in &data.truths {

@@ -97,9 +97,9 @@ pub(crate) fn fit(
     };
     let (near, limits) = (limits(true), limits(beyond_range));
     let is_near = |(step, (low, high)): (&f64, &(f64, f64))| (*low..=*high).contains(step);
-    // Rules that always fire together could have constants of any size whose errors cancel on these rows only. A larger
-    // ridge keeps them within the width of the range. If that does not help, the rows require values outside the range,
-    // and only the limits apply.
+    // Rules that always fire together could get constants of any size, whose errors cancel only on
+    // these rows. A larger ridge keeps them within the width of the range. If that does not help,
+    // the rows require values outside the range, and only the limits apply.
     let mut ridge = RIDGE;
     let mut steps = solve(squares.clone(), &products, ridge);
     while ridge < LARGEST_RIDGE
@@ -232,7 +232,8 @@ fn probe(model: &Model) -> Option<(Model, Vec<usize>)> {
 
 const ONE: &str = "one";
 
-/// A name that no input has: names in parsed rule sets have no trailing spaces.
+/// Returns a name that no input can have, because names in parsed rule sets have no trailing
+/// spaces.
 fn strength_of(term: usize) -> String {
     format!("strength of {term} ")
 }
@@ -243,7 +244,7 @@ struct Consequent {
     constant: f64,
     /// The coefficients of inputs, by the index of the input.
     coefficients: Vec<(usize, f64)>,
-    /// Whether its numbers may change.
+    /// Whether the numbers of this consequent may change.
     moves: bool,
 }
 

@@ -133,7 +133,7 @@ impl Data {
             || !is_whole(self.weights.len())
             || !is_whole(self.groups.len())
         {
-            return wrong("the columns are not of one length");
+            return wrong("the columns differ in length");
         }
         let mut values = Vec::with_capacity(inputs + 1);
         for row in 0..rows {

@@ -11,9 +11,9 @@ use crate::Data;
 pub struct Interval {
     /// The figure for all rows.
     pub value: f64,
-    /// 2.5 % of the resampled figures are below.
+    /// The lower end: 2.5 % of the resampled figures are below.
     pub low: f64,
-    /// 2.5 % of the resampled figures are above.
+    /// The upper end: 2.5 % of the resampled figures are above.
     pub high: f64,
 }
 

@@ -214,7 +214,8 @@ fn rounded(
         else {
             continue;
         };
-        // Equal numbers stay equal: the sides of a vertical edge, or two terms that begin at the same point.
+        // Numbers that are equal stay equal, such as the sides of a vertical edge, or the positions
+        // at which two terms begin.
         let variable = |number: &Number| number.of.split('.').next().map(str::to_owned);
         let is_equal = |(_, other): &(usize, &Number)| {
             other.value == number.value && variable(other) == variable(number)

@@ -227,7 +227,7 @@ pub(crate) fn round(value: f64, digits: u32, width: f64) -> Vec<f64> {
 /// A multiple of a power of ten. It is parsed from text, so that 0.3 is exactly 0.3 and not 3 times a tenth.
 pub(crate) fn decimal(steps: f64, exponent: i32) -> Option<f64> {
     let parsed: f64 = format!("{steps:.0}e{exponent}").parse().ok()?;
-    // 0 has no sign.
+    // Adding 0 removes the sign of -0.
     Some(parsed + 0.0)
 }
 
@@ -243,9 +243,10 @@ mod tests {
         assert_eq!(round(0.3, 2, free), [0.3]);
         assert_eq!(round(0.0, 2, free), [0.0]);
         assert_eq!(round(99.7, 2, free), [99.0, 100.0]);
-        // A pressure from 950 to 1050.
+        // For example, a pressure from 950 to 1050.
         assert_eq!(round(1013.27, 3, 100.0), [1013.0, 1014.0]);
-        // Two digits are 0.5 % of the range at most, three are 0.05 %.
+        // Rounding to two digits changes a position by at most 0.5 % of the range, to three digits
+        // by at most 0.05 %.
         assert_eq!(round(0.3271, 2, 100.0), [0.3, 0.4]);
         assert_eq!(round(0.000949, 3, 40.0), [0.0, 0.01]);
         assert_eq!(round(-0.000949, 3, 40.0), [-0.01, 0.0]);

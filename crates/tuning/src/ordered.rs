@@ -154,7 +154,7 @@ impl Segment {
             }
             positions.push(at.min(self.to));
         }
-        // Positions that touch the upper end are set to it exactly, whatever the rounding errors.
+        // Positions that touch the upper end are set exactly to it, to remove rounding errors.
         let touching = self
             .distances
             .iter()

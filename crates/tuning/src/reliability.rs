@@ -7,9 +7,9 @@ use crate::Data;
 pub struct Bin {
     /// The number of rows.
     pub rows: usize,
-    /// The mean of their predictions, as positions in the range of the output from 0 to 1.
+    /// The mean prediction of these rows, as a position in the range of the output from 0 to 1.
     pub predicted: f64,
-    /// The share of them with truth 1.
+    /// The share of these rows with truth 1.
     pub observed: f64,
 }
 

@@ -58,8 +58,8 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// Squared error; all terms may change, at least 1 % of the range apart and within it; weights are fixed; three
-    /// digits; one start of 100 steps.
+    /// The defaults: squared error; all terms may change, at least 1 % of the range apart and
+    /// within it; fixed weights; three digits; one start of 100 steps.
     fn default() -> Self {
         Settings {
             loss: Loss::Squared,
@@ -104,17 +104,17 @@ pub enum TuneError {
         "the rule set has {outputs} outputs that no other output reads; tuning needs exactly one"
     )]
     Outputs {
-        /// The number of such outputs.
+        /// The number of outputs that no other output reads.
         outputs: usize,
     },
-    /// A name that the model does not have.
+    /// The model has no variable or term with this name.
     #[error("the rule set has no variable and no term `{name}`")]
     Unknown {
         /// The name.
         name: String,
     },
     /// All parameters are fixed, or there are none.
-    #[error("nothing may move")]
+    #[error("no number is allowed to change")]
     NothingMoves,
     /// No input reduces the cross-validation error.
     #[error("no input predicts the output better than its mean")]
@@ -129,11 +129,11 @@ pub enum TuneError {
         what: &'static str,
     },
     /// There are more candidate columns than a search accepts.
-    #[error("{columns} columns are more than {most}")]
+    #[error("{columns} columns exceed the limit of {most}")]
     TooManyColumns {
         /// The number of columns.
         columns: usize,
-        /// The maximum.
+        /// The maximum number of columns.
         most: usize,
     },
     /// A value or a weight that cannot be used.
@@ -165,18 +165,18 @@ pub enum TuneError {
         /// The upper end of the range.
         high: f64,
     },
-    /// Not both truths, 0 and 1, occur in the rows.
-    #[error("all rows have the same truth")]
+    /// All rows have the same truth, but rows with 0 and with 1 are needed.
+    #[error("all rows have the same outcome")]
     OneClass,
     /// The model violates [`Settings::monotone`] before tuning.
-    #[error("the output is not {direction} in `{input}` to begin with")]
+    #[error("the output is not {direction} in `{input}` before tuning")]
     NotMonotone {
         /// The input.
         input: String,
         /// The required direction.
         direction: &'static str,
     },
-    /// [`Settings::monotone`] names something that the model does not have.
+    /// A claim in [`Settings::monotone`] names an input or output that the model does not have.
     #[error("{message}")]
     Claim {
         /// The problem.

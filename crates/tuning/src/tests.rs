@@ -317,11 +317,14 @@ fn wrong_rows_are_errors() {
     );
     let mut same = classes(20);
     same.truths.fill(0.0);
-    assert_eq!(error(&same, Loss::Ranking), "all rows have the same truth");
-    // Rows of one truth count, the others do not.
+    assert_eq!(
+        error(&same, Loss::Ranking),
+        "all rows have the same outcome"
+    );
+    // Only rows of one truth have a weight.
     let mut one = classes(20);
     one.weights = one.truths.clone();
-    assert_eq!(error(&one, Loss::Ranking), "all rows have the same truth");
+    assert_eq!(error(&one, Loss::Ranking), "all rows have the same outcome");
     one.weights.fill(0.0);
     assert_eq!(error(&one, Loss::Squared), "the weights of all rows are 0");
     for (weight, told) in [

@@ -27,7 +27,8 @@ pub struct Validation {
     pub gain: Interval,
     /// For truths of 0 and 1: predictions on unseen rows compared with the observed share, by tenths of the range.
     pub reliability: Vec<Bin>,
-    /// What was predicted for rows left out of each class, if the truths are classes and not a ranking.
+    /// The confusion matrix of the cross-validation, if the truths are classes and the loss is not
+    /// a ranking.
     pub confusion: Option<Confusion>,
 }
 
@@ -77,7 +78,8 @@ pub fn cross_validate(
     }))
 }
 
-/// A point of a learning curve: the loss on unseen rows of models tuned on a share of the others.
+/// A point of a learning curve: the loss on unseen rows, for models tuned on a share of the other
+/// rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
     /// The share of the other rows, or of their groups, for tuning.

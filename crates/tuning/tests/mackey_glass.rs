@@ -1,4 +1,5 @@
-//! The example of ANFIS (Jang 1993): predicts a chaotic series six steps ahead from four past values.
+//! The example from the ANFIS paper (Jang 1993): predicts a chaotic series six steps ahead from
+//! four past values.
 #![allow(clippy::unwrap_used)]
 
 use std::ops::ControlFlow;
@@ -29,7 +30,7 @@ fn series(count: usize) -> Vec<f64> {
     x.into_iter().step_by(10).collect()
 }
 
-/// The rows from t = 118 on.
+/// Returns `count` rows of the series, beginning `from` steps after t = 118.
 fn rows(series: &[f64], from: usize, count: usize) -> Data {
     let past = |lag: usize| (from..from + count).map(|t| series[t - lag]).collect();
     Data {

@@ -122,7 +122,7 @@ impl core::fmt::Display for SetupError {
             }
             SetupError::Plan(damaged) => damaged.fmt(f),
             SetupError::Geometry => f.write_str(
-                "the geometry does not tell roll, pitch, yaw and thrust of all motors apart",
+                "the geometry does not distinguish roll, pitch, yaw and thrust of the motors",
             ),
         }
     }
@@ -294,9 +294,9 @@ pub struct Monitor<'a> {
     plan: &'a Plan<'a>,
     follower: Follower,
     rules: Evaluator<'a>,
-    /// One for each input of the rule set.
+    /// The values of the inputs of the rule set.
     point: &'a mut [f64],
-    /// One for each input of the profile.
+    /// The values of the inputs of the profile.
     inputs: &'a mut [f64],
     seen: &'a mut [ChannelState],
     risks: &'a mut Window,

@@ -30,7 +30,7 @@ impl<'a> Rules<'a> {
     pub const fn inputs(&self) -> usize {
         match self.stages {
             [] => self.table.inputs.len(),
-            // The first stage reads no output.
+            // The first stage reads only inputs.
             [first, ..] => first.ends.inputs as usize,
         }
     }
@@ -63,7 +63,8 @@ impl<'a> Rules<'a> {
         }
     }
 
-    // Saturating: a damaged table then requires more memory than exists, and never less than it uses.
+    // Sums saturate: a damaged table then requires more memory than exists, but never less than it
+    // uses.
 
     /// The number of floating-point numbers that an [`Evaluator`] needs.
     pub const fn numbers(&self) -> usize {

@@ -21,7 +21,7 @@ impl Statistic {
         }
     }
 
-    /// The statistic of a code.
+    /// The statistic with the given code.
     pub const fn from_code(code: u32, number: f64) -> Option<Statistic> {
         Some(match code {
             0 => Statistic::Mean,
@@ -42,7 +42,7 @@ impl Statistic {
 }
 
 impl Motors {
-    /// The code.
+    /// The code in exported plans.
     pub const fn code(self) -> u32 {
         match self {
             Motors::Pooled => 0,
@@ -54,7 +54,7 @@ impl Motors {
         }
     }
 
-    /// The way of combining motors that has this code.
+    /// The way of combining motors with the given code.
     pub const fn from_code(code: u32) -> Motors {
         match code {
             0 => Motors::Pooled,
@@ -68,8 +68,8 @@ impl Motors {
 }
 
 impl Observed {
-    /// The code, the indices of its signals or its effort, and the magnitude below which its divisor is unknown. Unused
-    /// ones are 0.
+    /// The code, the indices of the signals or of the effort, and the magnitude below which a ratio
+    /// is unknown. Unused numbers are 0.
     pub const fn code(self) -> (u32, [u32; 2], f64) {
         let (code, indices) = match self {
             Observed::Command => (0, [0; 2]),
@@ -92,7 +92,7 @@ impl Observed {
         (code, indices, 0.0)
     }
 
-    /// The observed quantity that has this code.
+    /// The observed quantity with the given code.
     pub const fn from_code(code: u32, indices: [u32; 2], number: f64) -> Option<Observed> {
         let [first, second] = indices;
         Some(match code {
@@ -133,7 +133,8 @@ impl Threshold {
         }
     }
 
-    /// The threshold that has this code, if it has one; the outer `None` means that the code is unknown.
+    /// The threshold with the given code, if the code has one; the outer `None` means that the code
+    /// is unknown.
     pub const fn from_code(code: u32, limit: f64) -> Option<Option<Threshold>> {
         Some(match code {
             0 => None,
@@ -148,7 +149,7 @@ impl Threshold {
 mod tests {
     use super::*;
 
-    /// Every code has one meaning, and every meaning has one code.
+    /// Codes and their meanings correspond one to one.
     #[test]
     fn codes_are_read_back() {
         let all = 0..1000;

@@ -147,7 +147,8 @@ impl Now<'_> {
     }
 }
 
-/// Records which signals of inputs with a value for missing signals are known, in the air and on the ground.
+/// Records which signals are known, in the air and on the ground, for the inputs that have a value
+/// for missing signals.
 pub(crate) fn note(
     (channels, inputs): (&[Channel], &[Input]),
     seen: &mut [ChannelState],
@@ -189,7 +190,7 @@ pub(crate) fn push(
         };
         before = Some((channel, now));
         seen.last = now.mean();
-        // The noise is known once per bin and applies to the whole bin.
+        // The noise is computed once per bin and applies to the whole bin.
         let held_s = match channel.observed {
             Observed::CommandNoise => held_s.max(BIN_S),
             _ => held_s,
@@ -208,7 +209,7 @@ pub(crate) fn push(
     }
 }
 
-/// The statistic of an input, and how much of its window is covered; `None` if nothing is known.
+/// The statistic of an input, and how much of its window is covered; `None` if no value is known.
 pub(crate) fn value(
     (channels, inputs): (&[Channel], &[Input]),
     seen: &[ChannelState],
@@ -294,7 +295,7 @@ impl Channel {
         *self == Channel { window_s, ..*other }
     }
 
-    /// The values of one sample, where each known motor has weight 1.
+    /// The moments of the values of one sample, in which each known motor has weight 1.
     fn reduce(&self, now: &Now<'_>) -> Moments {
         let commands = now.motors.iter().map(|motor| motor.command);
         match self.observed {
@@ -312,7 +313,7 @@ impl Channel {
                 unknown_below,
             } => {
                 let (of, by) = (now.signal(a), now.signal(b));
-                // A division by 0 is not finite, which is unknown.
+                // A division by 0 is not finite, so the value is unknown.
                 self.threshold(match by.abs() < unknown_below {
                     true => f64::NAN,
                     false => of / by,
@@ -331,7 +332,7 @@ impl Channel {
         }
     }
 
-    /// The values of the motors; NaN if unknown.
+    /// The value over all motors; NaN if it is unknown.
     fn over(&self, mut motors: impl Iterator<Item = f64> + Clone) -> Moments {
         if let Motors::One(motor) = self.motors {
             let one = motors.nth(motor as usize);
@@ -351,7 +352,7 @@ impl Channel {
         self.threshold(one.unwrap_or(f64::NAN))
     }
 
-    /// One value; NaN if it is unknown.
+    /// The value of a signal; NaN if it is unknown.
     fn threshold(&self, value: f64) -> Moments {
         if value.is_finite() {
             Moments::of(self.counted(value), 1.0)

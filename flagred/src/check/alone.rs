@@ -124,7 +124,7 @@ fn at(one: &Alone) -> String {
 fn help(one: &Alone) -> String {
     let term = one.term.as_deref().unwrap_or("TERM");
     format!(
-        "rules are votes, and the other inputs outvote it: let rules with `{input} IS {term}` conclude an output of its own, such as `{input}_risk`, and name that output in `other_risks`",
+        "the rules about the other inputs outweigh it: let rules with `{input} IS {term}` conclude an output of its own, such as `{input}_risk`, and name that output in `other_risks`",
         input = one.input
     )
 }
@@ -197,7 +197,7 @@ fn of_risk(estimator: &Estimator) -> Vec<Option<Alone>> {
 struct Search<'e> {
     estimator: &'e Estimator,
     memory: Memory,
-    /// The number of evaluations that are left.
+    /// The remaining budget of evaluations.
     left: usize,
 }
 
@@ -218,8 +218,8 @@ impl<'e> Search<'e> {
         Some(estimate.risk_pct)
     }
 
-    /// The lowest risk that is found by improving one input at a time while `fixed` does not change, and the values of
-    /// the inputs there.
+    /// The lowest risk found by improving one input at a time while `fixed` keeps its value, and
+    /// the values of the inputs at that risk.
     fn lowest(
         &mut self,
         start: Vec<f64>,
@@ -256,7 +256,7 @@ impl<'e> Search<'e> {
 
 /// The values of an input to try: even steps of its range, and the points of its terms within it.
 fn values(variable: &Variable) -> Vec<f64> {
-    /// More points than this are thinned.
+    /// The maximum number of points; further points are thinned.
     const MOST: usize = 200;
     let (low, high) = (variable.low, variable.high);
     let even = (0..=STEPS).map(|i| {

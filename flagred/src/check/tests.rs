@@ -32,7 +32,7 @@ const SIGNALS: [(&str, &str); 4] = [
     ("roll_deg", "deg"),
 ];
 
-/// The findings of a profile's text with a rule set's text.
+/// Checks the text of a profile against the text of a rule set.
 fn fit(text: &str, rules: &str) -> (Findings, Option<Estimator>) {
     profile(
         &fuzzy::Source::new(text),

@@ -49,7 +49,7 @@ impl Finding {
         }
     }
 
-    /// A finding of another risk of the profile.
+    /// A finding about another risk of the profile.
     pub(super) fn elsewhere(of_risk: &OfRisk, estimator: &Estimator) -> Finding {
         let other = estimator.others().get(of_risk.risk).unwrap_or(estimator);
         Finding {
@@ -123,7 +123,7 @@ inputs:
         Estimator::new(&profile, &rules).unwrap()
     }
 
-    /// The cause at values of the inputs, according to the engine and to its plan on board.
+    /// The cause at values of the inputs, according to the engine and to the exported plan.
     fn cause(estimator: &Estimator, inputs: [f64; 2]) -> Option<String> {
         let risk_pct = estimator.at(&inputs).unwrap().risk_pct;
         let found = estimator.cause(&inputs, risk_pct, &mut Memory::of(estimator));
@@ -151,7 +151,8 @@ inputs:
         }
     }
 
-    /// The risk depends on a strain, and the strain on the inputs. The votes for little strain are stronger.
+    /// The risk depends on the output `strain`, and `strain` on the inputs. The rules for little
+    /// strain fire more strongly.
     #[test]
     fn the_cause_is_found_through_a_chain() {
         let rules = "

@@ -29,7 +29,7 @@ struct MotorLoss {
     motor: usize,
     /// Whether other motors were unknown too.
     others: bool,
-    /// The command of that motor, if it is known and far outside [0, 1].
+    /// The command of that motor, if it is a number far outside [0, 1].
     command: Option<f64>,
     from_s: f64,
     to_s: f64,

@@ -53,7 +53,7 @@ pub(super) struct VerdictFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     reason: Option<String>,
-    /// Only with `NA`: how the pilot can get a verdict next time.
+    /// Only with `NA`: how to get a verdict for the next flight.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     help: Option<Option<&'static str>>,

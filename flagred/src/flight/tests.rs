@@ -376,7 +376,7 @@ fn several_risks_have_the_findings_of_profiles_of_each() {
     let refused = both.plan().unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "the profile has the risks `weak` and `torn`, but exported code has one"
+        "the profile has the risks `weak` and `torn`, but exported code supports only one"
     );
 }
 

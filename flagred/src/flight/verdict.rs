@@ -15,7 +15,7 @@ use crate::{
 pub enum Verdict {
     /// The level of the gravest finding; GOOD without findings.
     Known(Level),
-    /// There is no answer (NA), for this reason.
+    /// No verdict (NA), with the reason.
     NotAvailable(Reason),
 }
 
@@ -38,7 +38,8 @@ impl Verdict {
         }
     }
 
-    /// The verdict of a flight whose end was not observed: a GOOD start does not make the whole flight GOOD.
+    /// The verdict of a flight whose end was not observed: if the observed part was GOOD, the
+    /// verdict is unknown.
     pub fn lost_in_air(self) -> Verdict {
         match self {
             Verdict::Known(level) if level > Level::Info => self,
@@ -82,7 +83,7 @@ pub enum Reason {
     /// The risk was unknown for most of the time in the air.
     #[error("{explanation}")]
     RiskUnknown {
-        /// The reason that made it unknown for longest.
+        /// The reason that applied for the longest time.
         unknown: Unknown,
         /// The same reason in words.
         explanation: String,
@@ -97,18 +98,20 @@ pub enum Reason {
         motor: usize,
         /// Whether other motors were unknown too.
         others: bool,
-        /// The first such command, if it is known and far outside 0 to 1.
+        /// The first of these commands, if it is a number far outside 0 to 1.
         command: Option<f64>,
-        /// The start, in seconds.
+        /// The start of the time with unknown commands, in seconds.
         from_s: f64,
-        /// The end, in seconds.
+        /// The end of that time, in seconds.
         to_s: f64,
-        /// For how long the command was unknown in that time, in seconds.
+        /// The total time for which the command was unknown between `from_s` and `to_s`, in
+        /// seconds.
         unknown_s: f64,
     },
-    /// No moment of the flight is judged, because it ended within the first seconds after take-off.
+    /// The whole flight is within the seconds after take-off and before landing that are not
+    /// judged.
     #[error(
-        "{in_air_s:.1} s are too short: nothing is judged in the first {quiet_s} s and just before the end"
+        "{in_air_s:.1} s in the air are too short: the first {quiet_s} s and the end of a flight are not judged"
     )]
     TooShort {
         /// The time in the air, in seconds.
@@ -117,23 +120,23 @@ pub enum Reason {
         quiet_s: f64,
     },
     /// There were too few samples in the air.
-    #[error("there is hardly any sample of the flight")]
+    #[error("the flight has too few samples")]
     NoSamples,
     /// The samples of a flight without motors are further apart than the profile's `longest_gap_s`, so that each
     /// follows a gap.
     #[error(
-        "the samples are {step_s} s apart, and the profile takes more than {longest_gap_s} s for a gap"
+        "the samples are {step_s} s apart, but the profile counts more than {longest_gap_s} s as a gap"
     )]
     SamplesFarApart {
-        /// The distance between most of them, in seconds.
+        /// The most frequent distance between samples, in seconds.
         step_s: f64,
         /// The profile's `longest_gap_s`, in seconds.
         longest_gap_s: f64,
     },
-    /// The vehicle was in the air when its last message arrived, or it rebooted there.
+    /// The vehicle was in the air when its last message arrived, or it rebooted in the air.
     #[error("the vehicle was lost in the air")]
     LostInAir,
-    /// The clock goes back in the air: the autopilot started again there, or its clock was set back.
+    /// The clock goes back in the air: the autopilot rebooted, or its clock was set back.
     #[error("the clock goes back in the air at {at_s:.1} s")]
     SetBackInAir {
         /// The time at which it went back, in seconds.
@@ -146,10 +149,10 @@ pub enum Reason {
         ignored: u64,
     },
     /// No flight was observed.
-    #[error("no flight was seen")]
+    #[error("no flight was observed")]
     NoFlight,
     /// The vehicle sent messages, but never the commands of its motors.
-    #[error("the vehicle sent no motor outputs (SERVO_OUTPUT_RAW)")]
+    #[error("the vehicle did not send motor outputs (SERVO_OUTPUT_RAW)")]
     NoMotorOutputs,
 }
 
@@ -181,14 +184,16 @@ impl Reason {
             #[cfg(feature = "flightlog")]
             Reason::Log(gap) => gap.help(),
             Reason::Monitor(MonitorError::NoSignal { .. }) => Some(
-                "`flagred inspect` lists the signals that a log carries; `if_missing` of an input is its value on a vehicle that never sends it",
+                "`flagred inspect` lists the signals of a log; `if_missing` of an input is its value on a vehicle that never sends it",
             ),
             Reason::RiskUnknown { help, .. } => *help,
             Reason::MotorUnknown { command, .. } => Some(match command {
                 Some(_) => {
                     "scale the commands: 0 is the lower limit of the motor, 1 the upper limit"
                 }
-                None => "a missing motor can hide any risk: log the commands of all motors",
+                None => {
+                    "a motor without commands can hide any risk: log the commands of all motors"
+                }
             }),
             Reason::NoMotorOutputs => Some(
                 "ArduPilot: set SRx_RC_CHAN of the port to 25; PX4: `mavlink stream -d PORT -s SERVO_OUTPUT_RAW_0 -r 25`; `flagred watch` without `--all` asks for them",
@@ -200,7 +205,7 @@ impl Reason {
                 "what came after is missing or uncertain: look for a restart of the autopilot, or for a damaged clock",
             ),
             Reason::SamplesIgnored { .. } => {
-                Some("give each sample a time after that of the one before, in seconds")
+                Some("give each sample a later time than the previous one, in seconds")
             }
             Reason::SamplesFarApart { .. } => Some(
                 "`longest_gap_s` of the profile has to be longer than the time between samples; if `t_s` is in milliseconds, divide it by 1000",

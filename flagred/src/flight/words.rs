@@ -26,8 +26,8 @@ use crate::{
 pub struct Words {
     /// A stable word for programs: small letters, digits and `_`.
     pub code: String,
-    /// A few words, for messages limited to 50 characters. The first part is true without the second, which can be left
-    /// out.
+    /// A few words, for messages limited to 50 characters. The second part can be left out, because
+    /// the first is also true alone.
     pub brief: [String; 2],
     /// What happened, and what it means.
     pub text: String,
@@ -123,7 +123,8 @@ impl Finding {
 }
 
 impl Words {
-    /// The words about an input in a term, with the placeholders `{value}` and `{percent}`.
+    /// The words for an input that belongs to a term, with the placeholders `{value}` and
+    /// `{percent}`.
     pub fn of_cause(estimator: &Estimator, input: &str, term: &str) -> Words {
         let mut known = estimator.profile().findings.iter();
         if let Some(words) = known.find(|words| words.input == input) {

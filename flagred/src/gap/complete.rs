@@ -42,7 +42,7 @@ pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) ->
             })
         })
         .collect();
-    // Inputs that many rules mention come first: then few of the others matter.
+    // Inputs that many rules read come first: once they are fixed, few of the other inputs matter.
     let mentions = |input: usize| {
         let literals = rules.iter().flat_map(|rule| &rule.literals);
         literals.filter(|(i, _)| *i == input).count()
@@ -63,7 +63,7 @@ pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) ->
     search.is_covered()
 }
 
-/// Whether all rules share their operators and fire with the degree of their condition.
+/// Whether all rules share the same operators and fire with the degree of their condition.
 pub(super) fn is_plain(model: &Model) -> bool {
     model.blocks.is_empty() && model.activation == Activation::General
 }

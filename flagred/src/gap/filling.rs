@@ -17,8 +17,8 @@ use super::{
 /// rules cannot distinguish points, it is constant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filling {
-    /// As in [`FilledKnots`]. The values are empty if everything is covered, if nothing is, or if there are too many
-    /// inputs.
+    /// As in [`FilledKnots`]. The values are empty if all knots are covered, if none is, or if
+    /// there are too many inputs.
     places: Vec<f64>,
     starts: Vec<u32>,
     values: Vec<f64>,

@@ -19,11 +19,12 @@ const MOST_KNOTS: usize = 40_000;
 /// rule ends.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Knots {
-    /// The coordinates along each input, ascending.
+    /// The coordinates of the knots along each input, ascending.
     pub(super) axes: Vec<Vec<f64>>,
     /// The width of each input's range.
     pub(super) ranges: Vec<f64>,
-    /// The difference of knot numbers between neighbours along each input; the last input varies fastest.
+    /// The difference between the indices of neighbours along each input; the last input varies
+    /// fastest.
     strides: Vec<usize>,
 }
 
@@ -58,7 +59,8 @@ impl Knots {
         Some(Knots::over(axes, ranges.collect()))
     }
 
-    /// The same grid extended by the ends of the inputs' ranges, if it does not include them and has room.
+    /// The same grid, extended to the ends of the inputs' ranges if they are missing and there is
+    /// room for them.
     pub(super) fn with_ends(&self, model: &Model) -> Knots {
         let axes = self.axes.iter().zip(&model.inputs).map(|(places, input)| {
             if places.len() == 1 {

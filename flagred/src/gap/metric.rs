@@ -73,7 +73,8 @@ mod tests {
     fn a_step_counts_as_much_as_the_output_changes() {
         let axes = vec![vec![0.0, 1.0, 3.0], vec![0.0, 0.5]];
         let knots = Knots::over(axes, vec![10.0, 0.5]);
-        // 4 per unit along the first input, 1 over the half unit of the second.
+        // The values change by 4 per unit along the first input, and by 1 over half a unit along
+        // the second.
         let values = [0.0, 1.0, 4.0, 5.0, 12.0, 13.0];
         let found = coordinates(&knots, &values, &[true; 6]);
         let expected = [vec![0.0, 0.5, 1.5], vec![0.0, 0.125]];

@@ -408,7 +408,7 @@ fn an_unknown_motor_makes_the_risk_unknown_and_rounding_does_not() {
         assert_eq!(of(rounded), of(limit), "{rounded}");
         assert!(of(rounded).iter().all(Result::is_ok));
     }
-    // Fewer commands than motors.
+    // A sample with fewer commands than motors.
     let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let update = monitor.push(&Sample {
         t_s: 0.0,
@@ -423,7 +423,7 @@ fn an_unknown_motor_makes_the_risk_unknown_and_rounding_does_not() {
     };
     assert_eq!(
         why.explain(&profile()),
-        "the command of motor 2 is `1500`, and a command is a fraction from 0 to 1"
+        "the command of motor 2 is `1500`, but a command is a fraction from 0 to 1"
     );
 }
 
@@ -465,7 +465,7 @@ fn a_profile_that_reads_no_motor_requires_no_motor() {
         signals: &[0.05],
     });
     assert_eq!(update.risk, Err(Unknown::OnGround));
-    // A finding that is not about the risk reads the motors too.
+    // Findings that are not about the risk also read the motors.
     profile.verdict.notices.reserve = Some(Limit {
         value: 0.1,
         after_s: 1.0,
@@ -513,7 +513,7 @@ fn a_motor_that_the_vehicle_lacks_is_reported_when_the_monitor_is_created() {
     let refused = Monitor::new(&estimator, Craft::new(4)).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "the profile needs motor 5, and the flight has 4 motors"
+        "the profile needs motor 5, but the flight has only 4 motors"
     );
     assert!(Monitor::new(&estimator, Craft::new(5)).is_ok());
 

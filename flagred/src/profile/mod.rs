@@ -49,7 +49,7 @@ pub const SCHEMA: &str = include_str!("../../rules/profile-schema.json");
 pub struct Profile {
     /// The name of the profile, as reports show it.
     pub name: String,
-    /// The purpose of the profile, in the author's words.
+    /// A description of the profile, written by its author.
     pub description: Option<String>,
     /// The rule set: the name of a shipped one ([`crate::shipped`]), or of a file next to the profile.
     pub rules: String,
@@ -189,7 +189,7 @@ impl Profile {
             for name in input.source.signal.carried() {
                 match input.if_missing {
                     _ if names.contains(&name) => {}
-                    // Its channel exists, but no sample ever sets it.
+                    // The signal gets a channel, but no sample ever provides a value.
                     Some(_) => names.push(name),
                     None => return Err(name.into()),
                 }
@@ -213,7 +213,7 @@ impl Profile {
         Ok((channels, inputs))
     }
 
-    /// Whether a ratio divides by the input of this name.
+    /// Whether a ratio divides by the input with the given name.
     pub(crate) fn is_part(&self, name: &str) -> bool {
         let mut ratios = self.inputs.iter().filter_map(|input| input.ratio.as_ref());
         ratios.any(|ratio| ratio.per == name)
@@ -226,7 +226,7 @@ impl Profile {
         self.verdict.notices.any() || signals.any(Signal::is_made_of_motors)
     }
 
-    /// The names of the other signals that it needs, without duplicates.
+    /// The names of the other signals that the profile needs, without duplicates.
     pub fn signals(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for input in &self.inputs {
@@ -239,7 +239,7 @@ impl Profile {
         names
     }
 
-    /// The same profile with another risk as the only one, and without notices.
+    /// The same profile with another risk as its only risk, and without notices.
     pub(crate) fn of_risk(&self, risk: &OtherRisk) -> Profile {
         Profile {
             output: risk.output.clone(),

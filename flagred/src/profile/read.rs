@@ -280,12 +280,12 @@ fn elevated_risk(
     settings
 }
 
-/// The values that a number may have.
+/// The allowed range of a number.
 #[derive(Clone, Copy)]
 enum Bounds {
     From0,
     Above0,
-    /// A share: from 0 to below 1.
+    /// At least 0 and less than 1.
     Below1,
 }
 

@@ -1,12 +1,12 @@
-//! The level over time, and the findings: one period of trouble is one finding.
+//! The level over time, and its findings: each period of trouble is reported once.
 
 use super::{Cause, Finding, Level, Measure, MotorFinding, VerdictSettings};
 use crate::motor::{Motor, MotorRecord};
 
-/// A duration this much too short, in seconds, still counts, because timestamps are sums of steps.
+/// The tolerance for durations, in seconds, because timestamps are sums of steps.
 pub(crate) const ROUNDING_S: f64 = 1e-6;
 
-/// The level of a risk.
+/// The state of the level of a risk.
 #[derive(Debug, Clone)]
 pub(crate) struct Alert {
     settings: VerdictSettings,
@@ -16,11 +16,11 @@ pub(crate) struct Alert {
     /// The times since which the thresholds of WARN and FAIL have been reached, in seconds.
     reached_since_s: [Option<f64>; 2],
     finding: Option<Finding>,
-    /// Whether the level of the finding was raised and its cause is not set yet.
+    /// Whether the level of the finding was raised but its cause is not set yet.
     asks_why: bool,
 }
 
-/// The largest margin of a motor that can be the cause.
+/// The margin above which a motor cannot be the cause.
 const NEAR_LIMIT: f64 = 0.1;
 
 /// The changes by a sample.

@@ -91,7 +91,7 @@ impl Notices {
         let limit = settings.imbalance;
         let seen = limit.map(|limit| self.balance.push(motors, held_s, limit, is_calm));
         let balance::BalanceFindings { weak, imbalance } = seen.unwrap_or_default();
-        // A weak motor explains the imbalance.
+        // A weak motor already explains the imbalance, so it is not reported separately.
         let imbalance = imbalance.filter(|_| self.watches[3].finding.is_none());
         self.watches[2].push(t_s, Level::Warn, limit, imbalance.map(Passed::of));
         self.watches[3].push(t_s, Level::Warn, limit, weak.map(Passed::of));

@@ -252,7 +252,7 @@ fn describe(
 
 /// The terms with the highest degree at some value of an interval of an input, from left to right.
 struct Dominating<'v> {
-    /// Those of them whose degree reaches the coverage there.
+    /// The terms among these whose degree reaches the coverage at such a value.
     terms: Vec<&'v str>,
     /// Whether at some value no term reaches the coverage.
     weak: bool,

@@ -24,7 +24,7 @@ use crate::{
     rule::{Condition, Consequent, Rule},
 };
 
-/// The maximum number of boxes that are listed; further boxes are counted.
+/// The maximum number of boxes that a finding lists; further boxes are only counted.
 const MOST_BOXES_TOLD: usize = 10;
 
 /// Returns the diagnostics of a report, with the spans of the model's parts, including those that the author accepts.
@@ -244,7 +244,8 @@ impl At<'_> {
         let input = variables.find(|input| input.name == side.input);
         let (low, high) = input.map_or((f64::NAN, f64::NAN), |input| (input.low, input.high));
         let name = &side.input;
-        // An interval that ends just inside the range is displayed as ending at the range.
+        // An interval that ends just inside the range is displayed as ending at the end of the
+        // range.
         let at_end = |x: f64| {
             [low, high]
                 .into_iter()

@@ -84,7 +84,7 @@ pub(super) enum Formula {
 /// The values at which literals change. They are cached because outputs share most literals.
 pub(super) type Changes = BTreeMap<Key, Vec<f64>>;
 
-/// A box: a range `from..to` of cells of each input.
+/// A box of the input space: for each input, the range `from..to` of its cells.
 pub(super) type Cells = Vec<(usize, usize)>;
 
 /// The content of a literal. Equal literals are stored once.
@@ -317,7 +317,7 @@ impl Reader<'_> {
             let name = proposition.term.as_ref()?;
             v.terms.iter().position(|term| term.name == name.text)
         });
-        // Unknown names are reported elsewhere.
+        // Unknown names are reported by the validation.
         let (Some(input), Some(term)) = (input, term) else {
             return Formula::Always;
         };

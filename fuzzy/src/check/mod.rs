@@ -300,7 +300,7 @@ fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<Uncovered>, bool) 
             let boxes = coverage::uncovered(model, name, level, &mut shared, known);
             complete &= boxes.complete;
             let new = boxes.found.into_iter().filter(|one| {
-                // A box in which no rule fires is also uncovered, and not listed twice.
+                // A box in which no rule fires is also uncovered; it is not listed twice.
                 one.silent
                     || !found
                         .iter()

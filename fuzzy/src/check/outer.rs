@@ -202,7 +202,7 @@ fn widened(model: &Model, output: &Output, unreached: &[Unreached]) -> Option<[f
             true => [low - more, high],
             false => [low, high + more],
         };
-        // The distance by which the value misses the peak.
+        // The distance from the value to the peak.
         let short = |more: f64| {
             let mut wider = output.clone();
             [wider.variable.low, wider.variable.high] = by(more);
@@ -224,7 +224,7 @@ fn widened(model: &Model, output: &Output, unreached: &[Unreached]) -> Option<[f
                 false => more = middle,
             }
         }
-        // Rounded down, so that the value does not exceed the peak.
+        // The number is rounded down, so that the value does not exceed the peak.
         let digits = libm::pow(10.0, libm::floor(libm::log10(less)) - 2.0);
         let [left, right] = by(libm::floor(less / digits) * digits);
         range = [range[0].min(left), range[1].max(right)];

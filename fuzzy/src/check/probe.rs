@@ -19,7 +19,7 @@ use crate::{
 pub struct Coordinate {
     /// The name of the input.
     pub input: String,
-    /// Its value.
+    /// The value of this input.
     pub value: f64,
 }
 

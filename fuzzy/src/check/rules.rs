@@ -61,7 +61,7 @@ pub struct Subsumed {
     pub by: usize,
 }
 
-/// A condition as the sorted set of its parts, so that their order does not matter.
+/// A condition as the sorted set of its parts, so that the order of the parts does not matter.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 enum Parts {
     All(Vec<usize>),
@@ -89,7 +89,8 @@ impl Numbers {
         match condition {
             Condition::And(parts) => Parts::All(sorted(parts)),
             Condition::Or(parts) => Parts::Any(sorted(parts)),
-            // A single part could be either variant; most conditions are conjunctions.
+            // A single part could be either variant; it is a conjunction here, as most conditions
+            // are.
             one => Parts::All(sorted(core::slice::from_ref(one))),
         }
     }
@@ -246,7 +247,7 @@ pub(super) fn subsumed(model: &Model) -> Vec<Subsumed> {
 struct Member {
     index: usize,
     parts: Parts,
-    /// A bit per part, which rules out most pairs of sets in one comparison.
+    /// A bit for each part, so that one comparison excludes most pairs of sets.
     signature: u64,
     weight: f64,
 }
@@ -258,11 +259,11 @@ impl Member {
             a.len() < b.len() && a.iter().all(|part| b.binary_search(part).is_ok())
         };
         match (&self.parts, &narrow.parts) {
-            // A conjunction of fewer parts is more general.
+            // A conjunction is more general than one with additional parts.
             (Parts::All(wide), Parts::All(all)) => {
                 self.signature & !narrow.signature == 0 && subset(wide, all)
             }
-            // A disjunction of more parts is more general.
+            // A disjunction is more general than one with fewer of its parts.
             (Parts::Any(wide), Parts::Any(any)) => {
                 narrow.signature & !self.signature == 0 && subset(any, wide)
             }

@@ -550,14 +550,14 @@ fn an_outer_term_that_is_never_reached_is_a_warning_with_both_remedies() {
 #[test]
 fn each_cause_of_an_unreached_outer_term_has_its_own_message() {
     let outputs = [
-        // Only one end.
+        // Only one end is not reached.
         "{range: [0, 40], partition: {off: 0, short: 10, medium: 20, long: 24}}",
         // A wider range has no effect on a set that ends at the old range.
         "{range: [0, 40], terms: {off: {triangle: [0, 0, 10]}, short: {triangle: [5, 10, 15]}, medium: {triangle: [15, 20, 25]}, long: {triangle: [25, 30, 35]}}}",
         "{range: [0, 40], terms: {off: {gaussian: {mean: 0, sd: 4}}, short: {gaussian: {mean: 10, sd: 4}}, medium: {gaussian: {mean: 25, sd: 4}}, long: {gaussian: {mean: 40, sd: 4}}}, defuzzifier: bisector}",
         // The terms are inside the range, and its ends are never reached: only a note.
         "{range: [0, 40], terms: {off: {triangle: [0, 5, 10]}, short: {triangle: [10, 15, 20]}, medium: {triangle: [20, 25, 30]}, long: {triangle: [30, 35, 40]}}}",
-        // Constants have their own message.
+        // Terms that are constants have a separate message.
         "{range: [0, 40], terms: {off: {constant: 0}, short: {constant: 10}, medium: {constant: 20}, long: {constant: 30}}, defuzzifier: weighted_average}",
         // No finding: a plateau, the maxima, singletons.
         "{range: [0, 40], partition: {off: 6, short: 12, medium: 24, long: 34}}",

@@ -15,7 +15,7 @@ pub(super) struct Sloped {
 pub(super) fn activate(implication: Implication, strength: f64, membership: Sloped) -> Sloped {
     let (h, m) = (strength, membership.degree);
     if implication == Implication::Drastic && 1.0 - h > LEAST_STRENGTH && membership.slope != 0.0 {
-        // Only a single point of a peak remains.
+        // Only a single point of the peak remains above 0.
         return Sloped::default();
     }
     let degree = implication.of(h, m);
@@ -128,13 +128,13 @@ pub(super) fn keeps_lines(implication: Implication) -> bool {
 /// The kinks and steps of an aggregated set between the levels of its activated terms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kinks {
-    /// There are none.
+    /// No kinks and no steps.
     None,
     /// At the crossings of two terms.
     Crossings,
     /// At the crossings of two terms, and where their sum reaches 1.
     CrossingsAndSteps,
-    /// Where a term reaches the least strength.
+    /// Where a term reaches the least firing strength.
     Steps,
     /// Where the sum of all terms reaches 1.
     Bound,

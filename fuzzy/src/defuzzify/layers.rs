@@ -22,7 +22,7 @@ const LEAST_DIFFERENCE: f64 = 1e-100;
 struct Part {
     flank: u32,
     strength: u32,
-    /// The firing strengths of the terms above it, in ascending order.
+    /// The indices of the firing strengths of the terms above this part, in ascending order.
     above: Vec<u32>,
     /// The ends of the part, with the degrees just inside.
     from: (f64, f64),

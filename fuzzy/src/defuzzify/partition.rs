@@ -30,11 +30,12 @@ impl Partition {
     ) -> Option<Self> {
         let intervals = intervals(terms, low, high)?;
         let terms = terms.len();
-        // A term that is 0 on the whole range comes last.
+        // Terms that are 0 on the whole range come last.
         let mut middles = vec![f64::INFINITY; terms];
         for Interval { from, to, alive } in &intervals {
             for line in alive {
-                // The middle of its highest interval, or the end of the range next to its top.
+                // The position of the term: the middle of its highest interval, or the end of the
+                // range next to its top.
                 let x = 0.5 * (from + to) + 0.5 * (to - from) * (line.right - line.left);
                 let middle = middles.get_mut(line.term)?;
                 *middle = if middle.is_finite() {

@@ -93,7 +93,7 @@ impl Integrals {
 }
 
 impl Piece<'_> {
-    /// Returns the whole area.
+    /// Returns the area of the piece.
     pub(crate) fn area(&self) -> f64 {
         let mean = match self.curve {
             Some(curve) => integrate(curve.degree, 1.0, 0.0).0,
@@ -144,7 +144,8 @@ fn integrate(curve: &dyn Fn(f64) -> f64, end: f64, known: f64) -> (f64, f64) {
     while open > 0 {
         open -= 1;
         let (a, b, area, moment) = stack[open];
-        // Not at the middle, where a symmetric kink would not be detected.
+        // The interval is not split at the middle, where the error of a symmetric kink would
+        // cancel.
         let middle = a + 0.43 * (b - a);
         let left = gauss(curve, a, middle, 0.0);
         let right = gauss(curve, middle, b, 0.0);

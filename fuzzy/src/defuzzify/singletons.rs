@@ -14,7 +14,7 @@ pub(crate) struct Singletons {
 }
 
 impl Singletons {
-    /// Returns `None` if a term is not a singleton.
+    /// Creates the points of an output; `None` if a term is not a singleton.
     pub(super) fn new(output: &Output) -> Option<Self> {
         if !output.is_discrete() {
             return None;

@@ -194,7 +194,7 @@ fn a_nilpotent_minimum_cuts_out_a_plateau() {
     for (aggregation, terms) in [
         (Aggregation::Maximum, vec![(gaussian(40.0, 10.0), 0.3)]),
         (Aggregation::Sum, vec![(gaussian(40.0, 10.0), 0.3)]),
-        // In combination with a lower term.
+        // The same term in combination with a lower one.
         (
             Aggregation::NilpotentMaximum,
             vec![(gaussian(40.0, 10.0), 0.3), (gaussian(80.0, 5.0), 0.2)],

@@ -205,7 +205,7 @@ rules:
     assert_eq!(states(0.0)[0], State::Defined(3.0));
     rows.reset();
     assert_eq!(rows.evaluate(&[5.0]).unwrap()[0].state, none);
-    // The engine has no memory.
+    // The engine does not store previous values.
     assert_eq!(
         engine.evaluate(&[5.0]).unwrap()[1].state,
         State::Default(4.0)

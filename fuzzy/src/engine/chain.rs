@@ -31,9 +31,9 @@ pub(super) struct Later {
 struct Place {
     /// The outputs that the stage reads. Their values follow those of the inputs.
     reads: Vec<u32>,
-    /// The index in the model of each of its outputs.
+    /// The index in the model of each output of the stage.
     outputs: Vec<u32>,
-    /// The index in the model of each of its rules.
+    /// The index in the model of each rule of the stage.
     rules: Vec<u32>,
 }
 

@@ -75,13 +75,13 @@ pub use what_if::{Change, Effect};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Engine {
-    /// The model it was compiled from.
+    /// The model that the engine was compiled from.
     model: Arc<Model>,
     inputs: Vec<Input>,
     outputs: Vec<NamedOutput>,
     /// The outputs that read no other output: all outputs, unless the model has chains.
     first: Stage,
-    /// The remaining outputs, which are evaluated after the outputs they read.
+    /// The remaining outputs, which are evaluated after the outputs that they read.
     chain: Option<Box<Chain>>,
 }
 

@@ -20,7 +20,7 @@ pub struct Said {
     /// The index of the rule in evaluation order, which counts the rules of all stages. It equals `rule` if no output
     /// reads another one.
     pub place: usize,
-    /// The index of the rule in the model.
+    /// The index of the rule among the rules of the model.
     pub rule: usize,
     /// The index of the input. For an output that is read, the number of inputs plus the index of the output.
     pub input: usize,

@@ -76,7 +76,7 @@ impl Output {
 }
 
 impl<'e> Sequence<'e> {
-    /// Creates a sequence that has not evaluated any row yet.
+    /// Creates a sequence without a previous row.
     pub fn new(engine: &'e Engine) -> Self {
         let outputs = engine.model().outputs.iter();
         Sequence {

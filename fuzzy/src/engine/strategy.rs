@@ -62,10 +62,11 @@ use crate::table::{OfMaxima, Outcome, SetDefuzzifier, has_cells_alone};
 /// The method that fires the rules of a stage for a single row.
 #[derive(Debug, Clone)]
 pub(super) enum Single {
-    /// Vector instructions, which also defuzzify the output.
+    /// A table of two inputs whose rules are fired, and whose output is defuzzified, with vector
+    /// instructions.
     #[cfg(feature = "simd")]
     Plane(alloc::boxed::Box<Plane>),
-    /// Vector instructions.
+    /// A table whose rules are fired with vector instructions.
     #[cfg(feature = "simd")]
     Vectors(alloc::boxed::Box<Uniform>),
     /// A table that consists of uniform cells only.
@@ -114,7 +115,7 @@ pub(super) enum Merging {
     Largest,
     /// By sum: `sum_r h_r mu = (sum_r h_r) mu`.
     Sum,
-    /// Not at all: the firing strength of each rule is kept.
+    /// No combination: the firing strength of each rule is used separately.
     Apart,
 }
 

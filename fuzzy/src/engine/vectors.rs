@@ -22,7 +22,7 @@ const MOST_CUTS: usize = 8;
 struct Cuts([f64; MOST_CUTS]);
 
 impl Cuts {
-    /// Returns `None` if there are too many cuts.
+    /// Collects the cuts of an axis; `None` if there are too many.
     fn new(table: &OwnedTable, axis: &Axis) -> Option<Self> {
         let given = table
             .cuts

@@ -150,7 +150,7 @@ pub(super) fn activation(
             rules: count(&of, method.value, findings)?,
         }),
         "threshold" => threshold(&of, method.value, findings),
-        // Unknown keys are reported elsewhere.
+        // Unknown keys are reported by the reader of the mapping.
         _ => None,
     }
 }

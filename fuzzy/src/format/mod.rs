@@ -99,7 +99,7 @@ fn read_lacking(
 pub struct Partial {
     /// The parts that could be read. Of a part that could not be read, only the name is included.
     pub model: Model,
-    /// The positions of its parts.
+    /// The positions of the parts of the model.
     pub spans: Spans,
     /// Whether a rule or a term with explicit membership function could not be read, so that the names in it are
     /// unknown.

@@ -286,7 +286,7 @@ fn step() -> Node {
     ))
 }
 
-/// A name may look like a number or a boolean.
+/// Returns the schema of a name, which may look like a number or a boolean.
 fn scalar() -> Node {
     Node::list(["string", "number", "boolean"].map(Node::text).into())
 }

@@ -40,7 +40,7 @@ pub(crate) use code::{Instruction, Operation};
 #[derive(Debug, Clone)]
 pub struct Formula {
     expression: Expression,
-    /// The variables that it reads, each once, in the order of their first occurrence.
+    /// The variables that the formula reads, each once, in the order of their first occurrence.
     variables: Vec<Variable>,
     /// The code, which reads the variables by their index in `variables`.
     code: Vec<Instruction>,
@@ -51,7 +51,7 @@ pub struct Formula {
 #[derive(Debug, Clone)]
 pub(crate) struct Variable {
     pub(crate) name: String,
-    /// The positions of its name, from left to right.
+    /// The positions of the name in the formula, from left to right.
     pub(crate) spans: Vec<Range<usize>>,
 }
 
@@ -79,8 +79,8 @@ impl Formula {
         self.variables.iter().map(|variable| &*variable.name)
     }
 
-    /// Returns its value, where `value` returns the values of the variables. The result is NaN or infinite if the
-    /// formula is undefined, such as `1 / x` at 0.
+    /// Returns the value of the formula; `value` returns the values of the variables. The result is
+    /// NaN or infinite if the formula is undefined, such as `1 / x` at 0.
     pub fn evaluate(&self, value: impl Fn(&str) -> f64) -> f64 {
         evaluate(&self.code, |index| {
             self.variables

@@ -76,7 +76,8 @@ pub struct Learner {
 /// The learned rules, with statistics about the data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Learned {
-    /// The model with its own rules, followed by the learned ones in the order of their antecedents.
+    /// The model with its original rules, followed by the learned rules in the order of their
+    /// antecedents.
     pub model: Model,
     /// The number of samples.
     pub samples: u64,
@@ -203,7 +204,7 @@ impl Learner {
             self.consequents.highest(consequent, *output),
             self.settings.resolution,
         ) {
-            // In a gap between terms, the nearest term.
+            // In a gap between terms, the sample votes for the nearest term.
             (_, Resolution::Mean) => (self.consequents.nearest(consequent, *output), 1.0),
             (Some(vote), _) => vote,
             (None, _) => {

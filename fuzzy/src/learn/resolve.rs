@@ -84,7 +84,7 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
 
 fn decide(learner: &Learner, output: &Variable, cell: &Cell) -> Decision {
     let consequents = &learner.consequents;
-    // Among equal ones, the one with more samples wins, then the first.
+    // Among equal consequents, the one with more samples is selected, then the first.
     let winner = |weigh: fn(&Votes) -> f64| {
         let mut votes = cell.votes.iter();
         let first = votes.next();

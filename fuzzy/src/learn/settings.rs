@@ -57,9 +57,9 @@ pub enum Resolution {
 /// The required direction of the output as an input increases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// The output does not fall.
+    /// The output must not decrease as the input increases.
     Rising,
-    /// The output does not rise.
+    /// The output must not increase as the input increases.
     Falling,
 }
 

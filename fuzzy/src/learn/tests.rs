@@ -535,7 +535,7 @@ fn a_value_between_two_numbers_belongs_to_both_by_its_distance() {
         (0.0, 1, 1.0),
         (10.0, 1, 1.0),
         (26.0, 1, 0.6),
-        // Among equal ones, the first.
+        // Among equally near terms, the first one is used.
         (30.0, 1, 0.5),
         (34.0, 2, 0.6),
         (70.0, 2, 0.6),

@@ -34,11 +34,11 @@ pub(crate) struct Read {
 pub(crate) struct Stage<'m> {
     /// The model of this stage. Its inputs are those of the whole model, followed by `reads`.
     pub(crate) model: Cow<'m, Model>,
-    /// The indices, in the whole model, of the outputs that it reads; ascending.
+    /// The indices in the whole model of the outputs that the stage reads, in ascending order.
     pub(crate) reads: Vec<usize>,
-    /// The index in the whole model of each of its outputs.
+    /// The index in the whole model of each output of the stage.
     pub(crate) outputs: Vec<usize>,
-    /// The index in the whole model of each of its rules.
+    /// The index in the whole model of each rule of the stage.
     pub(crate) rules: Vec<usize>,
 }
 

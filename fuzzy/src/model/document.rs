@@ -26,7 +26,7 @@ use crate::{diagnostic::Findings, rule::Name};
 pub struct Document {
     /// The model.
     pub model: Model,
-    /// The positions of its parts.
+    /// The positions of the parts of the model.
     pub spans: Spans,
     /// Warnings: problems that do not prevent the model from being read.
     pub warnings: Findings,

@@ -203,7 +203,7 @@ impl<'a> Source<'a> {
             hedges.push(hedge);
             rest = after;
         }
-        // `any` needs no term: anything after it that is not a name ends the proposition.
+        // `any` needs no term, so the proposition ends if no name follows.
         let (after_space, ()) = space(rest)?;
         let names_follow = starts_name(after_space);
         let (rest, term) = if hedges.last() == Some(&Hedge::Any) && !names_follow {

@@ -57,7 +57,8 @@ impl MembershipFunction {
             } => {
                 let power = pow(fabs((x - center) / width), 2.0 * slope);
                 let sum = 1.0 + power;
-                // Otherwise the limit, which applies at the middle and far away from it.
+                // Otherwise the quotient is undefined, at the middle and far away from it, and its
+                // limit is used.
                 let share = power / sum / sum;
                 if share > 0.0 && sum < f64::INFINITY {
                     -2.0 * slope * share / (x - center)

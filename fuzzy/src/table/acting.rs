@@ -13,12 +13,12 @@ use crate::rows::join;
 #[derive(Debug, Clone, Copy)]
 pub struct Strongest<const L: usize = 1> {
     pub(super) strength: [f64; L],
-    /// Its [number](number_of); infinite if no rule has fired.
+    /// The [number](number_of) of the rule; infinite if no rule has fired.
     pub(super) rule: [f64; L],
 }
 
 impl Strongest {
-    /// Returns the rule of an index, with its firing strength.
+    /// Creates the entry of a rule, from its index and its firing strength.
     #[cfg(feature = "simd")]
     pub(crate) fn of(strength: f64, rule: u32) -> Self {
         Strongest {

@@ -19,9 +19,9 @@ pub struct Block {
     pub and_operator: u32,
     /// The disjunction for OR, as an index in [`Disjunction::ALL`].
     pub or_operator: u32,
-    /// The index of its first program; the programs are in the order of the rules.
+    /// The index of the first program; the programs are in the order of the rules.
     pub first_program: u32,
-    /// The end of its programs.
+    /// The index after the last program.
     pub end_program: u32,
 }
 

@@ -9,23 +9,24 @@ use super::{
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Stage {
-    /// The code of the data structure that finds its rules: see [`Conjunctions::code`].
+    /// The code of the data structure that finds the firing rules: see [`Conjunctions::code`].
     pub conjunctions: u32,
     /// The number of actions per cell; uniform tables only.
     pub actions_a_cell: u32,
     /// The index of the first action of the first cell; uniform tables only.
     pub first_action: u32,
-    /// Not 0 if an action sums firing strengths; uniform tables only.
+    /// 1 if an action sums firing strengths, else 0; uniform tables only.
     pub sums: u32,
     /// The sizes of the scratch memory of the stage.
     pub sizes: Sizes,
-    /// The number of outputs that it reads. Their indices are in [`Chain::places`].
+    /// The number of outputs that the stage reads. Their indices are in [`Chain::places`].
     pub reads: u32,
-    /// The number of its outputs. Their indices in the model follow in [`Chain::places`].
+    /// The number of outputs of the stage. Their indices in the model follow in [`Chain::places`].
     pub outputs: u32,
-    /// The number of its rules. Their indices in the model follow in [`Chain::places`].
+    /// The number of rules of the stage. Their indices in the model follow in [`Chain::places`].
     pub rules: u32,
-    /// The end of its part of each array. The part begins at the end of the previous stage's part.
+    /// The end of the stage's part of each array. The part begins at the end of the previous
+    /// stage's part.
     pub ends: Ends,
 }
 
@@ -93,11 +94,11 @@ impl Conjunctions {
 /// The relation of a stage to the whole rule set.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place<'a> {
-    /// The outputs that it reads. Their values follow those of the inputs.
+    /// The outputs that the stage reads. Their values follow those of the inputs.
     pub(crate) reads: &'a [u32],
-    /// The index in the model of each of its outputs.
+    /// The index in the model of each output of the stage.
     pub(crate) outputs: &'a [u32],
-    /// The index in the model of each of its rules.
+    /// The index in the model of each rule of the stage.
     pub(crate) rules: &'a [u32],
 }
 
@@ -279,7 +280,7 @@ impl<'a> Chain<'a> {
         None
     }
 
-    /// Returns the index in the model of the rule with an index in evaluation order.
+    /// Converts the index of a rule in evaluation order to its index in the model.
     pub fn rule(&self, place: usize) -> Option<usize> {
         let rules = self.parts().flat_map(|(_, place)| place.rules);
         rules.map(|rule| *rule as usize).nth(place)

@@ -103,9 +103,9 @@ pub struct Moment {
 pub struct Consequent {
     /// The constant.
     pub constant: f64,
-    /// The index of its first coefficient.
+    /// The index of the first coefficient.
     pub first: u32,
-    /// The end of its coefficients.
+    /// The index after the last coefficient.
     pub end: u32,
     /// The index in `points` of the code of its formula; the range is empty if it has no formula.
     pub first_code: u32,

@@ -23,9 +23,9 @@ pub struct Flank {
     pub parameters: [f64; 4],
     /// The height of the term.
     pub height: f64,
-    /// The lower end of its interval.
+    /// The lower end of the interval.
     pub from: f64,
-    /// The upper end of its interval.
+    /// The upper end of the interval.
     pub to: f64,
     /// The degree just inside `from`.
     pub left: f64,
@@ -39,9 +39,9 @@ pub struct Flank {
     pub beyond: f64,
     /// The kind of membership function; [`Kind::PIECEWISE`] is a straight line from `left` to `right`.
     pub kind: Kind,
-    /// The index of its first knot.
+    /// The index of the first knot.
     pub first_knot: u32,
-    /// The end of its knots.
+    /// The index after the last knot.
     pub end_knot: u32,
 }
 

@@ -13,17 +13,17 @@ pub struct Input {
     pub low: f64,
     /// The upper end of the range.
     pub high: f64,
-    /// The index of its first literal among those of all inputs.
+    /// The index of the first literal among those of all inputs.
     pub first_literal: u32,
-    /// The index of its first cut. A value below the first cut is in the first interval.
+    /// The index of the first cut. A value below the first cut is in the first interval.
     pub first_cut: u32,
-    /// The end of its cuts.
+    /// The index after the last cut.
     pub end_cut: u32,
-    /// The index in `starts` of its first interval.
+    /// The index in `starts` of the first interval.
     pub first_start: u32,
-    /// The index of its first curve.
+    /// The index of the first curve.
     pub first_curve: u32,
-    /// The end of its curves.
+    /// The index after the last curve.
     pub end_curve: u32,
 }
 
@@ -37,7 +37,7 @@ pub struct Line {
     pub foot: f64,
     /// The width of the slope; negative if the slope falls.
     pub run: f64,
-    /// The degree at its foot.
+    /// The degree at the foot of the line.
     pub base: f64,
     /// The difference between the degree at its top and that at its foot.
     pub rise: f64,
@@ -62,13 +62,13 @@ pub struct Curve {
     pub kind: Kind,
     /// The index of the literal among those of its input.
     pub literal: u32,
-    /// The index of its first point, if it is piecewise linear or a formula.
+    /// The index of the first point, if it is piecewise linear or a formula.
     pub first_point: u32,
-    /// The end of its points.
+    /// The index after the last point.
     pub end_point: u32,
-    /// The index of its first hedge; hedges are in the order in which they are applied.
+    /// The index of the first hedge; hedges are in the order in which they are applied.
     pub first_hedge: u32,
-    /// The end of its hedges.
+    /// The index after the last hedge.
     pub end_hedge: u32,
 }
 

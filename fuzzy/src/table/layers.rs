@@ -14,13 +14,13 @@ use crate::rows::set;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct LayeredSet {
-    /// The index of its first base.
+    /// The index of the first base.
     pub first_base: u32,
-    /// The end of its bases.
+    /// The index after the last base.
     pub end_base: u32,
-    /// The index of its first layer.
+    /// The index of the first layer.
     pub first_layer: u32,
-    /// The end of its layers.
+    /// The index after the last layer.
     pub end_layer: u32,
 }
 

@@ -107,7 +107,8 @@ pub(crate) use raising::{concluded_by, raised_by};
 use results::Given;
 pub(crate) use results::Results;
 
-/// The data structure that finds the rules that are plain ANDs of terms of different inputs.
+/// The data structure that finds the firing rules among those that are plain ANDs of terms of
+/// different inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Conjunctions {
     /// A table with a cell for each combination of terms. On each axis exactly two terms are evaluated.
@@ -155,13 +156,13 @@ pub struct Output {
     pub default_value: f64,
     /// The code of its [closed form](Output::form).
     pub form: u32,
-    /// The index of its first element in the array of that form.
+    /// The index of the first element in the array of that form.
     pub first: u32,
-    /// The end of its elements in that array.
+    /// The index after the last element in that array.
     pub end: u32,
-    /// The index of its first firing strength.
+    /// The index of the first firing strength.
     pub first_strength: u32,
-    /// The end of its firing strengths.
+    /// The index after the last firing strength.
     pub end_strength: u32,
     /// 1 if a value outside the range is clamped to it, else 0. Only Takagi-Sugeno outputs can leave their range.
     pub clamps: u32,
@@ -193,7 +194,7 @@ pub struct Buffers<N, P, S> {
 pub type Scratch<'m> = Buffers<&'m mut [f64], &'m mut [Partial], &'m mut [Strongest]>;
 
 impl Output {
-    /// Returns the method that computes its value.
+    /// Returns the method that computes the value of the output.
     #[inline(always)]
     pub fn form(&self) -> ClosedForm {
         ClosedForm::from_code(self.form)

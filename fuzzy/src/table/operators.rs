@@ -146,7 +146,7 @@ impl Hedge {
         !matches!(self, Hedge::Not | Hedge::Any)
     }
 
-    /// Returns its word in the rule language.
+    /// Returns the word for the hedge in the rule language.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -272,7 +272,7 @@ impl Aggregation {
 }
 
 impl Hedge {
-    /// The hedged degree.
+    /// Returns the hedged degree.
     #[must_use]
     pub fn of(self, x: f64) -> f64 {
         match self {
@@ -303,7 +303,7 @@ mod tests {
     use super::*;
 
     const CONJUNCTIONS: [(Conjunction, f64, f64); Conjunction::ALL.len()] = [
-        // Computed by hand at (0.5, 0.75) and at (0.25, 0.5).
+        // The results at (0.5, 0.75) and at (0.25, 0.5), computed by hand.
         (Conjunction::Minimum, 0.5, 0.25),
         (Conjunction::Product, 0.375, 0.125),
         (Conjunction::BoundedDifference, 0.25, 0.0),

@@ -37,7 +37,7 @@ fn rule_of(number: f64) -> u32 {
 }
 
 impl<const L: usize> Results<L> {
-    /// Empty results.
+    /// The results before the evaluation of any row.
     pub(crate) const NONE: Self = Results {
         default_values: [f64::NAN; L],
         values: [f64::NAN; L],

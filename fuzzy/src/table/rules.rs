@@ -12,7 +12,7 @@ pub struct Action {
     pub strength: u32,
     /// The index of the output.
     pub output: u32,
-    /// The index of the rule in the model.
+    /// The index of the rule among the rules of the model.
     pub rule: u32,
     /// 1 if firing strengths are summed, 0 if the largest is used.
     pub sums: u32,
@@ -41,11 +41,11 @@ impl Action {
 pub struct Axis {
     /// The index of the input.
     pub input: u32,
-    /// The index of its first cut; the cuts are padded to a multiple of 4 with infinity.
+    /// The index of the first cut; the cuts are padded to a multiple of 4 with infinity.
     pub first_cut: u32,
-    /// The end of its cuts.
+    /// The index after the last cut.
     pub end_cut: u32,
-    /// The index of the first of the two lines of its first interval.
+    /// The index of the first of the two lines of the first interval.
     pub first_line: u32,
 }
 
@@ -72,9 +72,9 @@ impl Dimension {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct Node {
-    /// The index of its first edge.
+    /// The index of the first edge.
     pub first_edge: u32,
-    /// The end of its edges.
+    /// The index after the last edge.
     pub end_edge: u32,
     /// The index of the first action of the rules that end here.
     pub first_action: u32,
@@ -103,17 +103,17 @@ pub struct Edge {
 pub struct Program {
     /// The weight of the rule, which multiplies the degree before the hedges. The weights of the actions are not used.
     pub weight: f64,
-    /// The index of its first step.
+    /// The index of the first step.
     pub first_step: u32,
-    /// The end of its steps.
+    /// The index after the last step.
     pub end_step: u32,
-    /// The index of its first action.
+    /// The index of the first action.
     pub first_action: u32,
-    /// The end of its actions.
+    /// The index after the last action.
     pub end_action: u32,
-    /// The index of its first hedge; hedges are in the order in which they are applied.
+    /// The index of the first hedge; hedges are in the order in which they are applied.
     pub first_hedge: u32,
-    /// The end of its hedges.
+    /// The index after the last hedge.
     pub end_hedge: u32,
 }
 

@@ -23,7 +23,7 @@ pub enum SetDefuzzifier {
     Centroid,
     /// The value that halves the area.
     Bisector,
-    /// One of the values at which the set is highest.
+    /// A value among those at which the set is highest.
     Maxima(OfMaxima),
 }
 
@@ -33,7 +33,7 @@ pub enum SetDefuzzifier {
 pub enum OfMaxima {
     /// The smallest one.
     Smallest,
-    /// Their mean.
+    /// The mean of these values.
     Mean,
     /// The largest one.
     Largest,
@@ -68,13 +68,13 @@ pub struct FuzzySet {
     pub defuzzifier: u32,
     /// 1 if the aggregation is the sum, 0 if it is the maximum.
     pub sum: u32,
-    /// The index of its first section; the range is empty for a sum.
+    /// The index of the first section; the range is empty for a sum.
     pub first_section: u32,
-    /// The end of its sections.
+    /// The index after the last section.
     pub end_section: u32,
-    /// The index of its first term; there is one per firing strength.
+    /// The index of the first term; there is one per firing strength.
     pub first_term: u32,
-    /// The end of its terms.
+    /// The index after the last term.
     pub end_term: u32,
 }
 
@@ -85,9 +85,9 @@ pub struct FuzzySet {
 pub struct SetTerm {
     /// The maximum degree within the range.
     pub highest: f64,
-    /// The index of its first flank.
+    /// The index of the first flank.
     pub first_flank: u32,
-    /// The end of its flanks.
+    /// The index after the last flank.
     pub end_flank: u32,
 }
 
@@ -100,9 +100,9 @@ pub struct Section {
     pub from: f64,
     /// The upper end.
     pub to: f64,
-    /// The index of its first strand; strands are ordered from the highest to the lowest in the middle of the section.
+    /// The index of the first strand; strands are ordered from the highest to the lowest in the middle of the section.
     pub first_strand: u32,
-    /// The end of its strands.
+    /// The index after the last strand.
     pub end_strand: u32,
 }
 
@@ -121,7 +121,7 @@ pub struct Strand {
     pub right_tail: [f64; 2],
     /// The index of its firing strength among those of the output.
     pub strength: u32,
-    /// The index of its flank.
+    /// The index of the flank.
     pub flank: u32,
 }
 

@@ -287,7 +287,7 @@ impl Node {
         Diagnostic::error("wrong-type", self.span.clone(), message)
     }
 
-    /// Returns a description of this value for messages.
+    /// Returns a short description of the value, to quote in messages.
     fn shown(&self) -> String {
         match &self.value {
             Value::List(_) => "a list".into(),

@@ -106,7 +106,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Requires that a formula that defines a fuzzy set reads only its own variable.
+    /// Requires that the formula of a fuzzy set reads only the variable of the set.
     pub(super) fn own_formula(
         &mut self,
         what: &str,
@@ -259,7 +259,7 @@ impl Validator<'_> {
             .iter()
             .any(|term| is_linear(&term.membership_function))
         {
-            // Linear functions are reported separately, with the same help.
+            // Nothing more is reported: the finding about linear functions has the same help.
             return;
         }
         let no_spans = TermSpans::default();

@@ -1,4 +1,4 @@
-//! The reasons for which a text is not YAML at all: the format of another program, a Markdown fence, or comments of
+//! Reasons why a text is not YAML: the format of another program, a Markdown fence, or comments of
 //! another language.
 
 use alloc::{format, string::String, vec::Vec};

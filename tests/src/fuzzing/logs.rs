@@ -1,4 +1,4 @@
-//! Flight logs: reading them and writing their contents.
+//! Fuzz targets for flight logs: reading logs, and writing their contents.
 
 use flagred_cli::fuzzing::{converted, documents};
 use flagred_flightlog::{Flight, Options, ReadError};

@@ -23,13 +23,13 @@ use flagred_cli::fuzzing::Profile;
 
 /// A fuzz target.
 pub struct Target {
-    /// Its name.
+    /// The name of the target.
     pub name: &'static str,
     /// The function, which accepts any bytes.
     pub body: fn(&[u8]),
     /// Seeds that cover much of the code.
     pub seeds: fn() -> Vec<Vec<u8>>,
-    /// Its share of all mutated inputs, in %.
+    /// The share of all mutated inputs that this target gets, in %.
     pub share: u64,
 }
 

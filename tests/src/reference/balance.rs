@@ -9,7 +9,7 @@ use super::yaw::less_yaw;
 pub struct Unbalanced {
     /// The measure that exceeded its limit.
     pub measure: Measure,
-    /// When it was raised.
+    /// The time at which the finding was raised.
     pub raised_s: f64,
     /// The named motor, and another motor that may be the cause.
     pub motor: (usize, Option<usize>),
@@ -64,7 +64,7 @@ impl Balance {
         }
     }
 
-    /// Adds the commands of a settled sample; nothing new results if one is unknown.
+    /// Adds the commands of a settled sample; they are ignored if one command is unknown.
     pub fn push(
         &mut self,
         (t_s, held_s): (f64, f64),
@@ -155,7 +155,7 @@ impl Balance {
         lately.map(|(motor, x)| x - trim(motor)).collect()
     }
 
-    /// By how much a motor is at most above the opposite one.
+    /// The largest amount by which a motor exceeds the opposite one.
     fn at_odds(&self, factors: &[[f64; 3]]) -> f64 {
         let x = less_yaw(&self.lately.values, factors);
         let above =

@@ -27,7 +27,7 @@ pub fn rate(settings: &AccumulatorSettings, risks: &[Stretch]) -> f64 {
     let risks = &risks[first..];
     let spans: Vec<(f64, f64)> = risks.iter().map(|risk| (risk.from.0, risk.to.0)).collect();
     let weights = window.weights(&spans);
-    // Simpson's rule is exact for a straight line and its square.
+    // Simpson's rule is exact here, because the integrands are a straight line and its square.
     let mean_of = |f: &dyn Fn(f64) -> f64| {
         let values = risks.iter().map(|Stretch { from, to }| {
             (f(from.1) + 4.0 * f((from.1 + to.1) / 2.0) + f(to.1)) / 6.0

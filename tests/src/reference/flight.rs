@@ -30,7 +30,7 @@ pub struct Sample {
     pub commands: Vec<f64>,
     /// The signals, in the order of the profile; NaN is unknown.
     pub signals: Vec<f64>,
-    /// Whether the log says that the vehicle is in the air.
+    /// Whether the vehicle is in the air, according to the log.
     pub in_air: bool,
 }
 
@@ -42,7 +42,7 @@ impl Sample {
 
 /// The results after a sample that the log reports as in the air.
 pub struct Row {
-    /// Its time in seconds.
+    /// The time in seconds.
     pub t_s: f64,
     /// The inputs of the profile.
     pub inputs: Vec<Option<f64>>,
@@ -395,6 +395,7 @@ fn risk(profile: &Profile, model: &Model, inputs: &[Option<f64>]) -> Option<f64>
         .collect();
     let mut outputs = model.outputs.iter();
     let output = outputs.position(|output| output.variable.name == profile.output)?;
-    // The terms of the risk in the shipped rules are symmetric triangles: few samples give the exact centroid.
+    // The risk of the shipped rules has symmetric triangles as terms, so few samples suffice for
+    // the exact centroid.
     rules::evaluate(model, &point?, 2)[output]
 }

@@ -9,7 +9,8 @@ use super::window::{Window, mean};
 
 /// The length of a bin in seconds.
 const BIN_S: f64 = 0.1;
-/// How much older values may be than a window, in seconds: the bin before its first one.
+/// The age beyond the window up to which values are kept, in seconds, so that the bin before the
+/// first one is available.
 const MORE_S: f64 = 5.0;
 
 /// The observation of an input in one sample, and its time span.

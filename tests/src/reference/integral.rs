@@ -128,7 +128,7 @@ fn gauss(set: &Set<'_>, (from, to): Piece) -> (f64, f64) {
     sums
 }
 
-/// The same by halving until nothing changes.
+/// The area and the moment, by halving intervals until nothing changes.
 fn integral(set: &Set<'_>, (from, to): Piece, allowed: f64, halvings: u32) -> (f64, f64) {
     let center = 0.5 * (from + to);
     let (whole, left, right) = (

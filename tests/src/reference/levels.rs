@@ -23,7 +23,7 @@ pub struct Moment {
 /// An episode with a level above GOOD.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trouble {
-    /// Its worst level.
+    /// The worst level of the episode.
     pub level: Level,
     /// Time since which the first raised level was reached.
     pub from_s: f64,

@@ -378,7 +378,8 @@ fn sampled(set: &Set<'_>, samples: usize) -> f64 {
     }
 }
 
-/// The position at which a monotone term has a degree, by bisection; the end of the range if that is farther than 1e6 ranges.
+/// The position at which a monotone term has the given degree, by bisection; the end of the range
+/// if the position is farther away than 1e6 ranges.
 fn place(term: &Term, degree: f64, variable: &Variable) -> f64 {
     let of = |x: f64| term.height * membership(&term.membership_function, x);
     let far = 1e6 * (variable.high - variable.low);

@@ -6,9 +6,9 @@ const RESOLUTION_S: f64 = 1e-6;
 
 /// A time window at one moment.
 pub struct Window {
-    /// Its length in seconds.
+    /// The length in seconds.
     pub length_s: f64,
-    /// Its end.
+    /// The end of the window, in seconds.
     pub now_s: f64,
     /// Values that ended before this time do not count.
     pub since_s: f64,

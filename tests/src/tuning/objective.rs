@@ -10,9 +10,9 @@ use super::{
 /// A set of rows over which the area under the ROC curve counts.
 #[derive(Debug, Clone, Copy)]
 pub struct Area {
-    /// The name of the rows.
+    /// The name of this set of rows.
     pub name: &'static str,
-    /// Whether a row belongs to them.
+    /// Whether a row belongs to the set.
     pub holds: fn(&Row) -> bool,
     /// The weight of the area.
     weight: f64,
@@ -65,9 +65,9 @@ pub const AREAS: [Area; 8] = [
 /// A set of rows over which a high risk is a false alarm.
 #[derive(Debug, Clone, Copy)]
 pub struct Excess {
-    /// The name of the rows.
+    /// The name of this set of rows.
     pub name: &'static str,
-    /// Whether a row belongs to them.
+    /// Whether a row belongs to the set.
     pub holds: fn(&Row) -> bool,
     /// The highest risk without a penalty, in %.
     pub above_pct: f64,
@@ -75,7 +75,7 @@ pub struct Excess {
     cost: f64,
 }
 
-/// The excesses.
+/// The sets of rows over which a high risk is penalised.
 pub const EXCESSES: [Excess; 3] = [
     Excess {
         name: "ordinary real flights",
@@ -107,7 +107,8 @@ pub(super) struct Problem {
     given: Vec<(f64, Sum)>,
     /// The rows of each of [`AREAS`]: those that became critical, and the others.
     areas: Vec<[Vec<u32>; 2]>,
-    /// The weight of each row: the root of the rows of its vehicle divided by their number, so that long logs do not dominate.
+    /// The weight of each row: `sqrt(n) / n` with the number `n` of rows of its vehicle, so that
+    /// long logs do not dominate.
     weights: Vec<f64>,
     /// The rows of each of [`EXCESSES`].
     excesses: Vec<Vec<u32>>,

@@ -20,7 +20,7 @@ pub enum Set {
 }
 
 impl Set {
-    /// Whether its flights are real.
+    /// Whether the flights of the set are real.
     pub fn is_real(self) -> bool {
         matches!(self, Set::Real | Set::Real2)
     }
@@ -31,9 +31,9 @@ impl Set {
 pub struct Row {
     /// The data set of its flight.
     pub set: Set,
-    /// The number of its flight.
+    /// The number of the flight.
     pub flight: u32,
-    /// Its vehicle.
+    /// The name of the vehicle.
     pub vehicle: String,
     /// The kind of flight.
     pub kind: String,
@@ -41,9 +41,9 @@ pub struct Row {
     pub inputs: Vec<f64>,
     /// Whether the attitude error, over a second, becomes critical within the next 5 s.
     pub is_critical: bool,
-    /// Whether it was not critical in the last 5 s; unknown values count as not critical.
+    /// Whether the error was not critical in the last 5 s; unknown values count as not critical.
     pub is_quiet_5_s: bool,
-    /// The same for the last 10 s.
+    /// Whether the error was not critical in the last 10 s; unknown values count as not critical.
     pub is_quiet_10_s: bool,
 }
 

@@ -28,9 +28,9 @@ pub struct Votes {
 /// A voting input: a partition, and at most one vote for each of its terms.
 #[derive(Debug, Clone)]
 pub(super) struct Input {
-    /// Its index among the inputs of the model.
+    /// The index among the inputs of the model.
     pub(super) place: usize,
-    /// The peaks of its terms.
+    /// The peaks of the terms of the input.
     pub(super) peaks: Vec<f64>,
     pub(super) votes: Vec<Option<Vote>>,
 }

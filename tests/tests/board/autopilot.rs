@@ -20,15 +20,16 @@ const LIMITS: [(&str, &str, &str); 2] = [
     ("lparser.c", "#define MAXVARS\t\t200", "#define MAXVARS 90"),
     ("lfunc.h", "#define MAXUPVAL\t255", "#define MAXUPVAL 110"),
 ];
-/// The maximum heap of the script with 32-bit pointers, as on the autopilot; with 64 bits nearly everything is twice as large.
-/// `CFLAGS=-m32` builds Lua with 32 bits, if the compiler supports it.
+/// The maximum heap of the script with 32-bit pointers, as on the autopilot; with 64-bit pointers
+/// the heap is nearly twice as large. `CFLAGS=-m32` builds Lua with 32 bits, if the compiler
+/// supports it.
 const HEAP_BYTES: u64 = 75_000;
 /// The clock of the autopilot wraps around after 71 minutes; in the tests, this is a minute after the first sample.
 const FIRST_US: u64 = (1 << 32) - 60_000_000;
 
 /// The sources of Lua 5.3, which the package `lua-src` contains.
 fn sources() -> PathBuf {
-    // Packages for other platforms may be missing.
+    // The packages for other platforms need not be present.
     let version = Command::new("rustc").arg("-vV").output().unwrap();
     let version = String::from_utf8(version.stdout).unwrap();
     let mut lines = version.lines();

@@ -536,7 +536,7 @@ fn unsupported_features_of_a_script_are_refused_with_alternatives() {
             &profile,
             "term `low` of input `spread` is curved",
         ),
-        (&operator, &profile, "operator for AND"),
+        (&operator, &profile, "operator of the rule set for AND"),
         (rules, &signal, "cannot read the signal `wind_m_s`"),
         (rules, &rate, "cannot compute the statistic `rate`"),
         (
@@ -587,7 +587,7 @@ fn a_profile_that_exceeds_a_limit_of_the_autopilot_is_refused() {
     };
     refused(
         &of(thresholds(95).collect()),
-        "98 local variables in a function, and ArduPilot's Lua allows 90",
+        "98 local variables in a function, but ArduPilot's Lua allows 90",
     );
     refused(
         &of(windows(25, "mean: motor_command").collect()),

@@ -295,14 +295,14 @@ fn rule_sets_that_keep_previous_values_are_refused_with_help() {
         let (code, told) = refused("samples: {midpoint: 100}", &[option]);
         assert_eq!(code, Some(3), "{told}");
         assert!(
-            told.contains("no closed form") && told.contains("`--lossy` leaves `samples` out"),
+            told.contains("no closed form") && told.contains("`--lossy` drops `samples`"),
             "{told}"
         );
         let (code, told) = refused("samples: {midpoint: 100}", &[option, "--lossy"]);
         assert_eq!(code, Some(0), "{told}");
         assert_eq!(
             told,
-            "warning: output `tip` is exact, and not of 100 samples\n"
+            "warning: output `tip` is computed exactly, not from 100 samples\n"
         );
     }
     let output = flagred()

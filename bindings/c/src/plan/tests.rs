@@ -39,7 +39,7 @@ impl Random {
         self.below(1000) as f64 / 1000.0
     }
 
-    /// A number that is likely to cause trouble.
+    /// Returns a number that is likely to cause trouble, such as a NaN or an extreme value.
     fn number(&mut self) -> f64 {
         const ODD: [f64; 11] = [
             0.0,
@@ -304,7 +304,7 @@ fn estimators() -> Vec<Estimator> {
 }
 
 const MOTORS: usize = 4;
-/// More bytes than any valid plan of these tests needs.
+/// An upper bound for the memory of the plans in these tests.
 const MOST_BYTES: usize = 1 << 21;
 
 fn start(plan: &Plan, memory: &mut [u128], size: usize) -> (i32, *mut CMonitor) {
@@ -399,7 +399,7 @@ fn a_damaged_plan_is_refused_or_can_be_pushed() {
 
 const ROUNDS: usize = 3000;
 
-/// A size that overflows is refused and does not wrap to a small one.
+/// A size that overflows is refused instead of wrapping around to a small one.
 #[test]
 fn sizes_do_not_wrap() {
     let estimator = shipped::flagred_paper();

@@ -49,5 +49,5 @@ def columns(value: Any, inputs: int) -> list[NDArray[np.float64]] | None:
     if matrix.ndim != 2:
         return None
     if matrix.shape[1] != inputs:
-        raise DataError(f"the matrix has {matrix.shape[1]} columns, and the model has {inputs} inputs")
+        raise DataError(f"the matrix has {matrix.shape[1]} columns, but the model has {inputs} inputs")
     return [matrix[:, column] for column in range(inputs)]

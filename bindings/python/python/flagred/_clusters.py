@@ -37,7 +37,7 @@ class Clusters(NamedTuple):
             The names of the terms, in ascending order of their peaks.
         """
         if self.centers.ndim != 1:
-            raise DataError("terms are for one input, but these clusters have several columns")
+            raise DataError("terms describe one input, but these clusters have several columns")
         if len(names) != len(self.centers):
             raise DataError(f"there are {len(self.centers)} clusters but {len(names)} names")
         return {name: float(center) for name, center in zip(names, self.centers)}
@@ -85,7 +85,7 @@ def c_means(
     """
     matrix = array(rows)
     if matrix.ndim not in (1, 2):
-        raise DataError(f"rows are an array or a matrix, and this has {matrix.ndim} axes")
+        raise DataError(f"rows must be an array or a matrix, but this array has {matrix.ndim} axes")
     whole_numbers({"clusters": clusters, "iterations": iterations, "starts": starts, "seed": seed})
     is_column = matrix.ndim == 1
     found = _c_means(matrix[:, None] if is_column else matrix, clusters, fuzzifier, iterations, starts, seed)

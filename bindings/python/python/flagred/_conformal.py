@@ -114,6 +114,6 @@ class ConformalRegressor(RegressorMixin, MetaEstimatorMixin, BaseEstimator):  # 
         rank = math.ceil((errors + 1) * coverage)
         if rank > errors:
             needed = math.ceil(coverage / (1 - coverage))
-            raise ValueError(f"intervals of {coverage:.0%} need {needed} calibration rows, and there are {errors}")
+            raise ValueError(f"intervals of {coverage:.0%} need {needed} calibration rows, but there are {errors}")
         width = self.errors_[rank - 1]
         return np.column_stack((predicted - width, predicted + width))

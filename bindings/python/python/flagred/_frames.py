@@ -102,7 +102,7 @@ def _pandas(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: bo
             raise DataError(f"the frame has no column `{name}`\n  help: its columns are {there}")
         columns.append(frame[name])
         if columns[-1].ndim != 1:
-            raise DataError(f"the frame has the column `{name}` more than once\n  help: rename all but the one that is meant")
+            raise DataError(f"the frame has the column `{name}` more than once\n  help: rename all of them except one")
     outputs = rule_set._output_names()
     found = (rule_set.evaluate if with_reasons else rule_set)(*columns, threads=threads)
     if len(outputs) == 1:

@@ -180,7 +180,7 @@ class Model(RuleSet):
 
     def _add(self, kind: str, name: str, given: dict[str, Any]) -> Model:
         if name in (*self._input_names(), *self._output_names()):
-            raise DataError(f"there is a variable `{name}` already\n  help: `model.{kind}['{name}'] = ...` replaces it")
+            raise DataError(f"the name `{name}` is already used by a variable\n  help: `model.{kind}['{name}'] = ...` replaces it")
         keys = {key: plain(value) for key, value in given.items() if key not in ("self", "name") and value is not None}
         edit(self, lambda document: document[kind].update({name: keys}))
         return self

@@ -50,7 +50,7 @@ def plot_map(map: DecisionMap, ax: Any | None) -> Any:
         return Picture(map.svg())
     axes = list(map.axes.items())
     if len(axes) > 2:
-        raise DataError(f"a picture has one or two axes, and the map has {len(axes)}")
+        raise DataError(f"a picture has one or two axes, but the map has {len(axes)}")
     ax.set_xlabel(axes[0][0])
     if len(axes) == 1:
         ax.plot(axes[0][1], map.values)
@@ -70,7 +70,7 @@ def plot_surface(map: DecisionMap, ax: Any | None) -> Any:
     axes = list(map.axes.items())
     if len(axes) != 2:
         help_text = "give the other inputs a value: `model.surface(bill=80)`"
-        raise DataError(f"a surface has two axes, and the map has {len(axes)}\n  help: {help_text}")
+        raise DataError(f"a surface has two axes, but the map has {len(axes)}\n  help: {help_text}")
     if not hasattr(ax, "plot_surface"):
         raise DataError('the axes are flat\n  help: make them with `plt.subplot(projection="3d")`')
     (x_name, x), (y_name, y) = axes

@@ -28,7 +28,7 @@ def whole_numbers(options: dict[str, Any]) -> dict[str, Any]:
     for key in sorted(_WHOLE & options.keys()):
         value = options[key]
         if value is not None and (isinstance(value, bool) or not isinstance(value, Integral) or value < 0):
-            raise DataError(f"`{key}` is {value!r}; it must be a whole number from 0")
+            raise DataError(f"`{key}` is {value!r}; it must be a whole number of at least 0")
     return options
 
 
@@ -59,7 +59,7 @@ def column_of(data: Any, name: str) -> Any:
         listed = ", ".join(f"`{column}`" for column in there)
         raise DataError(f"the data have no column `{name}`\n  help: {f'the columns are {listed}' if there else 'they have no columns'}")
     if there.count(name) > 1:
-        raise DataError(f"the data have the column `{name}` more than once\n  help: rename all but the one that is meant")
+        raise DataError(f"the data have the column `{name}` more than once\n  help: rename all of them except one")
     return data[name]
 
 
@@ -71,7 +71,7 @@ def groups_of(data: Any, name: str) -> NDArray[np.uint32]:
 def same_length(columns: list[NDArray[Any]]) -> None:
     """Refuses columns of different lengths."""
     if any(column.ndim != 1 for column in columns):
-        raise DataError("a column has no rows, or several columns have one name")
+        raise DataError("a column has no rows, or several columns have the same name")
     lengths = sorted({len(column) for column in columns})
     if len(lengths) > 1:
         raise DataError(f"the columns have different lengths: {', '.join(map(str, lengths))}")

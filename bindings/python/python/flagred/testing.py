@@ -68,7 +68,7 @@ def assert_map(model: Model, path: str | os.PathLike[str], *, points: int = 11) 
     inputs = [_column(columns, name, path) for name in model.inputs]
     names = [name for name in model.outputs if name in columns]
     if not names:
-        raise DataError(f"`{path}` has no column of an output: {', '.join(model.outputs)}")
+        raise DataError(f"`{path}` has no column for an output: {', '.join(model.outputs)}")
     now = _evaluate(model, inputs)
     for name in names:
         _compare(model, str(path), name, inputs, columns[name], now[name])
@@ -94,7 +94,7 @@ def _compare(
     raise AssertionError(
         f"{path}: `{name}` differs at {int(differs.sum())} of {len(now)} points, "
         f"most in row {row + 1}, at {at}: {_shown(before[row])} before, {_shown(now[row])} now\n"
-        f"  help: if the change is meant, run the test with {_UPDATE}=1 and commit the file"
+        f"  help: if the change is intended, run the test with {_UPDATE}=1 and commit the file"
     )
 
 
@@ -136,7 +136,7 @@ def _number(cell: str) -> float:
 def _write(model: Model, path: Path, points: int) -> None:
     if points < 2 or points ** len(model.inputs) > _MOST_POINTS:
         raise DataError(
-            f"{points} points along each of {len(model.inputs)} inputs are no snapshot\n"
+            f"{points} points along each of {len(model.inputs)} inputs are not a valid snapshot\n"
             f"  help: choose from 2 points to {_MOST_POINTS:,} in all, or write it with `flagred map --csv --sample 1000`"
         )
     ends = [variable.range for variable in model.inputs.values()]

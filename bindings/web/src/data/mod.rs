@@ -19,7 +19,7 @@ use wasm_bindgen::{JsError, JsValue, prelude::wasm_bindgen};
 use crate::failure::failure;
 use table::{Rows, Table};
 
-/// The rows with the largest errors that are listed.
+/// The maximum number of rows with large errors that are listed.
 const WORST: usize = 8;
 /// Milliseconds between two reports of a search.
 const REPORT_MS: f64 = 150.0;
@@ -43,9 +43,9 @@ struct Errors<'a> {
     refused_count: usize,
     /// Rows in which the rule set has no value.
     without_value: usize,
-    /// `null` where no row has a value.
+    /// The RMS error; `null` if no row has a value.
     rms: Option<f64>,
-    /// Computed less measured.
+    /// The mean of computed minus measured value; `null` if no row has a value.
     mean: Option<f64>,
     largest: Option<f64>,
     /// The rows with the largest errors, the largest first.
@@ -64,7 +64,7 @@ struct Worst {
 #[serde(rename_all = "camelCase")]
 struct Made {
     text: String,
-    /// What was done, in a sentence.
+    /// A sentence that describes the result.
     words: String,
     /// The numbers that moved, or other details, a line each.
     details: Vec<String>,
@@ -330,7 +330,7 @@ impl DataTable {
             .map_err(|(message, help)| failure(format!("`{}`: {message}", self.file), Some(&help)))
     }
 
-    /// The rows, of which there must be some.
+    /// Returns the rows; it is an error if none can be used.
     fn usable(&self, model: &Model) -> Result<Rows, JsError> {
         let rows = self.rows(model)?;
         match rows.values.is_empty() {

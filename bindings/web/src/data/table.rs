@@ -2,10 +2,10 @@
 
 use fuzzy::{diagnostic::suggest, model::Variable};
 
-/// Cells of a table.
+/// The maximum number of cells of a table.
 const MOST_CELLS: usize = 5_000_000;
 
-/// A message, and what to do.
+/// A message, and advice on what to do.
 type Refusal = (String, String);
 
 /// The cells of a table as text.
@@ -41,7 +41,7 @@ impl Table {
         let broken = |error: csv::Error| {
             (
                 format!("cannot be read: {error}"),
-                "the file must be CSV text, a header first".into(),
+                "the file must be CSV text that begins with a header".into(),
             )
         };
         let names: Vec<String> = reader
@@ -67,13 +67,14 @@ impl Table {
         match records.is_empty() {
             true => Err((
                 "there are no rows".into(),
-                "the first line names the columns, the lines below it hold the rows".into(),
+                "write the names of the columns in the first line, and the rows below it".into(),
             )),
             false => Ok(Table { names, records }),
         }
     }
 
-    /// The values of variables; the last one is the output, of which words stand for constants.
+    /// The values of variables in each row. The last variable is the output, whose values may be
+    /// names of constants.
     pub(super) fn rows(&self, variables: &[&Variable]) -> Result<Rows, Refusal> {
         let column = |variable: &&Variable| {
             let found = self.names.iter().position(|name| *name == variable.name);
@@ -82,7 +83,7 @@ impl Table {
                 let meant = suggest(&variable.name, names)
                     .map_or(String::new(), |meant| format!("{meant}; "));
                 let help = format!(
-                    "{meant}rename the column to the name of the variable: it has {}",
+                    "{meant}rename a column to the name of the variable; the columns are {}",
                     self.names.join(", ")
                 );
                 (format!("no column `{}`", variable.name), help)

@@ -10,7 +10,7 @@ use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 use super::assessment::{Assessment, documents, table};
 use crate::failure::failure;
 
-/// Assessments of several flights with one profile.
+/// Assessments of several flights with the same profile.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Comparison(Vec<Assessment>);
@@ -32,7 +32,7 @@ impl Comparison {
         if let Some(first) = self.0.first()
             && texts(&first.loaded) != texts(&added.loaded)
         {
-            let message = "flights are compared that were assessed with one profile";
+            let message = "only flights assessed with the same profile can be compared";
             return Err(failure(message, None));
         }
         self.0.push(added);

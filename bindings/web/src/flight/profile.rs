@@ -117,9 +117,9 @@ fn shipped_text(name: &str) -> Result<String, JsError> {
     })
 }
 
-/// Fails, because a text has no files next to it.
+/// Fails to read a file, because a profile given as a text has no folder.
 fn no_file(path: &Path) -> Result<String, String> {
-    Err(format!("`{}` cannot be read here", path.display()))
+    Err(format!("`{}` cannot be read", path.display()))
 }
 
 fn refusal<E: std::fmt::Display>(error: LoadError<E>) -> JsError {
@@ -139,13 +139,13 @@ fn drawn(findings: &fuzzy::Findings, file: &str, text: &str) -> String {
     let style = Style {
         colored: false,
         advice: |_| None,
-        all: "the problems list has all of them",
+        all: "the list of problems shows all of them",
         is_quoted: flagred::loaded::is_meant_as_rules,
     };
     draw(&findings.0, file, text, style).trim_end().to_owned()
 }
 
-/// Replaces the numbers that are in `changes`.
+/// Replaces the numbers for which `changes` has a value.
 fn change(verdict: &mut VerdictSettings, changes: &Value) {
     let number = |pointer: &str, to: &mut f64| {
         if let Some(value) = changes.pointer(pointer).and_then(Value::as_f64) {

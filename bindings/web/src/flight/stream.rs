@@ -32,7 +32,7 @@ impl<'f> Source<'f> {
             .call2(&JsValue::NULL, &self.offset.into(), &(PIECE as f64).into());
         let given = given.map_err(io_error)?.dyn_into::<Uint8Array>();
         let given =
-            given.map_err(|_| io::Error::other("the function to read with gave no bytes"))?;
+            given.map_err(|_| io::Error::other("the function that reads returned no bytes"))?;
         self.piece = given.to_vec();
         self.offset += self.piece.len() as f64;
         self.used = 0;

@@ -213,9 +213,9 @@ impl RuleSet {
             "map" => Ok(map_svg(&slice)),
             "rules" => Ok(rules_svg(&slice, self.model())),
             "surface" => surface_svg(&slice)
-                .ok_or_else(|| failure("a surface needs two inputs, and one is left", None)),
+                .ok_or_else(|| failure("a surface needs two inputs, but only one is left", None)),
             _ => {
-                let help = "there are `map`, `surface` and `rules`";
+                let help = "write `map`, `surface` or `rules`";
                 Err(failure(
                     format!("`{kind}` is not a kind of picture"),
                     Some(help),

@@ -41,7 +41,7 @@ impl RuleText {
         }
     }
 
-    /// Whether it is a profile.
+    /// Whether the text is a profile.
     #[wasm_bindgen(getter, js_name = isProfile)]
     pub fn is_profile(&self) -> bool {
         self.document.is_profile()

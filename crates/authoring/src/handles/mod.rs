@@ -15,17 +15,18 @@ use crate::{Document, Edit, numbers};
 /// A handle for dragging a membership function.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Handle {
-    /// The name of the parameter that it changes: `peak`, `sd`; `point` for a piecewise function.
+    /// The name of the parameter that the handle changes, such as `peak` or `sd`; `point` for a
+    /// piecewise function.
     pub name: &'static str,
     /// The position, in the unit of the variable.
     pub x: f64,
     /// The degree at that position.
     pub degree: f64,
-    /// The minimum of `x`.
+    /// The smallest allowed `x`.
     pub low: f64,
-    /// The maximum of `x`.
+    /// The largest allowed `x`.
     pub high: f64,
-    /// Whether it can also be moved vertically.
+    /// Whether the handle can also be moved vertically.
     pub moves_degree: bool,
 }
 
@@ -71,7 +72,7 @@ pub fn moved(
     let handles = place.handles();
     let (grip, handle) = handles.get(handle).ok_or("there is no such point")?;
     if !(x.is_finite() && degree.is_finite()) {
-        return Err("a point is moved to a finite number".into());
+        return Err("a point can only be moved to a finite number".into());
     }
     let decimals = place.decimals();
     let to = rounded(x, decimals).clamp(handle.low, handle.high);
@@ -279,6 +280,6 @@ impl<'d> Place<'d> {
 
 fn rounded(value: f64, decimals: usize) -> f64 {
     let text = format!("{value:.decimals$}");
-    // A zero has no sign.
+    // Adding 0 removes the sign of -0.
     text.parse().map_or(value, |rounded: f64| rounded + 0.0)
 }

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 /// How findings are printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Format {
-    /// The findings in their lines, for people
+    /// Text for people, with the source lines of the findings
     Text,
     /// A JSON document for each rule set
     Json,
@@ -128,7 +128,7 @@ fn message(finding: &Diagnostic) -> String {
     }
 }
 
-/// A path as a reference to a file: relative to the working directory, or absolute.
+/// Converts a path to a reference to a file: relative to the working directory, or absolute.
 fn uri(file: &str) -> String {
     let file = file.replace(std::path::MAIN_SEPARATOR, "/");
     let mut uri = String::from(if file.starts_with('/') { "file://" } else { "" });

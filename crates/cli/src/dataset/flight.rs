@@ -20,14 +20,14 @@ const BEFORE_END_S: f64 = 1.0;
 
 pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     let names = plan.profile.signals();
-    let flight = open_complete(log, &names, "makes no rows")?;
+    let flight = open_complete(log, &names, "gives no rows")?;
     let said = |key: &str| header(&flight, key);
     let carried = log::carried(&flight, &names);
     if let Some(lacking) = names.iter().find(|name| !carried.contains(name)) {
         return Err(Failure::unreadable(format!(
-            "`{log}` makes no rows: it does not carry the signal `{lacking}`"
+            "`{log}` gives no rows: it does not contain the signal `{lacking}`"
         ))
-        .help("`flagred inspect` lists the signals a log carries"));
+        .help("`flagred inspect` lists the signals of a log"));
     }
     let errors: Vec<(f64, Attitude)> = flight.attitudes().collect();
     let mut made = Rows {
@@ -42,7 +42,7 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
             Cut::Windows { length_s } => Some(length_s),
             Cut::Ahead { .. } => None,
         };
-        // Errors on the ground do not belong to the flight.
+        // Attitude errors on the ground do not belong to the flight.
         let in_air = errors.iter().filter(|(t_s, _)| air_s.contains(*t_s));
         let record = ErrorRecord::new(in_air.copied());
         let inputs = inputs(&flight, plan, &carried, length_s, &moments)?;
@@ -73,8 +73,9 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
         }
     }
     if made.rows.is_empty() {
-        made.notes
-            .push("no row: too short a time in the air, or nothing known in it".to_owned());
+        made.notes.push(
+            "no rows: the time in the air is too short, or its values are unknown".to_owned(),
+        );
     } else if refused > 0 {
         made.notes.push(format!(
             "{refused} rows left out: an input or the attitude is unknown"
@@ -85,9 +86,9 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
 
 /// A part of a flight from which rows are made.
 struct Part {
-    /// The time in the air that contains it.
+    /// The time in the air that contains this part.
     air_s: Span,
-    /// The part of it that counts.
+    /// The time span of this part.
     span: Span,
 }
 
@@ -140,7 +141,7 @@ fn inputs(
     moments: &[f64],
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut profile = plan.profile.clone();
-    // The rules below have only one output.
+    // The placeholder rules have only one output.
     profile.other_risks.clear();
     for input in &mut profile.inputs {
         input.source.window_s = length_s.unwrap_or(input.source.window_s);

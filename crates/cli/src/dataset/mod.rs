@@ -156,7 +156,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     out.flush()?;
     if written == 0 && exit == Exit::Clean {
-        return Err(Failure::unreadable("no row could be made of these flights"));
+        return Err(Failure::unreadable("these flights give no rows"));
     }
     drop(out);
     if let Some(output) = output {
@@ -165,9 +165,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// The paper's two inputs come first, whatever inputs the rules of the profile read. An input of the profile that has one of these names
-/// but is another quantity becomes `input_NAME`, as in the steps of `assess`. With [`Cut::Ahead`] the inputs are those of the profile
-/// and keep their names.
+/// The inputs of the paper come first, regardless of the inputs of the profile. An input of the
+/// profile that has one of these names but is another quantity becomes `input_NAME`, as in the
+/// steps of `assess`. With [`Cut::Ahead`] the inputs are those of the profile and keep their names.
 fn with_margin_and_spread(mut profile: Profile, cut: Cut) -> Profile {
     let paper = [
         ("margin", Statistic::Mean, Signal::MotorMargin),
@@ -227,7 +227,7 @@ fn rows_of(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     flight::rows(log, plan)
 }
 
-/// The names of the columns.
+/// The names of the columns, in their order.
 fn head(plan: &Plan) -> Vec<String> {
     let mut head = ["file", "vehicle", "kind", "from_s", "t_s"]
         .map(str::to_owned)

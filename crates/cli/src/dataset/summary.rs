@@ -13,7 +13,7 @@ use crate::{
 /// The column of the attitude error, which identifies such a table.
 const ERROR: &str = "att_rmse_deg";
 
-/// Opens the table, if the file is one: its first line names an attitude error, and no time.
+/// Opens the file as such a table, if its first line names an attitude error and no time.
 pub(super) fn open(path: &Path) -> Option<Result<Table, Failure>> {
     let mut start = Vec::new();
     File::open(path)
@@ -45,7 +45,7 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
                 "input `{}` cannot be computed from a table of flights",
                 input.name
             ))
-            .help("make its rows from flight logs")
+            .help("create the rows from flight logs")
         })?;
         for column in recipe.columns {
             table.header.require(column, help)?;

@@ -12,7 +12,7 @@ const WORST: usize = 5;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Errors {
     rows: u64,
-    /// Rows without a measured number, and the first of them.
+    /// The number of rows without a measured value, and the first of them.
     unmeasured: Rows,
     sum: f64,
     sum_of_squares: f64,

@@ -40,12 +40,12 @@ pub(crate) struct Arguments {
     #[arg(short, long, value_name = "OUT.csv", default_value = "-", hide_default_value = true, value_parser = output::table_path)]
     output: PathBuf,
 
-    /// Suffix of the output columns: `_model`. Needed where a column has an output's name; its measured values are then compared:
-    /// RMS error, mean error and the worst rows
+    /// Suffix of the output columns, such as `_model`. Required if a column has the name of an
+    /// output: its values are then compared with the output (RMS error, mean error, worst rows)
     #[arg(long, value_name = "SUFFIX", default_value = "")]
     suffix: String,
 
-    /// Add columns that explain the outputs: several with commas, or the option repeated
+    /// Add columns that explain the outputs; separate several by commas, or repeat the option
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
     with: Vec<With>,
 
@@ -53,14 +53,14 @@ pub(crate) struct Arguments {
     format: Format,
 }
 
-/// A column about how the outputs of a row come about.
+/// A column that explains the outputs of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum With {
     /// The largest firing strength of a rule, from 0 to 1
     Coverage,
     /// The number of the rule with that strength, from 1
     Rule,
-    /// The inputs that are outside their range and clamped to it
+    /// The inputs that are outside their range and were clamped
     Clamped,
     /// Why the row has no value
     Error,
@@ -98,7 +98,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let output = files.output(&arguments.output, Replace::Yes)?;
     if is_table(&arguments.model) && !is_table(&arguments.points) {
         let (model, points) = (arguments.model.display(), arguments.points.display());
-        let message = format!("`{model}` is a table, and the rule set comes first");
+        let message = format!("`{model}` is a table, but the rule set comes first");
         return Err(Failure::usage(message).help(format!("flagred eval {points} {model}")));
     }
     let engine = rule_set::load(&arguments.model)?;
@@ -149,7 +149,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 Ok(of_rows) => tally = of_rows,
                 Err(failure) => failed = Some(failure),
             }
-            // A partial table is discarded.
+            // If this fails, the partial table is discarded.
             failed
                 .as_ref()
                 .map_or(Ok(()), |_| Err(io::ErrorKind::InvalidData.into()))

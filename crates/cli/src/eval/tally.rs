@@ -6,7 +6,7 @@ use crate::output::say;
 /// Maximum number of bad rows that are reported individually.
 const SHOWN: usize = 20;
 
-/// Rows in which something happened.
+/// The number of rows with some property, and the first of them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Rows {
     count: u64,
@@ -42,7 +42,7 @@ impl Rows {
 pub(super) struct Tally {
     pub(super) rows: u64,
     bad: Rows,
-    /// Whether a row has another number of cells than the header.
+    /// Whether a row differs from the header in its number of cells.
     pub(super) has_misfit: bool,
     /// The problems of the first bad rows.
     shown: Vec<String>,

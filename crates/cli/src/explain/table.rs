@@ -59,7 +59,7 @@ fn added(engine: &Engine, header: &Header) -> Result<Vec<String>, Failure> {
             "`{}` has a column `{name}` already",
             header.file
         ))
-        .help("the reasons go into a column of that name; rename yours")),
+        .help("the reasons are written to a column of this name; rename your column")),
     }
 }
 

@@ -23,7 +23,7 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], words: &Findi
     let out = &mut arrays.out;
     line(
         out,
-        "/* Enough memory for a monitor of so many motors, on any processor. */",
+        "/* The memory of a monitor for this number of motors, on any processor. */",
     );
     let memory = format!("FLAGRED_PLAN_{}_MEMORY(motors)", name.to_uppercase());
     line(
@@ -102,7 +102,7 @@ struct Arrays {
 }
 
 impl Arrays {
-    /// Starts a file.
+    /// Writes the beginning of a file.
     fn begin(heading: &[String], guard: &str, prefix: String) -> Self {
         let mut out = String::new();
         line(&mut out, &format!("/* {} */", heading.join("\n * ")));
@@ -215,12 +215,12 @@ impl Arrays {
         let FindingWords { causes, notices } = words;
         for (comment, field, words) in [
             (
-                "What a pilot reads of a finding with a cause, by flagred_finding.cause.",
+                "The texts of findings with a cause, by flagred_finding.cause.",
                 "causes",
                 causes,
             ),
             (
-                "What a pilot reads of a finding without a cause, by flagred_finding.measure.",
+                "The texts of findings without a cause, by flagred_finding.measure.",
                 "notices",
                 notices,
             ),

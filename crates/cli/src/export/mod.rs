@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     if arguments.lossy {
         return Err(Failure::usage(
-            "`--lossy` is for rule sets, and this is a profile",
+            "`--lossy` is for rule sets, but this is a profile",
         ));
     }
     let output = Files::reading(&loaded.files)?.output(&arguments.output, Replace::Yes)?;
@@ -159,9 +159,9 @@ impl Arguments {
             None => ("Lua", &["lua"]),
         };
         let text = self.output.to_string_lossy();
-        let checked = output::path_of(&text, &format!("this writes {what}"), endings);
+        let checked = output::path_of(&text, &format!("the output is {what}"), endings);
         checked.map(drop).map_err(|wrong| {
-            Failure::usage(format!("`{text}` has the ending of another format")).help(wrong)
+            Failure::usage(format!("`{text}` has the extension of another format")).help(wrong)
         })
     }
 
@@ -201,8 +201,7 @@ fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
                 arguments.file,
                 format.name()
             );
-            Err(Failure::unreadable(message)
-                .help("`--lossy` leaves out what the format cannot say"))
+            Err(Failure::unreadable(message).help("`--lossy` drops what the format cannot express"))
         }
     }
 }
@@ -260,7 +259,7 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
     lines.into_iter().map(harmless).collect()
 }
 
-/// Makes a line safe inside a comment: a name in it must not end the comment.
+/// Makes a line safe inside a comment, which a name in the line must not end.
 fn harmless(line: String) -> String {
     visible(&line).replace("*/", "* /")
 }

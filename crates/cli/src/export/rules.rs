@@ -21,7 +21,7 @@ use crate::{
     rule_set,
 };
 
-/// Larger evaluations would overflow the stack of many threads.
+/// The maximum stack of an evaluation; more would overflow the stack of many threads.
 const MOST_STACK_BYTES: usize = 1 << 20;
 
 /// Writes a rule set in Rust or C.
@@ -41,7 +41,8 @@ pub(super) fn export(arguments: &Arguments, source: &Source) -> Result<Exit, Fai
     Ok(Exit::Clean)
 }
 
-/// Returns a rule set as code, with warnings about what was dropped. `name` is the rule set in messages.
+/// Returns a rule set as code, with warnings about dropped parts. Messages refer to the rule set as
+/// `name`.
 pub(super) fn code(
     (model, name): (&Model, &str),
     language: Language,
@@ -52,7 +53,7 @@ pub(super) fn code(
     for output in &mut model.outputs {
         if let Some(sampling) = output.samples.take_if(|_| lossy) {
             warnings.push(format!(
-                "output `{}` is exact, and not of {} samples",
+                "output `{}` is computed exactly, not from {} samples",
                 output.variable.name, sampling.samples
             ));
         }
@@ -63,7 +64,7 @@ pub(super) fn code(
     let rules = plan::rules(&engine).map_err(|refused| {
         let sampled = model.outputs.iter().any(|output| output.samples.is_some());
         let help = match sampled {
-            true => "`--lossy` leaves `samples` out: the value is exact then",
+            true => "`--lossy` drops `samples`: the output is then computed exactly",
             false => refused.help(),
         };
         Failure::unreadable(format!("`{name}`: {refused}")).help(help)
@@ -73,7 +74,7 @@ pub(super) fn code(
         return Err(Failure::unreadable(format!(
             "`{name}`: an evaluation takes {stack} bytes, which is too much for a stack"
         ))
-        .help("in C the memory is lent"));
+        .help("in C, the caller provides the memory"));
     }
     let text = match language {
         Language::Rust => rust::function(&rules, &heading(model, &rules, "--rust", stack)),
@@ -82,8 +83,10 @@ pub(super) fn code(
             c::rules(&rules, &model.name, &heading)
         }
         Language::Lua => {
-            return Err(Failure::usage("a script for ArduPilot is a whole profile")
-                .help("export a profile as Lua; rule sets as Rust or C"));
+            return Err(
+                Failure::usage("a script for ArduPilot is written from a profile")
+                    .help("export a profile as Lua, or the rule set as Rust or C"),
+            );
         }
     };
     Ok((text, warnings))

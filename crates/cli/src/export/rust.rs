@@ -24,19 +24,19 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], words: &Findi
         &mut out,
         format_args!(
             "
-/// Memory for a monitor of so many motors.
+/// The memory of a monitor for this number of motors.
 #[allow(dead_code)]
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<{}, {}, {}, {}, MOTORS>;
 
-/// What a pilot reads of a finding with a cause, by its proposition.
+/// The texts of findings with a cause, by the proposition of the cause.
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub static CAUSES: [::flagred::board::Words<'static>; {}] = [
     {},
 ];
 
-/// What a pilot reads of a finding without a cause, by its measure.
+/// The texts of findings without a cause, by their measure.
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub static NOTICES: [::flagred::board::Words<'static>; {}] = [
@@ -143,7 +143,7 @@ pub(super) fn function(rules: &Rules<'_>, heading: &[String]) -> String {
         out,
         format_args!(
             "
-/// The outcome of each output at values of the inputs. It depends on nothing else.
+/// Returns the outcome of each output at the given values of the inputs.
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub fn evaluate(inputs: &[f64; {inputs}]) -> [::fuzzy::table::Outcome; {outputs}] {{

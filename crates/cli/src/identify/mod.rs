@@ -114,7 +114,7 @@ struct Outcome {
     /// Columns without a number.
     without_numbers: Vec<String>,
     identified: Identified,
-    /// `None` if not requested.
+    /// The cross-validation; `None` if it was not requested.
     judged: Option<Judged>,
 }
 
@@ -249,7 +249,7 @@ fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
         return Err(Failure::unreadable(message).help(Cell::problem(first.as_bytes())));
     }
     Err(Failure::unreadable(message).help(
-        "for two classes write 0 and 1; `FuzzyClassifier` of the Python package takes words and many classes",
+        "for two classes write 0 and 1; `FuzzyClassifier` of the Python package supports words and more than two classes",
     ))
 }
 
@@ -282,12 +282,15 @@ fn failure(arguments: &Arguments, names: &[String], error: &TuneError) -> Failur
     let target = &arguments.target;
     let failure = Failure::unusable(format!("`{target}`"), error);
     match error {
-        TuneError::NoWeight => failure.help("give rows a weight above 0, or leave out `--weight`"),
-        TuneError::NoInputHelps => failure
-            .help("give columns that have to do with it, more rows, or a smaller `--min-gain`"),
-        TuneError::TooManyColumns { .. } => failure.help(
-            "name those that may be inputs with `--input`, or leave some out with `--ignore`",
-        ),
+        TuneError::NoWeight => {
+            failure.help("give some rows a weight above 0, or leave out `--weight`")
+        }
+        TuneError::NoInputHelps => {
+            failure.help("add columns that are related to it, add rows, or lower `--min-gain`")
+        }
+        TuneError::TooManyColumns { .. } => {
+            failure.help("select the inputs with `--input`, or exclude columns with `--ignore`")
+        }
         TuneError::Unknown { name } => {
             failure.help_if(suggest(name, names.iter().map(String::as_str)))
         }

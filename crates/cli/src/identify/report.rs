@@ -24,7 +24,7 @@ const SHOWN: usize = 12;
 pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome) -> Result<String, Failure> {
     let judged = outcome.judged.as_ref().map_or_else(String::new, |judged| {
         format!(
-            "; RMS error on rows left out, in {} parts: {}; of a line {}",
+            "; cross-validation error (RMS, {} folds): {}; of a linear regression: {}",
             judged.folds,
             short(judged.identified.value),
             short(judged.linear.value)
@@ -47,7 +47,7 @@ pub(super) fn words(
     outcome: &Outcome,
 ) -> std::io::Result<()> {
     left_out::rows(out, outcome.rows, &outcome.refused)?;
-    writeln!(out, "columns     {} looked at", outcome.columns)?;
+    writeln!(out, "columns     {} examined", outcome.columns)?;
     for name in outcome.without_numbers.iter().take(SHOWN) {
         writeln!(out, "            `{}` contains no number", visible(name))?;
     }
@@ -67,7 +67,7 @@ pub(super) fn words(
         let title = if i == 0 { "steps" } else { "" };
         let left_out = short(step.left_out);
         let said = if i == 0 {
-            " RMS error on rows left out"
+            " cross-validation error (RMS)"
         } else {
             ""
         };
@@ -75,8 +75,8 @@ pub(super) fn words(
     }
     let missing = match identified.without_rows {
         0 => String::new(),
-        1 => "; 1 combination of terms without rows has none".to_owned(),
-        count => format!("; {count} combinations of terms without rows have none"),
+        1 => "; none for 1 combination of terms without rows".to_owned(),
+        count => format!("; {count} combinations of terms without rows have no rule"),
     };
     let inputs = identified.columns.len();
     writeln!(
@@ -96,7 +96,7 @@ fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io
     let parts = divided(arguments.group_by.as_ref());
     writeln!(
         out,
-        "left out    {} RMS error of the whole search ({} parts of {parts}, 95 % intervals)",
+        "left out    {} cross-validation error (RMS) of the whole search ({} folds of {parts}, 95 % intervals)",
         figure(&judged.identified),
         judged.folds
     )?;
@@ -106,7 +106,7 @@ fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io
     };
     writeln!(
         out,
-        "            {} of a line over all columns; the first is {ratio}",
+        "            {} of a linear regression on all columns; the first is {ratio}",
         figure(&judged.linear)
     )?;
     writeln!(out, "            {} of the mean", figure(&judged.mean))?;
@@ -137,25 +137,25 @@ pub(crate) struct Document<'a> {
     steps: Vec<OfStep<'a>>,
     /// The number of rules.
     rules: usize,
-    /// The combinations of terms without a rule.
+    /// The number of combinations of terms without a rule.
     combinations_without_rows: usize,
-    /// Null where validation was not wanted.
+    /// The cross-validation; null if it was not requested.
     validation: Option<Validation>,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Rows<'a> {
-    /// The rows that were used.
+    /// The number of rows that were used.
     used: usize,
-    /// The rows without use.
+    /// The number of rows that cannot be used.
     refused: usize,
-    /// Why these rows have no use.
+    /// The reasons why these rows cannot be used.
     reasons: &'a [String],
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Columns<'a> {
-    /// The columns that could become inputs.
+    /// The number of columns that were examined as inputs.
     looked_at: usize,
     /// The columns without numbers.
     without_numbers: &'a [String],
@@ -165,29 +165,30 @@ struct Columns<'a> {
 
 #[derive(Serialize, JsonSchema)]
 struct OfStep<'a> {
-    /// The input that is new, or has another term.
+    /// The input that was added, or that got another term.
     input: &'a str,
-    /// How many terms it has now; of clusters, how many there are.
+    /// The number of terms of this input after the step, or the number of clusters.
     terms: usize,
-    /// The RMS error on rows left out, in the unit of the output.
+    /// The cross-validation error (RMS), in the unit of the output.
     left_out: f64,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Validation {
-    /// The parts of the cross-validation.
+    /// The number of cross-validation folds.
     parts: usize,
-    /// The rows for which no rule fires: the mean of the other rows stands for them.
+    /// The number of rows for which no rule fires; the mean of the other rows is used instead.
     rows_without_value: usize,
-    /// The RMS error of the rule set on rows left out of the whole search.
+    /// The cross-validation error (RMS) of the whole search.
     identified: OfInterval,
-    /// The RMS error of a line over all columns.
+    /// The cross-validation error (RMS) of a linear regression on all columns.
     linear: OfInterval,
-    /// The RMS error of the mean.
+    /// The cross-validation error (RMS) of the mean of the training rows.
     mean: OfInterval,
     /// `identified` divided by `linear`.
     ratio: OfInterval,
-    /// The rows left out by class and predicted class, where the target has 2 to 10 whole numbers; else null.
+    /// The confusion matrix of the cross-validation, if the target has 2 to 10 whole numbers; else
+    /// null.
     confusion: Option<OfClasses>,
 }
 

@@ -13,7 +13,7 @@ const SCHEMA: &str = "flagred.inspect/1";
 pub(crate) struct Document<'a> {
     #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
-    /// Its path, as given.
+    /// The path of the log, as given on the command line.
     log: &'a str,
     /// The kind of log, such as `ArduPilot DataFlash`.
     format: Format,
@@ -25,19 +25,21 @@ pub(crate) struct Document<'a> {
     range: Option<&'a Range>,
     /// The part of the range that is used in flight, as fractions of it.
     effective_range: &'a Range,
-    /// Why the used part counts as the whole range although the log reports limits.
+    /// The reason why the whole range is used as the effective range although the log reports
+    /// limits.
     effective_range_doubt: Option<&'a str>,
-    /// What is assumed of motors, their commands and ranges because the log does not report it, in words.
+    /// Assumptions about motors, their commands and ranges that the log does not report, in words.
     assumed: &'a [String],
     clock: Clock<'a>,
     commands: Commands,
-    /// Margin and command over the time in the air; null where the log lacks what they need.
+    /// Statistics of margin and command over the time in the air; null if the log lacks the
+    /// required data.
     statistics: Option<Statistics>,
     /// When the motors were armed.
     armed: Option<&'a Intervals>,
     /// When the vehicle was in the air.
     in_air: Option<&'a Intervals>,
-    /// All signals but the motor commands.
+    /// All signals except the motor commands.
     signals: Vec<Signal<'a>>,
     /// The flight modes, from the time each was entered.
     modes: &'a [Event],
@@ -45,7 +47,7 @@ pub(crate) struct Document<'a> {
     messages: &'a [Event],
     /// The keys and values in the header of a flight CSV.
     header: &'a [(String, String)],
-    /// What the log lacks.
+    /// The data that the log lacks.
     not_available: Vec<Gap>,
     /// The amount of data read, and damage.
     read: &'a Report,
@@ -59,7 +61,7 @@ struct Clock<'a> {
     last_s: Option<f64>,
     /// UTC at time 0, in seconds since 1970.
     utc_at_zero_s: Option<f64>,
-    /// The times at which the autopilot booted again.
+    /// The times at which the autopilot rebooted.
     boots_s: &'a [f64],
 }
 
@@ -67,21 +69,21 @@ struct Clock<'a> {
 struct Commands {
     /// The number of rows.
     rows: usize,
-    /// The rows a second, without pauses.
+    /// The number of rows per second, excluding pauses.
     rate_hz: Option<f64>,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Signal<'a> {
-    /// Its name, with the unit in it.
+    /// The name of the signal, which includes the unit.
     name: &'a str,
-    /// Its unit; empty where it has none.
+    /// The unit; empty if there is none.
     unit: &'a str,
     /// The message or field of the log that it comes from.
     source: &'a str,
     /// The number of values.
     samples: usize,
-    /// The values a second, without pauses.
+    /// The number of values per second, excluding pauses.
     rate_hz: Option<f64>,
 }
 

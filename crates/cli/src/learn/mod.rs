@@ -120,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let learned = learner.finish();
     if learned.model.rules.is_empty() {
-        let message = format!("no rule is left from {} rows", rows.len());
+        let message = format!("no rule was learned from {} rows", rows.len());
         return Err(
             Failure::usage(message).help("lower `--min-support` and `--min-degree`, or add rows")
         );
@@ -194,8 +194,8 @@ fn counterexamples(
     check::counterexamples(&engine, claims).map_err(unusable)
 }
 
-/// Advice that makes the output monotone, if there is any: with inference by product and sum, monotone rules give a monotone output
-/// if every combination of terms has a rule.
+/// Returns advice for making the output monotone, if there is any: with inference by product and
+/// sum, monotone rules give a monotone output if every combination of terms has a rule.
 fn monotone_help(outcome: &Outcome) -> Option<&'static str> {
     let mut model = outcome.model.clone();
     model.operators.and = Conjunction::Product;
@@ -220,7 +220,8 @@ fn unusable(error: impl std::fmt::Display) -> Failure {
     Failure::unusable("the learned rules cannot be used", &error)
 }
 
-/// The shares of the map that rules cover, and that have a value after filling; `None` if the map has too many cells.
+/// Returns the share of the map that rules cover, and the share that has a value after filling;
+/// `None` if the map has too many cells.
 fn coverage(model: &Model, gap: &GapSettings) -> Result<Option<(f64, f64)>, Failure> {
     let engine = Engine::new(model).map_err(unusable)?;
     let points = crate::map::points_along(model.inputs.len());

@@ -84,7 +84,7 @@ pub(super) fn words(
         let holds = if found.is_empty() { "yes" } else { "no" };
         writeln!(
             out,
-            "monotone   {holds}; {} rules have another consequent for it",
+            "monotone   {holds}; the consequents of {} rules were changed for this",
             learned.moved
         )?;
         for found in found {
@@ -106,8 +106,8 @@ pub(super) fn words(
         None => writeln!(out, "coverage   not computed for so many inputs")?,
     }
     let parts = match &arguments.rows.group_by {
-        Some(column) => format!("groups of `{}` left out in turn", visible(column)),
-        None => "tenths of the rows left out in turn".to_owned(),
+        Some(column) => format!("cross-validation over groups of `{}`", visible(column)),
+        None => "10-fold cross-validation".to_owned(),
     };
     match &outcome.errors {
         None => {}
@@ -172,38 +172,38 @@ pub(crate) struct Document<'a> {
     #[schemars(extend("enum" = ["strongest", "heaviest", "mean"]))]
     resolution: String,
     rules: Rules,
-    /// The antecedents whose rows disagree.
+    /// The number of antecedents whose rows disagree.
     conflicts: u64,
-    /// The antecedents with too few or unsure rows.
+    /// The number of antecedents with too few rows or too little confidence.
     left_out: u64,
     missing: Missing,
-    /// Null where neither `--rising` nor `--falling` was given.
+    /// The check of `--rising` and `--falling`; null if neither was given.
     monotone: Option<Monotone<'a>>,
-    /// Null where the map of all inputs has more than 2,000,000 cells.
+    /// The coverage of the map; null if it has more than 2,000,000 cells.
     coverage: Option<Coverage>,
-    /// Null where rows were too few, or validation was not wanted.
+    /// The cross-validation; null if there were too few rows or it was not requested.
     cross_validation: Option<&'a Errors>,
-    /// Only with `--compare-gaps`.
+    /// The errors of the methods that fill gaps; only with `--compare-gaps`.
     gap_methods: Option<GapMethods<'a>>,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Rows<'a> {
-    /// The rows that were used.
+    /// The number of rows that were used.
     used: u64,
-    /// The rows without use.
+    /// The number of rows that cannot be used.
     refused: usize,
-    /// Why these rows have no use.
+    /// The reasons why these rows cannot be used.
     reasons: &'a [String],
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Rules {
-    /// The rules that were learned.
+    /// The number of learned rules.
     learned: usize,
-    /// The rules that the model had.
+    /// The number of rules of the original rule set that were kept.
     kept: usize,
-    /// The learned rules without rows of their own.
+    /// The number of learned rules that were completed from their neighbours, without rows.
     completed: u64,
 }
 
@@ -211,7 +211,7 @@ struct Rules {
 struct Missing {
     /// The number of antecedents without a rule.
     count: u64,
-    /// Some of them.
+    /// The first of these antecedents.
     antecedents: Vec<String>,
 }
 
@@ -219,9 +219,9 @@ struct Missing {
 struct Monotone<'a> {
     /// Whether the output follows `--rising` and `--falling`.
     holds: bool,
-    /// The rules that have another consequent for it.
+    /// The number of rules whose consequent was changed to satisfy them.
     moved: u64,
-    /// The worst of each claim.
+    /// The worst counterexample of each claim.
     counterexamples: &'a [Counterexample],
 }
 
@@ -237,9 +237,9 @@ struct Coverage {
 
 #[derive(Serialize, JsonSchema)]
 struct GapMethods<'a> {
-    /// How many rules were left out one by one.
+    /// The number of rules that were left out, one at a time.
     rules_left_out: u32,
-    /// The errors with the rule.
+    /// The errors on these rows with the rule.
     with_the_rule: &'a Errors,
     /// The errors of each method without the rule.
     methods: Vec<OfMethod<'a>>,

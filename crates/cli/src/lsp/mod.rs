@@ -19,7 +19,8 @@ use document::Encoding;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Speak over standard input and output, as it always does: editors add this option
+    /// Use standard input and output, which is always the case; accepted because editors add this
+    /// option
     #[arg(long, hide = true)]
     stdio: bool,
 }

@@ -20,7 +20,7 @@ pub(super) fn read<R: BufRead>(from: &mut R) -> io::Result<Option<Message>> {
     while let Some(length) = head(from)? {
         if length > LONGEST {
             say(&format!(
-                "a message of {length} bytes is passed over: the limit is {LONGEST}"
+                "a message of {length} bytes is skipped: the limit is {LONGEST}"
             ));
             io::copy(&mut from.by_ref().take(length), &mut io::sink())?;
             continue;
@@ -32,7 +32,7 @@ pub(super) fn read<R: BufRead>(from: &mut R) -> io::Result<Option<Message>> {
         }
         match serde_json::from_slice(&text) {
             Ok(message) => return Ok(Some(message)),
-            Err(error) => say(&format!("a message is passed over: {error}")),
+            Err(error) => say(&format!("a message is skipped: {error}")),
         }
     }
     Ok(None)

@@ -23,7 +23,7 @@ struct Worst {
     now: Option<f64>,
 }
 
-/// Compares each output for which the table has a column.
+/// Compares the outputs with the columns of the same names.
 pub(super) fn against(path: &Path, evaluated: &MapSource) -> Result<Exit, Failure> {
     let table = Table::read(path, b',')?;
     let names: Vec<&str> = evaluated.engine.input_names().collect();
@@ -38,7 +38,7 @@ pub(super) fn against(path: &Path, evaluated: &MapSource) -> Result<Exit, Failur
     let outputs: Vec<(usize, &str, usize)> = outputs.collect();
     if outputs.is_empty() {
         let outputs = evaluated.engine.output_names();
-        let message = format!("`{}` has no column of an output", table.header.file);
+        let message = format!("`{}` has no column for an output", table.header.file);
         let known = fuzzy::diagnostic::suggest("", outputs).unwrap_or_default();
         return Err(Failure::unreadable(message).help(format!("{known}; {help}")));
     }
@@ -80,7 +80,8 @@ pub(super) fn against(path: &Path, evaluated: &MapSource) -> Result<Exit, Failur
     Ok(exit)
 }
 
-/// Returns how many rows differ, and the largest difference. A missing value differs more than any two values.
+/// Returns how many rows differ, and the largest difference. A value that is missing on one side
+/// counts as the largest difference.
 fn differences(
     table: &Table,
     mapped: &Mapped<'_>,

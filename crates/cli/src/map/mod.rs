@@ -42,17 +42,18 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "POINTS", value_parser = whole(2_u16, 1001))]
     points: Option<u16>,
 
-    /// Hold an input at a value: `battery=0.8`; may be repeated. An input that is neither held nor an axis is held at the middle
-    /// of its range, or at the peak of a term if the output varies more there
+    /// Fix an input at a value: `battery=0.8`; may be repeated. An input that is neither fixed nor
+    /// an axis is fixed at the middle of its range, or at the peak of a term if the output varies
+    /// more there
     #[arg(long, value_name = "INPUT=VALUE", value_parser = hold)]
     hold: Vec<(String, f64)>,
 
-    /// The input along the horizontal axis, and the part of its range to show: `spread` or `spread:0..0.2` [default: the
-    /// first that is not held, where its terms lie]
+    /// The input along the horizontal axis, and the part of its range to show: `spread` or
+    /// `spread:0..0.2` [default: the first that is not fixed, where its terms change]
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     x: Option<AxisChoice>,
 
-    /// The input along the vertical axis, as `--x` [default: the next that is not held]
+    /// The input along the vertical axis, as `--x` [default: the next that is not fixed]
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     y: Option<AxisChoice>,
 
@@ -115,7 +116,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Fill {
-    /// Show no value there
+    /// Show no value in such cells
     None,
     /// The value of the nearest covered cell
     Nearest,
@@ -199,7 +200,8 @@ pub(crate) fn points_along(inputs: usize) -> usize {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut held = BTreeSet::new();
     if let Some((name, _)) = arguments.hold.iter().find(|(name, _)| !held.insert(name)) {
-        return Err(Failure::usage(format!("`{name}` is held twice")).help("hold each input once"));
+        return Err(Failure::usage(format!("`{name}` has two values"))
+            .help("use `--hold` once for each input"));
     }
     let read = [&arguments.model].into_iter().chain(&arguments.check);
     let mut files = Files::reading(read)?;
@@ -212,7 +214,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let shown = evaluated.engine.model().outputs.get(evaluated.output);
     if let Some(shown) = shown.filter(|shown| shown.keeps_previous()) {
         output::say(&format!(
-            "note: `{}` keeps its previous value where no rule fires; a map has none before its cells",
+            "note: `{}` keeps its previous value where no rule fires; the cells of a map have no previous value",
             visible(&shown.variable.name)
         ));
     }
@@ -242,8 +244,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         None => print(output.as_ref(), &map_text(&slice, painted))?,
         Some(svg) if arguments.surface => {
             let surface = surface_svg(&slice).ok_or_else(|| {
-                Failure::usage("`--surface` needs two inputs, and one is left")
-                    .help("without `--surface`, the picture of one input is a curve")
+                Failure::usage("`--surface` needs two inputs, but only one is left")
+                    .help("without `--surface`, a map of one input is drawn as a curve")
             })?;
             svg.write(&surface)?;
         }
@@ -299,8 +301,8 @@ fn evaluate(arguments: &Arguments) -> Result<MapSource, Failure> {
         None => profile.map(|profile| profile.gap.method),
     };
     if method.is_none() && arguments.coverage_below.is_some() {
-        let message = "`--coverage-below` needs an interpolation, and there is none";
-        return Err(Failure::usage(message).help("choose one with `--fill`"));
+        let message = "`--coverage-below` has no effect without interpolation";
+        return Err(Failure::usage(message).help("choose an interpolation with `--fill`"));
     }
     let settings = |method| {
         let mut settings = GapSettings::default();

@@ -49,7 +49,7 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes,
             && fixed.get(input).copied().flatten().is_some()
         {
             return Err(
-                Failure::usage(format!("`--{axis}` names an input that `--hold` holds"))
+                Failure::usage(format!("`--{axis}` names an input that `--hold` fixes"))
                     .help("leave one of the two out"),
             );
         }
@@ -121,15 +121,14 @@ pub(super) fn cut(
             let (name, low, high) = (&input.name, short(low), short(high));
             let whole = format!("{}..{}", short(input.low), short(input.high));
             format!(
-                "`{name}` is shown from {low} to {high}, where its terms change; \
-                 the whole range: `--{flag} {name}:{whole}`"
+                "`{name}` is shown from {low} to {high}, where its terms change; to show the whole range: `--{flag} {name}:{whole}`"
             )
         });
     let named = |name: &str| arguments.hold.iter().any(|(fixed, _)| fixed == name);
     let unnamed = slice.held.iter().filter(|(name, _)| !named(name));
     let held_at = unnamed.map(|(name, value)| {
         format!(
-            "`{name}` is held at {}; another value: `--hold {name}=VALUE`",
+            "`{name}` is fixed at {}; to fix another value: `--hold {name}=VALUE`",
             short(*value)
         )
     });
@@ -139,7 +138,7 @@ pub(super) fn cut(
         let Scale { low, high } = axis.scale();
         (low < input.low || high > input.high).then(|| {
             format!(
-                "`{}` goes from {} to {}; values beyond are clamped to that",
+                "the range of `{}` is {} to {}; values beyond it are clamped",
                 input.name,
                 short(input.low),
                 short(input.high)

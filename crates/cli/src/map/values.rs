@@ -24,9 +24,9 @@ pub(super) fn text(arguments: &Arguments, evaluated: &MapSource) -> Result<Strin
     }
     let slices: usize = others.iter().map(|(_, peaks)| peaks.len()).product();
     if slices > MOST_SLICES {
-        let message = format!("the map has {slices} slices, more than {MOST_SLICES}");
+        let message = format!("the map has {slices} slices, but the limit is {MOST_SLICES}");
         return Err(Failure::usage(message).help(
-            "hold inputs with `--hold INPUT=VALUE`, or take a sample with `--csv --sample 1000`",
+            "fix inputs with `--hold INPUT=VALUE`, or sample the map with `--csv --sample 1000`",
         ));
     }
     let lists: Vec<Vec<f64>> = others.iter().map(|(_, peaks)| peaks.clone()).collect();

@@ -89,7 +89,7 @@ impl Files {
             files.known.extend(identity.map(|identity| ClaimedFile {
                 identity,
                 shown: format!("`{}`", input.display()),
-                role: "read",
+                role: "an input",
             }));
         }
         if let Some(stdout) = standard(Stream::Output) {
@@ -161,9 +161,9 @@ impl Files {
                 shown: other, role, ..
             } = other;
             let message = match shown == *other {
-                true => format!("{shown} is to be written, and it is {role}, too"),
+                true => format!("{shown} cannot be written: it is also {role}"),
                 false => format!(
-                    "{shown} is to be written, and is the same file as {other}, which is {role}"
+                    "{shown} cannot be written: it is the same file as {other}, which is {role}"
                 ),
             };
             return Err(Failure::usage(message).help("name another file to write"));
@@ -171,7 +171,7 @@ impl Files {
         self.known.push(ClaimedFile {
             identity,
             shown,
-            role: "written",
+            role: "another output",
         });
         Ok(())
     }
@@ -392,7 +392,7 @@ pub(super) fn cannot_write(named: &Path, error: &io::Error) -> Failure {
             failure.help("check that its folder exists and can be written to")
         }
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-            failure.help("make room on the disk, and run the command again")
+            failure.help("free some disk space, then run the command again")
         }
         _ => failure,
     }

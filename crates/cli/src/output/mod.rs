@@ -33,12 +33,12 @@ pub(crate) fn rules_path(text: &str) -> Result<PathBuf, String> {
 pub(crate) fn text_path(text: &str) -> Result<PathBuf, String> {
     if has_ending(Path::new(text), &["svg"]) {
         return Err(format!(
-            "this writes text; for a picture write `--svg {text}`"
+            "the output is text; for a picture write `--svg {text}`"
         ));
     }
     path_of(
         text,
-        "this writes text",
+        "the output is text",
         &["txt", "csv", "tsv", "json", "md", "ansi"],
     )
 }

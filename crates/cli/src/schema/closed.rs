@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 type Object = Map<String, Value>;
 
-/// Closes a schema: its objects may have no properties but those that it describes.
+/// Closes a schema: objects may have only the properties that it describes.
 ///
 /// Fields that serde flattens are derived as a reference or as alternatives beside `properties`. They are merged before the objects
 /// are closed, since `additionalProperties` considers only the `properties` beside it.

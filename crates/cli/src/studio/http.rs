@@ -1,4 +1,5 @@
-//! The part of HTTP that a page on the same machine needs: one request per connection, with bounded lengths and durations.
+//! A minimal HTTP server for a page on the same machine: one request per connection, with bounded
+//! lengths and durations.
 
 use std::{
     borrow::Cow,
@@ -14,7 +15,8 @@ const HEADERS: usize = 64;
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Time limit for the answer: the page may be sent through a slow tunnel.
 const PATIENCE_TO_ANSWER: Duration = Duration::from_secs(60);
-/// Bytes of a refused body that are read nevertheless, so that the sender reaches the answer.
+/// Maximum number of bytes of a refused body that are read, so that the sender can receive the
+/// answer.
 const DRAINED: u64 = 64_000_000;
 
 /// A request whose body has not been read yet.
@@ -74,7 +76,7 @@ impl<S: Read> Request<S> {
             let mut parsed = httparse::Request::new(&mut headers);
             let status = parsed.parse(&bytes).map_err(|error| match error {
                 httparse::Error::TooManyHeaders => Status::HEAD_TOO_LARGE.says("too many headers"),
-                error => Status::BAD_REQUEST.says(&format!("no request: {error}")),
+                error => Status::BAD_REQUEST.says(&format!("the request cannot be read: {error}")),
             })?;
             if let httparse::Status::Complete(length) = status {
                 let headers = parsed.headers.iter().map(|header| {
@@ -122,9 +124,7 @@ impl<S: Read> Request<S> {
             return Err(status.says("send the text with its length, not in chunks"));
         }
         if self.header("content-encoding").is_some() {
-            return Err(
-                Status::BAD_REQUEST.says("send the text as it is, without a content encoding")
-            );
+            return Err(Status::BAD_REQUEST.says("send the text without a content encoding"));
         }
         let length = length
             .and_then(|length| length.parse::<usize>().ok())

@@ -148,7 +148,7 @@ fn accept(listener: &TcpListener, server: &Arc<Server>) {
 fn cannot_serve(port: u16, error: &io::Error) -> Failure {
     match error.kind() {
         io::ErrorKind::AddrInUse => Failure::usage(format!("port {port} is in use"))
-            .help("name another with `--port`, or leave it out and a free one is taken"),
-        _ => Failure::usage(format!("port {port} cannot be served: {error}")),
+            .help("name another port, or leave `--port` out to use a free one"),
+        _ => Failure::usage(format!("port {port} cannot be opened: {error}")),
     }
 }

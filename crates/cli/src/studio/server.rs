@@ -1,8 +1,8 @@
 //! Access to the page and its file, only for the user of this machine who started the studio.
 //!
-//! Every user of the machine can connect, and every page in a browser can send requests here. So the path begins with a
-//! token that cannot be guessed, the host must be the served address (another name that resolves to it belongs to another page),
-//! and requests of other pages are refused.
+//! Every user of the machine can connect, and every page in a browser can send requests here. So
+//! the path begins with a token that cannot be guessed, the host must be the served address (a page
+//! of another site could use a name that resolves to it), and requests of other pages are refused.
 
 use std::{
     borrow::Cow,
@@ -39,7 +39,7 @@ pub(super) struct Server {
     is_used: AtomicBool,
     page: Page,
     file: Option<EditedFile>,
-    /// Locked from the comparison of the file's content until the new content is written.
+    /// Held while the content of the file is compared and the new content is written.
     saving: Mutex<()>,
 }
 
@@ -131,8 +131,7 @@ impl Server {
     fn lead(&self) -> Result<Response<'_>, Refusal> {
         if self.is_used.swap(true, Ordering::Relaxed) {
             return Err(Status::NOT_FOUND.says(
-                "this address was opened already; take the one that `flagred studio` printed, \
-                 and end `flagred studio` where it was not you who opened this one",
+                "this address was already opened; use the one that `flagred studio` printed. If you did not open it yourself, stop `flagred studio`",
             ));
         }
         Ok(Response {
@@ -219,7 +218,8 @@ fn failed(failure: Failure) -> Refusal {
 /// Returns a random secret, in digits and letters.
 fn secret() -> Result<String, Failure> {
     let mut bytes = [0; 16];
-    getrandom::fill(&mut bytes)
-        .map_err(|error| Failure::unreadable(format!("there are no random numbers: {error}")))?;
+    getrandom::fill(&mut bytes).map_err(|error| {
+        Failure::unreadable(format!("the system provides no random numbers: {error}"))
+    })?;
     Ok(digits(&bytes))
 }

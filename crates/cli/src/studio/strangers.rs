@@ -6,7 +6,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-/// Maximum number of them; a browser opens about six.
+/// Maximum number of such connections; a browser opens about six.
 const MOST: usize = 64;
 
 /// Connections that have not sent the token yet, the oldest first.

@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = numbers::share)]
     min_distance: f64,
 
-    /// Let constants leave the range of the output, by its width at most
+    /// Let constants leave the range of the output by at most its width
     #[arg(long)]
     beyond_range: bool,
 
@@ -100,9 +100,9 @@ pub(crate) struct Arguments {
 enum LossName {
     /// The mean square of the error
     Squared,
-    /// The mean of -ln p, where the output's column is 0 or 1 and p the place of the value in the range
+    /// The mean of -ln p for outcomes of 0 and 1, with the predicted probability p of the outcome
     Log,
-    /// The share of pairs of a 1 and a 0 in the wrong order: 1 less the area under the ROC curve
+    /// The share of pairs of a 1 and a 0 in the wrong order: 1 minus the area under the ROC curve
     Ranking,
 }
 
@@ -298,14 +298,14 @@ fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
         }
         TuneError::Unknown { .. } => "name a variable, or a term as `variable.term`",
         TuneError::NothingMoves => {
-            "`--only` and `--fix` leave nothing; `--rule-weights` moves the weights"
+            "`--only` and `--fix` leave nothing to tune; `--rule-weights` tunes the weights of rules"
         }
-        TuneError::NoRows => "the tables have a header and no rows",
-        TuneError::NoWeight => "give rows a weight above 0, or leave out `--weight`",
+        TuneError::NoRows => "the tables contain no rows",
+        TuneError::NoWeight => "give some rows a weight above 0, or leave out `--weight`",
         TuneError::NotFinite | TuneError::TooFar { .. } => {
             "check the units of the output's column and of its range"
         }
-        TuneError::OneClass => "ranking needs rows of 1 and rows of 0",
+        TuneError::OneClass => "ranking needs both rows of 1 and rows of 0",
         TuneError::NotMonotone { .. } => {
             "`flagred check` with the same options shows where; start from a rule set without counterexamples: `flagred learn --rising`"
         }
@@ -388,14 +388,14 @@ impl<'a> Watch<'a> {
             if let Err(failure) = self.keep(progress.model)
                 && !std::mem::replace(&mut self.is_refused, true)
             {
-                let note = format!("{}; the search goes on", failure.message());
+                let note = format!("{}; the search continues", failure.message());
                 self.bar.suspend(|| output::say(&note));
             }
         }
         self.flow()
     }
 
-    /// Called after each step of work that the progress bar does not count.
+    /// Called after each step of further work, which the progress bar does not count.
     fn more(&self, what: &'static str) -> ControlFlow<()> {
         self.bar.set_message(what);
         self.flow()

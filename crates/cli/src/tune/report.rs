@@ -35,7 +35,7 @@ pub(super) fn rule_set(
     let tuned = &outcome.tuned;
     let left_out = outcome.validation.as_ref().map(|validation| {
         format!(
-            "on rows left out, in {} parts: {} before, {} after",
+            "cross-validation in {} folds: {} before, {} after",
             validation.folds,
             short(validation.before.value),
             short(validation.after.value)
@@ -84,7 +84,7 @@ pub(super) fn words(
         )?;
     }
     if outcome.is_resumed {
-        writeln!(out, "begun       with the checkpoint")?;
+        writeln!(out, "started     with the checkpoint")?;
     }
     let ended = if tuned.is_stopped {
         "; ended early"
@@ -102,7 +102,7 @@ pub(super) fn words(
         let parts = divided(arguments.rows.group_by.as_ref());
         writeln!(
             out,
-            "left out    {} before, {} after; gain {} ({} parts of {parts}, 95 % intervals)",
+            "left out    {} before, {} after; gain {} ({} folds of {parts}, 95 % intervals)",
             figure(&validation.before),
             figure(&validation.after),
             figure(&validation.gain),
@@ -138,7 +138,7 @@ pub(super) fn words(
         let title = if i == 0 { "curve" } else { "" };
         let left_out = short(point.left_out);
         let said = if i == 0 {
-            " on rows left out, tuned on this share of the others"
+            " cross-validated, tuned on this share of the other rows"
         } else {
             ""
         };
@@ -176,10 +176,7 @@ pub(super) fn words(
             true => "",
             false => " within the range",
         };
-        writeln!(
-            out,
-            "moved       nothing: no step{within} makes the loss smaller"
-        )?;
+        writeln!(out, "moved       nothing: no step{within} reduces the loss")?;
     }
     if !tuned.at_bounds.is_empty() {
         let names = tuned.at_bounds.iter().map(|name| visible(name));
@@ -190,7 +187,7 @@ pub(super) fn words(
         };
         writeln!(
             out,
-            "at bounds   {}: the rows ask for values beyond the range; {remedy}",
+            "at bounds   {}: the rows require values beyond the range; {remedy}",
             names.join(", ")
         )?;
     }
@@ -209,49 +206,52 @@ pub(crate) struct Document<'a> {
     /// `squared`, `log` or `ranking`.
     #[schemars(extend("enum" = ["squared", "log", "ranking"]))]
     loss: String,
-    /// The RMS error, the mean log loss, or the share of pairs in the wrong order, before.
+    /// The loss before tuning: the RMS error, the mean log loss, or the share of pairs in the wrong
+    /// order.
     before: f64,
-    /// The same after.
+    /// The loss after tuning, in the same unit.
     after: f64,
-    /// Whether the user ended the search.
+    /// Whether the user interrupted the search.
     ended_early: bool,
     /// Whether the search began with a checkpoint.
     from_checkpoint: bool,
-    /// Null where validation was not wanted.
+    /// The cross-validation; null if it was not requested.
     validation: Option<OfValidation>,
-    /// Null where it was not wanted.
+    /// The learning curve; null if it was not requested.
     learning_curve: Option<Vec<OfPoint>>,
-    /// The numbers that moved.
+    /// The numbers that tuning changed.
     moved: Vec<OfNumber<'a>>,
-    /// Constants, as `variable.term`, at the end of the range whose loss would be smaller beyond it.
+    /// Constants, as `variable.term`, that are at an end of the range and would reduce the loss
+    /// beyond it.
     at_bounds: &'a [String],
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Rows<'a> {
-    /// The rows that were used.
+    /// The number of rows that were used.
     used: usize,
-    /// The rows where no rule fires: they count as the middle of the range.
+    /// The number of rows for which no rule fires; they count as the middle of the range.
     without_value: usize,
-    /// The rows without use.
+    /// The number of rows that cannot be used.
     refused: usize,
-    /// Why these rows have no use.
+    /// The reasons why these rows cannot be used.
     reasons: &'a [String],
 }
 
 #[derive(Serialize, JsonSchema)]
 struct OfValidation {
-    /// The parts of the cross-validation.
+    /// The number of cross-validation folds.
     parts: usize,
-    /// The loss on rows left out, before.
+    /// The cross-validated loss before tuning.
     before: OfInterval,
-    /// The loss on rows left out, after.
+    /// The cross-validated loss after tuning.
     after: OfInterval,
-    /// By how much it fell.
+    /// The reduction of the loss.
     gain: OfInterval,
-    /// The rows left out by tenths of their predictions, where truths are 0 and 1; else empty.
+    /// The cross-validated predictions in ten bins, if the outcomes are 0 and 1; else empty.
     reliability: Vec<OfBin>,
-    /// The rows left out by class and predicted class, where the output's column has 2 to 10 whole numbers; else null.
+    /// The confusion matrix of the cross-validation, if the column of the output has 2 to 10 whole
+    /// numbers; else null.
     confusion: Option<OfClasses>,
 }
 
@@ -259,17 +259,17 @@ struct OfValidation {
 struct OfBin {
     /// The number of rows.
     rows: usize,
-    /// The mean of the predictions, as places in the range from 0 to 1.
+    /// The mean of the predictions, as positions in the range of the output from 0 to 1.
     predicted: f64,
-    /// The share of rows with the truth 1.
+    /// The share of rows with the outcome 1.
     observed: f64,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct OfPoint {
-    /// The share of the other rows or groups.
+    /// The share of the training rows or groups that was used.
     share: f64,
-    /// The loss on rows left out.
+    /// The cross-validated loss.
     left_out: f64,
 }
 
@@ -279,9 +279,9 @@ struct OfNumber<'a> {
     of: &'a str,
     /// The number that moved, such as `peak`.
     name: &'a str,
-    /// Before.
+    /// The value before.
     before: f64,
-    /// After.
+    /// The value after.
     after: f64,
 }
 

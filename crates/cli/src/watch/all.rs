@@ -1,4 +1,5 @@
-//! `flagred watch --all`: every vehicle on one or several links, one line each. It only receives.
+//! `flagred watch --all`: follows every vehicle on one or several links, one line each. It only
+//! receives.
 
 use std::{
     io::{self, IsTerminal},
@@ -74,7 +75,7 @@ pub(super) fn run(
         names.push(name);
         small.extend(port.small_buffer().map(|bytes| {
             format!(
-                "`{endpoint}`: the system keeps {} kB of packets while this program waits, too few for hundreds of vehicles: `sysctl -w net.core.rmem_max=4194304` as root (Linux), and start again",
+                "`{endpoint}`: the receive buffer of the system is {} kB, too small for hundreds of vehicles: run `sysctl -w net.core.rmem_max=4194304` as root (Linux), then start again",
                 bytes / 1024
             )
         }));

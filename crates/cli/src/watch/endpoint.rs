@@ -1,4 +1,5 @@
-//! The origin of the packets: `udpin:0.0.0.0:14550`, `tcp:127.0.0.1:5760`, `/dev/ttyACM0:57600`.
+//! Endpoints, from which packets are received: `udpin:0.0.0.0:14550`, `tcp:127.0.0.1:5760`,
+//! `/dev/ttyACM0:57600`.
 
 use std::{fmt, str::FromStr};
 

@@ -14,9 +14,10 @@ use super::session::{Event, Out, Session, Source, View, may_be_multirotor};
 const MOST: usize = 1_000;
 /// Maximum number of vehicles in the summary that are no longer received.
 const MOST_GONE: usize = 10_000;
-/// A sender that has not proved to be a vehicle is dropped after this silence.
+/// A sender without evidence that it is a vehicle is dropped after this many seconds of silence.
 const STRAY_S: f64 = 10.0;
-/// A vehicle is dropped after this silence. If it is received again, it counts as a new one.
+/// A vehicle is dropped after this many seconds of silence. If it is received again, it counts as
+/// new.
 const GONE_S: f64 = 60.0;
 /// Maximum number of stored samples of a flight, in case limits become known later: a minute at 25 Hz, in 0.1 MB.
 const HISTORY: usize = 1_500;
@@ -102,7 +103,7 @@ impl<'e> Fleet<'e> {
         member.tell(id, &mut self.out, &mut tell);
     }
 
-    /// Does everything that is due without a packet, and drops vehicles that are silent.
+    /// Performs the periodic work, and drops silent vehicles.
     pub(crate) fn tick(&mut self, now_s: f64, mut tell: impl FnMut(Id, &Event, &Session<'e>)) {
         let mut gone = Vec::new();
         for (id, member) in &mut self.members {
@@ -303,10 +304,10 @@ pub(crate) mod tests {
             (
                 2,
                 "NA",
-                "the vehicle sent no motor outputs (SERVO_OUTPUT_RAW)",
+                "the vehicle did not send motor outputs (SERVO_OUTPUT_RAW)",
             ),
             (1, "GOOD", ""),
-            (3, "NA", "no flight was seen"),
+            (3, "NA", "no flight was observed"),
         ];
         assert_eq!(
             verdicts,
@@ -328,7 +329,7 @@ pub(crate) mod tests {
         assert_eq!(air.fleet.members.len(), 2);
         air.fly(2, &[other]);
         assert_eq!(air.systems(), [2]);
-        // After its silence it counts as a new vehicle.
+        // After the silence, the vehicle counts as new.
         air.fly(30, &[one, other]);
         air.fly(5, &[(1, false, [1000; 4]), (2, false, [1000; 4])]);
         let all = air.fleet.finish(|_, _, _| {});

@@ -21,7 +21,7 @@ use flagred_report::document::FindingDocument;
 const SCHEMA: &str = "flagred.watch/1";
 const FLEET_SCHEMA: &str = "flagred.watch-all/1";
 
-/// What a line says; names are those of docs/json.md.
+/// The content of a line, with the names of docs/json.md.
 #[derive(Serialize, JsonSchema)]
 #[schemars(inline)]
 #[serde(tag = "event", rename_all = "snake_case")]
@@ -45,18 +45,18 @@ pub(crate) enum EventLine<'a> {
     Finding(FindingDocument<'a>),
     /// The vehicle landed.
     Landed(FlownLine<'a>),
-    /// The vehicle was in the air when it was last known.
+    /// The vehicle was in the air when contact was lost.
     LostInAir {
         #[serde(flatten)]
         flown: FlownLine<'a>,
-        /// What was lost.
+        /// What was lost: the link, the motor commands, or the vehicle by a reboot.
         why: Lost,
     },
-    /// The flight is not followed to its end.
+    /// The vehicle is still in the air, but the flight is no longer followed.
     LeftInAir {
         #[serde(flatten)]
         flown: FlownLine<'a>,
-        /// Why it is not followed.
+        /// The reason why it is no longer followed.
         why: StopReason,
     },
     /// The watch ended.
@@ -65,23 +65,23 @@ pub(crate) enum EventLine<'a> {
         worst: VerdictWord,
         /// Why there is no verdict.
         reason: Option<String>,
-        /// Bytes that belong to no packet.
+        /// The number of bytes that do not belong to a packet.
         skipped_bytes: u64,
-        /// Packets that were damaged.
+        /// The number of damaged packets.
         bad_checksums: u64,
-        /// Packets with a message that is not known.
+        /// The number of packets with an unknown message.
         unknown_messages: u64,
-        /// Signed packets that could not be verified without a key.
+        /// The number of signed packets, which could not be verified without a key.
         signed: u64,
-        /// Packets refused because they are not signed (`--key`).
+        /// The number of packets refused because they are not signed (`--key`).
         unsigned: u64,
-        /// Packets refused because their signature is wrong or came before (`--key`).
+        /// The number of packets refused because their signature is wrong or repeated (`--key`).
         bad_signatures: u64,
-        /// What was not believed.
+        /// The numbers of packets that were not trusted.
         not_believed: Doubts,
-        /// Packets that could not be sent.
+        /// The number of packets that could not be sent.
         unsent: u64,
-        /// Lines that a slow reader did not get.
+        /// The number of lines that were dropped because the reader was too slow.
         dropped_lines: u64,
     },
     /// Any other event.
@@ -116,7 +116,7 @@ pub(crate) struct Risk<'a> {
     unknown: Option<String>,
 }
 
-/// What was seen of a flight.
+/// The observed part of a flight.
 #[derive(Serialize, JsonSchema)]
 #[schemars(inline)]
 pub(crate) struct FlownLine<'a> {
@@ -124,9 +124,9 @@ pub(crate) struct FlownLine<'a> {
     t_s: Option<f64>,
     #[serde(flatten)]
     verdict: &'a Verdict,
-    /// The level of what was seen; null where too little was.
+    /// The level of the observed part; null if it was too short.
     level_seen: Option<Level>,
-    /// The highest risk that was seen, in %.
+    /// The highest observed risk, in %.
     risk_max: Option<f64>,
 }
 
@@ -177,24 +177,25 @@ pub(crate) enum FleetLine<'a> {
     },
     /// An event of one vehicle.
     Event {
-        /// Its system, and the address or endpoint where it is heard: `7@192.0.2.5:14550`.
+        /// The system of the vehicle, and the address or endpoint at which it is received:
+        /// `7@192.0.2.5:14550`.
         vehicle: String,
         /// A line of `flagred.watch/1`.
         watch: Line<'a>,
     },
-    /// The summary of one vehicle, at the end; the gravest comes first.
+    /// The summary of one vehicle, printed at the end, the most severe first.
     Summary {
-        /// As in its events.
+        /// The vehicle, as in its events.
         vehicle: &'a str,
-        /// The worst verdict of its flights.
+        /// The worst verdict of the vehicle's flights.
         verdict: VerdictWord,
         /// Why there is no verdict.
         reason: Option<String>,
-        /// What to do about it.
+        /// Advice on how to get a verdict.
         help: Option<&'static str>,
-        /// The highest risk that was seen, in %.
+        /// The highest observed risk, in %.
         risk_max: Option<f64>,
-        /// The share of its packets that was lost.
+        /// The share of the vehicle's packets that were lost.
         #[schemars(range(min = 0, max = 1))]
         lost_share: f64,
     },
@@ -204,11 +205,12 @@ pub(crate) enum FleetLine<'a> {
         worst: VerdictWord,
         /// The number of vehicles with a summary.
         vehicles: usize,
-        /// Heartbeats of vehicles beyond the 1,000 that are followed at a time.
+        /// The number of heartbeats of vehicles beyond the 1,000 that are followed at a time.
         heartbeats_refused: u64,
-        /// Vehicles that are gone and beyond the 10,000 of the summary.
+        /// The number of vehicles that are no longer received and are missing from the summary,
+        /// which lists at most 10,000.
         vehicles_left_out: u64,
-        /// Lines that a slow reader did not get.
+        /// The number of lines that were dropped because the reader was too slow.
         dropped_lines: u64,
     },
 }

@@ -58,14 +58,16 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
     match event {
         Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),
         Event::Locked { system, address } => format!(
-            "motor commands of vehicle {system} come{}: it is followed, other senders with its number are ignored",
+            "motor commands of vehicle {system} are received{}: it is followed, other senders with this number are ignored",
             from(*address)
         ),
         Event::GivenUp { system } => {
-            format!("vehicle {system} is given up: it is silent, or sends no motor commands")
+            format!(
+                "vehicle {system} is no longer followed: it is silent, or sends no motor commands"
+            )
         }
         Event::SenderChanged { system, to, .. } => format!(
-            "vehicle {system} is heard{} now; it is followed there",
+            "vehicle {system} is now received{} and followed there",
             from(*to)
         ),
         Event::Doubt {
@@ -75,21 +77,21 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             address,
         } => match what {
             Doubt::SecondSender => format!(
-                "something else{} sends as vehicle {system}: it is ignored",
+                "another sender{} uses the number of vehicle {system}: it is ignored",
                 from(*address)
             ),
             Doubt::OtherComponent => format!(
-                "component {component} of vehicle {system} sends parameters: they are not used as parameters of the autopilot"
+                "component {component} of vehicle {system} sends parameters: they are ignored, because it is not the autopilot"
             ),
             Doubt::ClockJump => format!(
-                "a time stamp of vehicle {system} jumps while its clock goes on: it is left out"
+                "a timestamp of vehicle {system} jumps, but its clock does not: it is ignored"
             ),
         },
         Event::AnotherWatch {
             component, speaks, ..
         } => another_watch(*component, *speaks),
         Event::AnotherVehicle { system } => {
-            format!("another vehicle is on the link, {system}: it is not followed")
+            format!("vehicle {system} is on the link, too: it is not followed")
         }
         Event::NotAMultirotor { system, vehicle } => {
             format!(
@@ -106,9 +108,9 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
         } => {
             let who = match (system, component) {
                 (Some(system), Some(component)) => {
-                    format!("station {system}, component {component}, asked the vehicle for less")
+                    format!("station {system}, component {component}, requested a lower rate")
                 }
-                _ => "another station asked for less, or the link is too slow".to_owned(),
+                _ => "another station requested a lower rate, or the link is too slow".to_owned(),
             };
             format!(
                 "motor commands come at {rate_hz:.1} Hz, {wanted_hz:.0} Hz are needed: {who}; they are requested again"
@@ -116,19 +118,19 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
         }
         Event::Note { text } => text.clone(),
         Event::Lost { what: Silent::Link } => {
-            "LINK LOST: nothing comes from the vehicle, the risk is unknown".to_owned()
+            "LINK LOST: no packets from the vehicle, the risk is unknown".to_owned()
         }
         Event::Lost {
             what: Silent::MotorCommands,
-        } => "no motor commands come (SERVO_OUTPUT_RAW), the risk is unknown".to_owned(),
+        } => "no motor commands are received (SERVO_OUTPUT_RAW), the risk is unknown".to_owned(),
         Event::Back { what, after_s } => format!(
             "{} again, after {after_s:.1} s of silence",
             match what {
-                Silent::Link => "the vehicle is heard",
-                Silent::MotorCommands => "motor commands come",
+                Silent::Link => "the vehicle is received",
+                Silent::MotorCommands => "motor commands are received",
             }
         ),
-        Event::Rebooted => "the vehicle started anew: what was before is forgotten".to_owned(),
+        Event::Rebooted => "the vehicle rebooted: earlier data are discarded".to_owned(),
         Event::TookOff { .. } => "took off".to_owned(),
         Event::Risk { update } => update.risk.map_or_else(
             |_| String::new(),
@@ -159,7 +161,7 @@ fn from(source: Source) -> String {
 
 fn another_watch(component: Option<u8>, speaks: bool) -> String {
     let (what, so) = match (component, speaks) {
-        (None, _) => return "no other watch is heard any more".to_owned(),
+        (None, _) => return "no other watch is received any more".to_owned(),
         (Some(1), false) => ("the autopilot itself sends the risk".to_owned(), "nothing"),
         (Some(number), false) => (format!("component {number} watches it too"), "nothing"),
         (Some(number), true) => (format!("component {number} watches it too"), "all"),
@@ -176,10 +178,13 @@ fn over(end: End, flown: &FlightSummary) -> String {
         End::Landed => format!("{}: the flight is over", flown.verdict),
         End::Lost(lost) => format!("{}: LOST IN THE AIR, {}", flown.verdict, cause_of(lost)),
         End::LeftInAir(StopReason::WatchEnded) => {
-            format!("{}: the watch ends in the air", flown.verdict)
+            format!(
+                "{}: the watch ends while the vehicle is in the air",
+                flown.verdict
+            )
         }
         End::LeftInAir(StopReason::SetUpAnew) => format!(
-            "{}: the flight so far; motors or limits became known late, the rest is assessed as a flight of its own",
+            "{}: the flight so far; motors or limits became known late, the rest is assessed as a separate flight",
             flown.verdict
         ),
     };
@@ -195,8 +200,8 @@ fn over(end: End, flown: &FlightSummary) -> String {
 
 fn cause_of(lost: Lost) -> &'static str {
     match lost {
-        Lost::Link => "nothing is heard of the vehicle",
-        Lost::MotorCommands => "motor commands do not come any more",
+        Lost::Link => "no packets from the vehicle",
+        Lost::MotorCommands => "motor commands are no longer received",
         Lost::Reboot => "the vehicle rebooted",
     }
 }
@@ -234,7 +239,7 @@ fn ready(setup: &Setup) -> String {
     );
     if !setup.assumed.is_empty() {
         text += &format!(
-            "; the vehicle did not tell everything, assumed: {}",
+            "; the vehicle did not report everything, assumed: {}",
             setup.assumed.join("; ")
         );
     }

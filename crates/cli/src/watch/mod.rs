@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "ENDPOINT", required = true)]
     endpoints: Vec<Endpoint>,
 
-    /// Follow every vehicle that is heard on these endpoints, a line each, and only listen
+    /// Follow every vehicle that is received on these endpoints, one line each; nothing is sent
     #[arg(long, conflicts_with_all = ["record", "send_anyway", "component", "range"])]
     all: bool,
 
@@ -199,7 +199,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             Received::Nothing => {}
             Received::Waiting(why) => {
                 let text = format!(
-                    "`{endpoint}` cannot be opened yet: {why}; trying again every second (`--no-wait` ends instead)"
+                    "`{endpoint}` cannot be opened yet: {why}; trying again every second (with `--no-wait`, `watch` ends instead)"
                 );
                 out.events.push(Event::Note { text });
             }
@@ -210,7 +210,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             }
             Received::Closed(why) => {
                 session.closed();
-                let text = format!("the link is closed: {why}; waiting for it to come back");
+                let text = format!("the link is closed: {why}; waiting for it to open again");
                 out.events.push(Event::Note { text });
             }
         }
@@ -293,7 +293,7 @@ impl Totals {
         let doubts = self.doubts;
         if doubts != Doubts::default() {
             text += &format!(
-                "; not believed: {} packets of a second sender, {} parameters of other components, {} jumps of the clock",
+                "; ignored: {} packets of a second sender, {} parameters of other components, {} jumps of the clock",
                 doubts.second_sender, doubts.other_component, doubts.clock_jumps
             );
         }
@@ -374,7 +374,7 @@ impl Display {
             (
                 told.signed,
                 now.signed,
-                "signed packets are left out: without the key (`--key`) they cannot be verified",
+                "signed packets are ignored: they cannot be verified without the key (`--key`)",
             ),
             (
                 told.unsigned,
@@ -384,12 +384,12 @@ impl Display {
             (
                 told.bad_signatures,
                 now.bad_signatures,
-                "packets whose signature is not that of the key, or that came before, are refused",
+                "packets with a wrong or an already used signature are refused",
             ),
             (
                 told.unknown,
                 now.unknown,
-                "some messages are not known here: they are recorded, but not evaluated",
+                "some messages are unknown: they are recorded, but not evaluated",
             ),
             (
                 told.bytes,

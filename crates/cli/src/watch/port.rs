@@ -25,7 +25,7 @@ pub(crate) struct Port {
     kind: Kind,
     /// Why the endpoint could not be opened at first, until this is reported.
     closed_because: Option<String>,
-    /// Packets that could not be sent.
+    /// The number of packets that could not be sent.
     unsent: u64,
 }
 
@@ -410,7 +410,12 @@ fn again<T>(
 
 fn resolve(address: &str) -> io::Result<SocketAddr> {
     let mut addresses = address.to_socket_addrs()?;
-    let none = || io::Error::new(io::ErrorKind::NotFound, "the name has no address");
+    let none = || {
+        io::Error::new(
+            io::ErrorKind::NotFound,
+            "the name does not resolve to an address",
+        )
+    };
     addresses.next().ok_or_else(none)
 }
 
@@ -440,16 +445,16 @@ fn refusal(endpoint: &Endpoint, error: &io::Error) -> Failure {
     let failure = Failure::unreadable(format!("`{endpoint}` cannot be opened: {error}"));
     match (error.kind(), endpoint) {
         (io::ErrorKind::AddrInUse, _) => failure.help(
-            "another program, such as a ground station, listens there: close it, or have it forward the packets to another port",
+            "another program, such as a ground station, uses the port: close it, or have it forward the packets to another port",
         ),
         (io::ErrorKind::PermissionDenied, Endpoint::Serial { .. }) => failure.help(
             "on Linux your user must be in the group that owns the port, often `dialout`: `sudo usermod -aG dialout $USER`, then log in again",
         ),
         (io::ErrorKind::NotFound, Endpoint::Serial { .. }) => {
-            failure.help("is the cable plugged in? `ls /dev/tty*` lists the serial ports")
+            failure.help("check that the cable is plugged in; `ls /dev/tty*` lists the serial ports")
         }
         (io::ErrorKind::ConnectionRefused, _) => {
-            failure.help("nobody listens there: start the vehicle or the simulator, or leave out `--no-wait`")
+            failure.help("no program listens there: start the vehicle or the simulator, or leave out `--no-wait`")
         }
         _ => failure,
     }

@@ -205,7 +205,7 @@ impl<'e> Session<'e> {
         }
     }
 
-    /// Does everything that is due without a packet. Must be called often.
+    /// Performs the periodic work that does not depend on packets. Must be called often.
     pub(crate) fn tick(&mut self, now_s: f64, out: &mut Out) {
         self.ask(now_s, out);
         self.beat(now_s, out);
@@ -512,7 +512,7 @@ fn echoes(telemetry: &Telemetry) -> bool {
     firmware.is_some_and(|firmware| firmware.starts_with("PX4"))
 }
 
-/// Returns a doubt as an event.
+/// Converts a doubt to an event.
 fn told(what: Doubt, source: Source, packet: &Packet<'_>) -> Event {
     Event::Doubt {
         what,
@@ -522,7 +522,7 @@ fn told(what: Doubt, source: Source, packet: &Packet<'_>) -> Event {
     }
 }
 
-/// Keeps the worse verdict.
+/// Adds a verdict; the worst one is kept.
 fn add(worst: &mut Verdict, verdict: Option<Verdict>) {
     if let Some(verdict) = verdict {
         *worst = verdict.worst(worst.clone());

@@ -60,7 +60,7 @@ impl Recording {
     }
 
     fn end(&mut self, error: &io::Error) -> String {
-        let told = format!("`{}` cannot be recorded to: {error}", self.name);
+        let told = format!("cannot record to `{}`: {error}", self.name);
         // The buffered bytes are dropped.
         let file = self.file.take().map(|file| file.into_parts().0);
         let is_whole = file.is_some_and(|file| file.set_len(self.written).is_ok());

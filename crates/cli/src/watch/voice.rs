@@ -15,7 +15,7 @@ use flagred_flightlog::mavlink::{
 
 use fuzzy::drawing::visible;
 
-/// The names of the sent values.
+/// The names of the values that are sent.
 pub(crate) const RISK: &str = "FR_RISK";
 pub(crate) const ELEVATED: &str = "FR_ELEV";
 /// The sender's system id until a vehicle is found: that of a ground station.

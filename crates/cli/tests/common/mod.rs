@@ -1,4 +1,4 @@
-//! Shared by tests of commands that read and write files.
+//! Helpers for tests of commands that read and write files.
 #![allow(clippy::unwrap_used)]
 
 use std::{path::Path, process::Command};

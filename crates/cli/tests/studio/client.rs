@@ -13,7 +13,7 @@ use std::{
 pub(crate) const POLICY: &str = "default-src 'none'; script-src 'sha256-abc='; connect-src 'self'";
 pub(crate) const RULES: &str = "fuzzy: 1\nname: fan\n";
 
-/// A substitute for the page, whose contents do not matter here.
+/// A placeholder for the page; its contents do not matter in these tests.
 pub(crate) fn page() -> String {
     format!(
         "<!doctype html><meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\

@@ -103,7 +103,7 @@ fn refused_texts_change_nothing() {
         fs::read_to_string(folder.path().join("rules.yaml")).unwrap(),
         RULES
     );
-    // Silent connections block no one.
+    // Silent connections do not block other connections.
     let _silent: Vec<TcpStream> = (0..8)
         .map(|_| TcpStream::connect(authority).unwrap())
         .collect();
@@ -206,7 +206,7 @@ fn a_file_in_utf_16_is_shown_and_not_rewritten() {
     assert_eq!(fs::read(folder.path().join("rules.yaml")).unwrap(), bytes);
 }
 
-/// No file can be created in a folder of `/proc`, by any user.
+/// No user can create a file in a folder of `/proc`.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_file_in_a_folder_that_cannot_be_written_is_read_only_from_the_start() {

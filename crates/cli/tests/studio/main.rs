@@ -26,7 +26,7 @@ fn the_page_is_written_as_one_file_and_never_over_an_input() {
     let (code, said, _) = run(&["studio", "--page", "page.html", "--html", "-"]);
     assert_eq!((code, said), (Some(0), page()));
     for (out, told) in [
-        ("page.html", "is to be written, and is read as well"),
+        ("page.html", "cannot be written: it is also an input"),
         ("./page.html", "is the same file as `page.html`"),
         ("flight.BIN", "the page is HTML; write `flight.html`"),
         ("nowhere/page.html", "cannot be written"),

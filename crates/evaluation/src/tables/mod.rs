@@ -215,7 +215,7 @@ fn by(
             let area = scores.and_then(|scores| scores.areas);
             area.map_or("-".to_owned(), |area| format!("{:.3}", area.roc))
         }));
-        // The same for all estimators: whether there are critical cases depends on the flights.
+        // The reason is the same for all estimators, because it depends only on the flights.
         let none = scores.no_area(evaluation.cases);
         cells.extend(none.filter(|_| scores.cases > 0));
         cells

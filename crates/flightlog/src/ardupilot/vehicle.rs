@@ -91,7 +91,10 @@ fn kind_of_parameters(parameters: &Parameters) -> (VehicleKind, String) {
         .iter()
         .find(|(name, _)| parameters.get(name).is_some())
         .map(|(name, kind)| (*kind, format!("parameter {name}")))
-        .unwrap_or((VehicleKind::Unknown, "the log names no firmware".into()))
+        .unwrap_or((
+            VehicleKind::Unknown,
+            "the log does not contain the firmware".into(),
+        ))
 }
 
 /// Number of motors of a frame, by its name or class in the log.

@@ -88,7 +88,7 @@ pub(super) fn apply_header(
         let Bounds { least, most, width } = bounds;
         for key in [low, high] {
             if let Some(value) = value(key)?.filter(|value| !(least..=most).contains(value)) {
-                let text = format!("`{key}` is {value}, not in {least} to {most}");
+                let text = format!("`{key}` is {value}, outside {least} to {most}");
                 let help = match value {
                     2.0..=100.0 if most <= 1.0 => "write a fraction: 0.15 for 15 %",
                     _ => "write the limit of the vehicle",
@@ -100,11 +100,11 @@ pub(super) fn apply_header(
             (Some(low_value), Some(high_value)) => (low_value, high_value),
             (None, None) => return Ok(None),
             (Some(_), None) => {
-                let text = format!("`{low}` has no `{high}`");
+                let text = format!("`{low}` is given without `{high}`");
                 return Err(problem(line_of(low), text, "write both or neither"));
             }
             (None, Some(_)) => {
-                let text = format!("`{high}` has no `{low}`");
+                let text = format!("`{high}` is given without `{low}`");
                 return Err(problem(line_of(high), text, "write both or neither"));
             }
         };
@@ -194,11 +194,11 @@ pub(super) fn apply_header(
                     )
                 })?;
                 let outside = times.iter().find(|t_s| !span_s.contains(t_s));
-                // In a damaged log it may be anywhere, which cannot result in a verdict of GOOD.
+                // A damaged log may contain any time here; it cannot result in a verdict of GOOD.
                 if let Some(outside) = outside.filter(|_| !is_ours) {
                     let (from_s, to_s) = (span_s.start(), span_s.end());
                     let text = format!(
-                        "`rebooted_in_air_s` is {outside}, and the flight goes from {from_s} to {to_s} s"
+                        "`rebooted_in_air_s` is {outside}, but the flight goes from {from_s} to {to_s} s"
                     );
                     let help = "write times on the clock of `t_s`";
                     return Err(problem(entry.line, text, help));
@@ -234,7 +234,7 @@ pub(super) fn apply_header(
         {
             let stem = layout.stem;
             let text = format!(
-                "`{}` is `{}`, which has {motors} motors, and there are columns `{stem}1` to `{stem}{columns}`",
+                "`{}` is `{}`, which has {motors} motors, but there are columns `{stem}1` to `{stem}{columns}`",
                 entry.key, entry.value
             );
             let help = "correct it, or give columns that are not motors other names";

@@ -62,7 +62,11 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     };
     let first = reader.read_byte_record(&mut record);
     if !first.map_err(|error| broken(error, lines + 1))? {
-        return Err(problem(lines + 1, "there is no line of column names", HELP));
+        return Err(problem(
+            lines + 1,
+            "the line with the column names is missing",
+            HELP,
+        ));
     }
     let layout = Layout::new(&record, lines + 1, options)?;
     let mut rows = Rows::new(&layout);
@@ -138,7 +142,7 @@ fn problem(line: u64, problem: impl Into<String>, help: &str) -> ReadError {
 /// as a flight CSV.
 const LONGEST_ROW: usize = 1_000_000;
 const MOST_COLUMNS: usize = 4096;
-/// ArduPilot's frames have up to 12 motors, its outputs are up to 32.
+/// The maximum number of motors: ArduPilot has up to 32 outputs, and its frames up to 12 motors.
 const MOST_MOTORS: usize = 32;
 
 fn too_long(line: u64) -> ReadError {
@@ -197,7 +201,7 @@ impl Layout {
         let mut seen = HashSet::new();
         for name in names.iter().filter(|name| !name.is_empty()) {
             if !seen.insert(name) {
-                let text = format!("the column `{name}` is there twice");
+                let text = format!("the column `{name}` occurs twice");
                 return Err(problem(line, text, "give each column a name of its own"));
             }
         }
@@ -217,7 +221,7 @@ impl Layout {
         motors.sort_unstable();
         if motors.len() > MOST_MOTORS {
             let text = format!("there are {} motors, more than {MOST_MOTORS}", motors.len());
-            return Err(problem(line, text, "name other columns otherwise"));
+            return Err(problem(line, text, "give other columns different names"));
         }
         if let Some((0, _)) = motors.first() {
             let text = format!("there is a column `{stem}0`");

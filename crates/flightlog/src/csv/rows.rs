@@ -9,8 +9,8 @@ use crate::{Commands, Intervals, ReadError, Report, Series};
 
 /// Fractions up to this far outside 0 to 1 are rounding errors or slightly exceeded limits.
 const MOST_OUTSIDE: f64 = 0.5;
-const HELP_FRACTIONS: &str = "name pulse widths in us `pwm1`.. and add their limits; divide percent by 100; docs/flight-csv.md has DShot";
-const HELP_PULSES: &str = "name fractions from 0 to 1 `motor1`..; divide percent by 100 and name them so; docs/flight-csv.md has DShot";
+const HELP_FRACTIONS: &str = "name pulse widths in us `pwm1`.. and add their limits; divide percent by 100; for DShot see docs/flight-csv.md";
+const HELP_PULSES: &str = "name fractions from 0 to 1 `motor1`..; divide percent by 100 first; for DShot see docs/flight-csv.md";
 const HELP_SHORT: &str = "give every row a cell for each column, empty where the value is unknown";
 /// The furthest accepted time from 0, in seconds. It admits 64-bit counts of microseconds before and after conversion.
 /// A single damaged time beyond it would make all later ones go back.
@@ -195,7 +195,7 @@ impl Rows {
         Ok(())
     }
 
-    /// Refuses the file; the first reason is kept.
+    /// Marks the file as refused; the first reason is kept.
     fn refuse(&mut self, line: u64, text: String, help: &str) {
         self.refused
             .get_or_insert_with(|| problem(line, text, help));
@@ -245,7 +245,7 @@ impl Rows {
                     "`in_air` is `{}`, not 0 or 1",
                     String::from_utf8_lossy(bytes)
                 );
-                let help = "write 1 in the air and 0 on the ground, and leave the cell empty where neither is known";
+                let help = "write 1 in the air and 0 on the ground, and leave the cell empty where it is unknown";
                 self.refuse(line, text.clone(), help);
                 Err(text)
             }
@@ -336,11 +336,11 @@ impl Rows {
         let middle = *steps.get(steps.len() / 2)?;
         let (line, from, to) = self.first_step?;
         (self.is_whole && steps.len() >= LEAST_STEPS && middle >= LEAST_STEP_MS).then(|| {
-            let text = format!("`t_s` goes from {from} to {to} in one row, and is in seconds");
+            let text = format!("`t_s` jumps from {from} to {to} in one row, but is in seconds");
             problem(
                 line,
                 text,
-                "divide milliseconds by 1000; rows that are seconds apart are too few to assess",
+                "divide milliseconds by 1000; rows that are seconds apart are too few for an assessment",
             )
         })
     }

@@ -38,7 +38,8 @@ impl Flight {
         for number in 1..=motors {
             write!(out, ",{stem}{number}")?;
         }
-        // Empty if it is unknown: without the column, every row would count as in the air.
+        // If the state is unknown, the column is empty: without the column, every row would count
+        // as in the air.
         write!(out, ",in_air")?;
         for signal in self.signals() {
             write!(out, ",{}", quoted(&signal.label.name))?;

@@ -88,7 +88,7 @@ impl<'o> Collector<'o> {
         let known = kind(&self.kinds, format.type_id).map(|kind| &kind.format);
         let (is_known, is_same) = (known.is_some(), known == Some(&format));
         if format.type_id == FMT && is_known {
-            // The definitions are repeated: the autopilot booted again and continued this log.
+            // The definitions are repeated: the autopilot rebooted and continued this log.
             self.clock.expect_boot();
             self.redefine = true;
         }
@@ -351,7 +351,7 @@ fn series_of(known: &mut Vec<(&str, Series)>, name: &'static str, labels: Vec<La
         *of == name && series.signals().map(|signal| signal.label).eq(&labels)
     };
     known.iter().position(same).unwrap_or_else(|| {
-        // The index after the last means that the rows are dropped.
+        // An index after the last series means that the rows are dropped.
         if known.len() < MOST_SERIES {
             known.push((name, Series::new(labels)));
             return known.len() - 1;

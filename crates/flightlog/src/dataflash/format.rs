@@ -25,7 +25,7 @@ pub(crate) struct Format {
     pub(crate) length: usize,
     pub(crate) name: String,
     pub(crate) columns: Vec<Column>,
-    /// Whether the fields do not fill the record, so that their offsets may be wrong.
+    /// Whether the lengths of the fields and of the record differ, so that offsets may be wrong.
     pub(crate) damaged: bool,
 }
 
@@ -34,7 +34,7 @@ impl Format {
         let mut offset = 0;
         let columns = kinds
             .bytes()
-            // The offsets after a field of unknown type are unknown.
+            // The fields after one of unknown type have unknown offsets.
             .take_while(|kind| width(*kind) > 0)
             .zip(labels.split(','))
             .map(|(kind, label)| {

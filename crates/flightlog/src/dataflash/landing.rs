@@ -1,4 +1,4 @@
-//! Determines from the events of a DataFlash log when the vehicle was armed and in the air.
+//! Determines the armed and in-air times from the events of a DataFlash log.
 
 use crate::Intervals;
 
@@ -13,7 +13,7 @@ pub(super) enum Landing {
 }
 
 impl Landing {
-    /// The event with this number in EV messages.
+    /// The event with the given number in EV messages.
     pub(super) fn of(id: f64) -> Option<Self> {
         Some(match id as i64 {
             10 => Self::Armed,

@@ -76,7 +76,7 @@ impl Untimed {
         self.before_first = self.kept.len();
     }
 
-    /// Notes that the first message with a time was right, and that its time is `first_s`.
+    /// Notes that the first message with a time is confirmed, at the time `first_s`.
     pub(super) fn confirm_first(&mut self, first_s: f64) {
         self.last_s.get_or_insert(first_s);
     }

@@ -14,7 +14,8 @@ const FEWEST_ROWS: usize = 100;
 const FITS: f64 = 0.05;
 /// A layout does not fit if at least this share of the variance is outside its space.
 const FITS_NOT: f64 = 0.2;
-/// A share is clearly larger than another one if it exceeds that one times the first number plus the second.
+/// A share is clearly larger than another share `s` if it exceeds `s` times the first number plus
+/// the second number.
 const CLEARLY: (f64, f64) = (5.0, 0.002);
 /// The minimum correlation of effort and output of the rate controller for a layout to be right, and the minimum
 /// difference to other layouts. Right layouts have 0.44 to 1, and more than any other.
@@ -151,7 +152,7 @@ pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<Stri
         let (least, name) = best(&|factors| variance.with_outputs(factors))?;
         return (least > FOLLOWS && least > own + FOLLOWS_ABOVE).then(|| {
             format!(
-                "its roll, pitch and yaw do not follow the outputs of the controllers (correlation {own:.2}), those of {name} do ({least:.2})"
+                "its roll, pitch and yaw do not follow the outputs of the controllers (correlation {own:.2}), but those of {name} do ({least:.2})"
             )
         });
     }
@@ -161,7 +162,7 @@ pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<Stri
     let fits = least > GOES_WITH || least > from && least > own + above;
     (own < GOES_WITHOUT && fits).then(|| {
         format!(
-            "its roll and pitch do not go with the attitude error (correlation {own:.2}), those of {name} do ({least:.2})"
+            "its roll and pitch do not correlate with the attitude error (correlation {own:.2}), but those of {name} do ({least:.2})"
         )
     })
 }
@@ -186,8 +187,8 @@ struct Variance {
 }
 
 impl Variance {
-    /// Computes them from a flight. `all_run` excludes the times at which a motor is stopped, because it does not
-    /// follow the mixer then.
+    /// Computes the covariances from a flight. `all_run` excludes the times at which a motor is
+    /// stopped, because it does not follow the mixer then.
     fn of_commands(flight: &Flight, all_run: bool) -> Option<Self> {
         let motors = flight.motors.len();
         let mut commands = Covariance::new(motors);

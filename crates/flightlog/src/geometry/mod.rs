@@ -34,11 +34,11 @@ pub struct Geometry {
     pub factors: Vec<[f64; 3]>,
     /// The frame class and type with ArduPilot's names, such as `QUAD/X`; `None` for motor positions without a name.
     pub frame: Option<String>,
-    /// Whether it is declared, inferred or assumed.
+    /// Whether the geometry is declared, inferred or assumed.
     pub basis: Basis,
     /// The source, such as `FRAME_CLASS = 1, FRAME_TYPE = 1`.
     pub source: String,
-    /// The reason why the commands contradict it; `None` if they do not.
+    /// The reason why the commands contradict the geometry; `None` if they do not.
     pub doubt: Option<String>,
 }
 

@@ -43,7 +43,7 @@ pub struct Packet<'a> {
     pub sound: Option<bool>,
 }
 
-/// The start of some bytes.
+/// The kind of content at the start of some bytes.
 enum Start<'a> {
     /// A whole packet, with a right or wrong checksum.
     Whole(Packet<'a>),
@@ -137,7 +137,7 @@ pub enum Next<'a> {
 /// The reason why bytes are skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Why {
-    /// They do not begin like a packet.
+    /// The bytes do not begin like a packet.
     NoPacket,
     /// The checksum is wrong.
     Checksum,

@@ -18,7 +18,7 @@ pub const MOTOR_RATE_HZ: f64 = 25.0;
 
 /// The requested rate of each message in [`RATED`], in Hz.
 const RATES_HZ: [f64; RATED.len()] = [MOTOR_RATE_HZ, 4.0, 4.0, 2.0, 2.0, 4.0, 4.0, 4.0, 2.0, 2.0];
-/// The old message groups (streams) that contain them.
+/// The old message groups (streams) that contain these messages.
 const STREAMS: [MavDataStream; RATED.len()] = [
     MavDataStream::MAV_DATA_STREAM_RC_CHANNELS,
     MavDataStream::MAV_DATA_STREAM_EXTRA1,
@@ -34,7 +34,7 @@ const STREAMS: [MavDataStream; RATED.len()] = [
 /// The time to listen before the first request, in seconds. Rates apply to the whole link, and another station that
 /// shares it may have requested higher ones.
 const LISTEN_S: f64 = 1.0;
-/// The share of the requested rate below which it is requested again.
+/// The share of the requested rate below which the rate is requested again.
 const SLOW_AGAIN: f64 = 0.5;
 /// The time to wait for the requested rate, in seconds.
 const RATE_WAIT_S: f64 = 2.0;
@@ -154,8 +154,8 @@ impl Requests {
             if self.slow_looks == 2 && self.has_been_fast {
                 self.slowed_hz = Some(rate_hz(0));
             }
-            // If another station requested less, the rate is measured before it is requested again, which would raise
-            // it.
+            // If another station requested a lower rate, the rate is measured first, because
+            // requesting it again would raise it.
             let is_asked = telemetry.rate_asker().is_some();
             self.measures = self.slow_looks == 1 && self.has_been_fast && is_asked;
         }
@@ -168,7 +168,7 @@ impl Requests {
             self.rate_tries = 1;
             return;
         }
-        // The first two requests use the new command, the next ones alternate.
+        // The first two requests use the new command, further requests alternate between the two.
         let old_way = telemetry.interval_refused()
             || self.rate_tries >= 2 && self.rate_tries.is_multiple_of(2);
         self.has_old_way |= old_way;

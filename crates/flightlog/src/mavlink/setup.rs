@@ -9,7 +9,7 @@ use crate::{
     Geometry, Motor, PulseRange, Range, Vehicle, ardupilot, geometry, parameters::Parameters,
 };
 
-/// The values of an output that is not driven or not known.
+/// The values that mean that an output is not driven or unknown.
 const NO_PULSE: [u16; 2] = [0, u16::MAX];
 /// The number of outputs of PX4's AUX bank on any board.
 const AUX_OUTPUTS: usize = 8;

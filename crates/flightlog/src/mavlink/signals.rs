@@ -42,7 +42,7 @@ const RADIO: &[(From, &str, &str)] = &[
     (plain(7, Kind::U8), "radio_noise", ""),
 ];
 
-/// If two messages contain the same signal, the first is preferred.
+/// The signals of each message. If two messages contain the same signal, the first is preferred.
 pub(crate) const SPECS: &[Spec] = &[
     Spec {
         id: 30,
@@ -147,7 +147,7 @@ pub(crate) const SPECS: &[Spec] = &[
                 "gps_hdop",
                 "",
             ),
-            // These two are extensions: 0 if the sender does not have them.
+            // The next two fields are extensions, which are 0 if the sender does not support them.
             (
                 From::Number(at(34, Kind::U32), 1e-3, Some(0.0)),
                 "gps_horizontal_accuracy_m",

@@ -62,7 +62,7 @@ impl Key {
     }
 }
 
-/// Does not show the secret.
+/// Formats the key without showing the secret.
 impl fmt::Debug for Key {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Key(..)")

@@ -5,7 +5,7 @@ use super::{Next, Packet, Why, next_packet};
 /// Counts of skipped data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Skipped {
-    /// Bytes that are not part of any packet that could be read.
+    /// The number of bytes that are not part of a readable packet.
     pub bytes: u64,
     /// Packets with a wrong checksum, and bytes that only looked like the beginning of a packet.
     pub checksums: u64,
@@ -14,9 +14,9 @@ pub struct Skipped {
     pub unknown: u64,
     /// Signed packets, which cannot be verified without the key.
     pub signed: u64,
-    /// With a key: unsigned packets.
+    /// The number of unsigned packets, if there is a key.
     pub unsigned: u64,
-    /// With a key: packets whose signature is wrong, or whose timestamp is not new.
+    /// The number of packets with a wrong signature or an old timestamp, if there is a key.
     pub bad_signatures: u64,
 }
 
@@ -29,7 +29,7 @@ impl Skipped {
 
 /// The reason why a whole packet is not accepted.
 enum Refusal {
-    /// It is signed, and there is no key.
+    /// The packet is signed, and there is no key.
     Signed,
     #[cfg(feature = "mavlink")]
     Unsigned,

@@ -158,7 +158,7 @@ struct LatestSignal {
     name: String,
     /// The position in [`SPECS`] of the message that it came from; a later one does not replace it.
     spec: usize,
-    /// NaN is unknown.
+    /// The value; NaN is unknown.
     value: f64,
 }
 
@@ -231,7 +231,7 @@ impl Telemetry {
         &self.vehicle
     }
 
-    /// The protocol version of its latest heartbeat.
+    /// The protocol version of the latest heartbeat.
     pub fn version(&self) -> Version {
         self.version
     }
@@ -260,7 +260,7 @@ impl Telemetry {
         }
     }
 
-    /// Whether it has ever sent motor outputs (SERVO_OUTPUT_RAW).
+    /// Whether the vehicle has ever sent motor outputs (SERVO_OUTPUT_RAW).
     pub fn has_commands(&self) -> bool {
         self.has_commands
     }
@@ -283,7 +283,7 @@ impl Telemetry {
         rated < ALWAYS || self.signals.iter().any(is_wanted)
     }
 
-    /// Whether it refused MAV_CMD_SET_MESSAGE_INTERVAL.
+    /// Whether the vehicle refused MAV_CMD_SET_MESSAGE_INTERVAL.
     pub(super) fn interval_refused(&self) -> bool {
         self.interval_refused
     }

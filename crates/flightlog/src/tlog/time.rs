@@ -79,7 +79,7 @@ impl VehicleTime {
         self.latest.is_some()
     }
 
-    /// Whether there were more boots than are kept.
+    /// Whether the maximum number of boots was exceeded.
     pub(super) fn is_full(&self) -> bool {
         self.clock.is_full()
     }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::field::{Kind, NumericField};
 
-/// The maximum depth of nested topics; deeper ones are damage.
+/// The maximum depth of nested topics; deeper nesting counts as damage.
 const DEEPEST: usize = 8;
 /// The maximum length of a message, which is stored in 16 bits.
 const LONGEST: usize = u16::MAX as usize;

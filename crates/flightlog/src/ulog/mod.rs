@@ -19,7 +19,7 @@ use crate::{Flight, Options};
 
 const MAGIC: [u8; 7] = *b"ULog\x01\x12\x35";
 const FILE_HEAD: usize = 16;
-/// Length (16 bits) and letter.
+/// The length of the head of a message in bytes: its length (16 bits) and its letter.
 const HEAD: usize = 3;
 const LONGEST: usize = HEAD + u16::MAX as usize;
 /// Body of a synchronisation message.

@@ -67,7 +67,7 @@ const fn outputs(
     ]
 }
 
-/// If two topics contain the same signal, the first is preferred.
+/// The signals of each topic. If two topics contain the same signal, the first is preferred.
 pub(super) const SPECS: &[Spec] = &[
     Spec {
         topic: "vehicle_torque_setpoint",

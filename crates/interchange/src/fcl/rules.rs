@@ -64,7 +64,7 @@ impl Reader<'_, '_> {
                 return self.skip("RULEBLOCK");
             }
         }
-        // If one of them is not specified, it is the dual of the other.
+        // If only one of AND and OR is specified, the other is its dual.
         (block.and, block.or) = match (and, or) {
             (None, None) => (Conjunction::Minimum, Disjunction::Maximum),
             (Some(and), None) => (and, dual(and)),

@@ -131,7 +131,8 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     paper.finish()
 }
 
-/// The output with a range around its numbers. `COGS` is a centroid, which ignores numbers outside the range.
+/// Returns the output with a range that contains all numbers of its terms, because the centroid of
+/// `COGS` ignores numbers outside the range.
 fn widened(output: &Output) -> Variable {
     let mut variable = output.variable.clone();
     for term in &output.variable.terms {

@@ -180,7 +180,7 @@ fn without_comment(line: &str) -> &str {
     line
 }
 
-/// Whether the system is of Sugeno's kind; `None` with an error if it is of an unsupported kind.
+/// Whether the system is a Sugeno system; `None`, with an error, if its type is not supported.
 fn kind(draft: &mut Draft<'_>, system: &Section<'_>) -> Option<bool> {
     let word = system.get("Type").unwrap_or("mamdani");
     match unquoted(word).to_ascii_lowercase().as_str() {

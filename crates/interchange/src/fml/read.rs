@@ -165,7 +165,7 @@ pub(super) fn children<'a, 'i>(
     })
 }
 
-/// The text of the first element with a name.
+/// Returns the text of the first element with the given name.
 fn text_of<'a>(node: Node<'a, '_>, name: &'static str) -> Option<&'a str> {
     node.children()
         .find(|child| child.tag_name().name().eq_ignore_ascii_case(name))

@@ -70,7 +70,8 @@ pub struct Identification {
 }
 
 impl Default for Identification {
-    /// Partitions and constants; at most 4 inputs, 5 terms each and 25 rules; a step gains at least 2 %; 5 folds.
+    /// The defaults: partitions and constants; at most 4 inputs, 5 terms each and 25 rules; a gain
+    /// of at least 2 % per step; 5 folds.
     fn default() -> Self {
         Identification {
             antecedents: Antecedents::Partitions,
@@ -105,7 +106,7 @@ pub struct Identified {
 pub struct Step {
     /// The input that was added or received another term.
     pub input: String,
-    /// Its number of terms; for clusters, the number of clusters.
+    /// The number of terms of that input; for clusters, the number of clusters.
     pub terms: usize,
     /// The cross-validation error (root mean square), in the unit of the output.
     pub left_out: f64,
@@ -244,7 +245,7 @@ impl Search<'_> {
             let Some((input, terms, left_out, structure)) = next else {
                 break;
             };
-            // Inputs that the user requested are added whatever their gain.
+            // Inputs that the user requested are added regardless of their gain.
             let is_asked_for =
                 structure.inputs().len() > best.inputs().len() && !self.wanted.is_empty();
             let least = least_of_all.max(self.settings.min_gain * error);

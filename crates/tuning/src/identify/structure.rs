@@ -16,7 +16,7 @@ pub(super) enum Structure {
 pub(super) struct Axis {
     /// The index of the input.
     pub(super) input: usize,
-    /// The peaks of its terms, ascending.
+    /// The peaks of the terms, ascending.
     pub(super) peaks: Vec<f64>,
 }
 

@@ -52,7 +52,7 @@ pub fn judge(
 ) -> Result<Option<Judged>, TuneError> {
     data.check_columns(names.len(), crate::Loss::Squared)?;
     let data = &*data.weighted();
-    // Other folds than those for choosing steps.
+    // Uses other folds than those for choosing steps.
     let folds = Folds::new(data, folds, settings.seed.wrapping_add(1));
     let mut predictions = [const { Vec::new() }; 3].map(|_: Vec<f64>| vec![f64::NAN; data.len()]);
     let mut without_value = 0;

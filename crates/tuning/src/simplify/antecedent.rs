@@ -13,11 +13,13 @@ use fuzzy::{
 pub(crate) struct Part {
     pub(crate) variable: String,
     pub(crate) condition: Condition,
-    /// The indices of the terms that satisfy it; `None` if it has hedges other than NOT.
+    /// The indices of the terms that satisfy the condition; `None` if it contains hedges other than
+    /// NOT.
     pub(crate) terms: Option<BTreeSet<usize>>,
 }
 
-/// The parts of an antecedent, one for each variable, that are joined by AND. `None` if it is not such a conjunction.
+/// Returns the parts of an antecedent, one for each variable, that are joined by AND; `None` if the
+/// antecedent is not such a conjunction.
 pub(crate) fn parts(model: &Model, condition: &Condition) -> Option<Vec<Part>> {
     let mut found: Vec<(String, Vec<Condition>)> = Vec::new();
     for condition in conjuncts(condition) {
@@ -66,7 +68,8 @@ pub(crate) fn condition(parts: &[Part], variable: &str) -> Condition {
     }
 }
 
-/// Conditions which require that a variable has one of some terms, the shortest first; `None` stands for no condition.
+/// Returns conditions that are true if a variable belongs to one of the given terms, the shortest
+/// first; `None` means that no condition is needed.
 pub(crate) fn one_of(variable: &Variable, terms: &BTreeSet<usize>) -> Vec<Option<Condition>> {
     let is = |index: usize, hedges: &[Hedge]| {
         let term = variable.terms.get(index)?;

@@ -42,26 +42,26 @@ pub struct SimplifySettings {
 pub struct Simplified {
     /// The model.
     pub model: Model,
-    /// For each of its rules the indices of the original rules that it replaces.
+    /// For each rule of the simplified model, the indices of the original rules that it replaces.
     pub rules: Vec<Vec<usize>>,
     /// The indices of the original rules that had no effect.
     pub dropped: Vec<usize>,
     /// The names of the inputs that no rule needs.
     pub inputs: Vec<String>,
-    /// The number of points at which both were compared, including rows.
+    /// The number of points at which both models were compared, including rows.
     pub points: usize,
     /// The largest difference at these points; `None` if there is none.
     pub difference: Option<Difference>,
 }
 
-/// The difference of an output at a point.
+/// A difference between the outputs of the original and the simplified model at a point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
     /// The output.
     pub output: String,
-    /// Its value in the original.
+    /// The value of the output in the original model.
     pub before: f64,
-    /// Its value in the simplified model.
+    /// The value of the output in the simplified model.
     pub after: f64,
     /// The values of the inputs, in the order of the original.
     pub inputs: Vec<f64>,
@@ -72,7 +72,7 @@ pub struct Difference {
 #[non_exhaustive]
 pub enum SimplifyError {
     /// The tolerance is negative or not a number.
-    #[error("the tolerance {tolerance} is not a number from 0")]
+    #[error("the tolerance is {tolerance}; it must be at least 0")]
     Tolerance {
         /// The tolerance.
         tolerance: f64,
@@ -324,7 +324,7 @@ fn drop_inputs(model: &mut Model, judge: &mut Judge) -> Vec<String> {
         if named.contains(&input.name) {
             continue;
         }
-        // A formula may read it.
+        // A formula may still read the input.
         let mut without = model.clone();
         without.inputs.retain(|other| other.name != input.name);
         if judge.examine(&without).is_some() {

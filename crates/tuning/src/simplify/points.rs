@@ -11,10 +11,10 @@ use super::antecedent::parts;
 /// The maximum number of grid points; if the grid has more, a sample of this size is drawn.
 pub(crate) const MOST_ON_THE_GRID: usize = 50_000;
 
-/// The number of points between those of the grid.
+/// The number of random points between those of the grid.
 pub(crate) const BETWEEN: usize = 40_000;
 
-/// The number of points for each rule at which it fires.
+/// The number of points per rule at which the rule fires.
 pub(crate) const FOR_EACH_RULE: usize = 50;
 
 /// The points, as one column for each input: all combinations of the corners of its terms and the middles between them;
@@ -68,7 +68,7 @@ pub(crate) fn points(model: &Model, seed: u64) -> Vec<Vec<f64>> {
 fn bends(input: &Variable) -> Vec<f64> {
     let of_term = |term: &Term| match term.membership_function.corners() {
         Some(corners) => corners.iter().map(|(x, _)| *x).collect::<Vec<f64>>(),
-        // For curved shapes: their highest points and their widths.
+        // Curved shapes have no corners; their highest points and their widths are used instead.
         None => {
             let parameters = term.membership_function.parameters();
             let numbers = parameters.iter().map(|(.., value)| *value);
@@ -98,7 +98,7 @@ fn with_middles(bends: &[f64]) -> Vec<f64> {
     bends.iter().copied().chain(middles).collect()
 }
 
-/// A combination by its number.
+/// Returns the combination with the given number.
 fn combination(levels: &[Vec<f64>], mut index: usize) -> Vec<f64> {
     let one = |levels: &Vec<f64>| {
         let value = levels.get(index % levels.len()).copied();

@@ -223,7 +223,7 @@ fn points_from_rows_alone_allow_more() {
         rows_only: true,
         ..SimplifySettings::default()
     };
-    // It is never more than half warm.
+    // `warm` never has a degree above 0.5.
     let heat: Vec<f64> = (0..20).map(|i| f64::from(i) / 5.0).collect();
     let found = simplify(&model, &[heat.clone(), vec![1.0; 20]], &settings).unwrap();
     assert_eq!(found.points, 20);
@@ -362,7 +362,7 @@ fn random_model(seed: u64) -> Model {
     parse(&text)
 }
 
-/// Compares both at points other than those of the search, and with unknown inputs.
+/// Compares both models at points other than those of the search, and with unknown inputs.
 fn agree(before: &Model, after: &Model, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed ^ 0x5eed);
     let engines = [Engine::new(before).unwrap(), Engine::new(after).unwrap()];

@@ -74,7 +74,7 @@ rules: [IF {condition} THEN y IS low]
         filling.read(&[1.0; 24])
     };
     assert_eq!(read(&many(&|i| format!("x{i} IS low"), " AND ")), None);
-    // Inputs that no rule reads do not count.
+    // Inputs that no rule reads do not count towards the limit.
     assert!(read("x0 IS low").is_some());
 }
 

@@ -12,7 +12,7 @@ use crate::table::{LEAST_STRENGTH, numeric::root};
 struct Cuts<'a> {
     cuts: &'a mut Vec<f64>,
     most: usize,
-    /// Whether the memory was exhausted.
+    /// Whether the memory for cuts was exhausted.
     is_full: bool,
     /// Positions just inside two adjacent cuts, between which further cuts are added.
     between: (f64, f64),

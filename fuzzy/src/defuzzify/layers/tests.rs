@@ -37,7 +37,8 @@ fn centroid_between_bends((low, high): (f64, f64), terms: &[([f64; 3], f64)]) ->
     for ends in bends.windows(2) {
         let (from, to) = (ends[0], ends[1]);
         let (middle, width) = (0.5 * (from + to), to - from);
-        // Simpson's rule is exact for linear functions, and for their product with x.
+        // Simpson's rule is exact here, because the integrands are linear functions and their
+        // products with x.
         let (a, b) = (set(from), set(to));
         area += width * 0.5 * (a + b);
         moment += width * (a * from + 2.0 * (a + b) * middle + b * to) / 6.0;

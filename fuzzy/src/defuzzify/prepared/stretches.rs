@@ -146,7 +146,8 @@ pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec
         .collect();
     open.reverse();
     while let Some((a, b)) = open.pop() {
-        // Not at the middle, where a symmetric kink would not be detected.
+        // The interval is not split at the middle, where the error of a symmetric kink would
+        // cancel.
         let middle = a + 0.43 * (b - a);
         let (whole, left, right) = (integral(a, b), integral(a, middle), integral(middle, b));
         let halves = left.0 + right.0;

@@ -279,7 +279,7 @@ proptest! {
         points in prop::collection::vec((-1.0..=11.0f64, -1.0..=11.0f64), 1..10),
     ) {
         (first.operators, second.operators) = (operators, operators);
-        // Each variable must have the same definition in both.
+        // Each variable must have the same definition in both models.
         second.inputs.truncate(0);
         second.inputs.extend(first.inputs.iter().cloned());
         second.inputs.push(first.outputs[0].variable.clone());
@@ -340,7 +340,7 @@ fn the_rule_that_raises_an_output_is_found_through_the_outputs_it_reads() {
         let mut all = said.iter().filter(|said| said.place == place);
         all.next().unwrap()
     };
-    // Rules 3 and 4 are evaluated first.
+    // Rules 3 and 4 belong to the first stage, so they are evaluated first.
     let place = engine.raised_by(&mut scratch, &[3.0], 0, fan).unwrap();
     let why = of_place(place);
     assert_eq!(

@@ -14,7 +14,7 @@ use crate::table::{
 };
 
 impl Plane {
-    /// Returns `None` if the table is not a plane.
+    /// Converts a table to a plane; `None` if it does not have the form of a plane.
     pub(in super::super) fn new(table: &OwnedTable) -> Option<Self> {
         let ([first, second], [_, _], [output]) = (&*table.axes, &*table.inputs, &*table.outputs)
         else {

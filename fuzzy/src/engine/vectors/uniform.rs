@@ -44,7 +44,7 @@ const MOST_VISITED: usize = 16;
 const MOST_STRENGTHS: usize = 16;
 
 impl Uniform {
-    /// Returns `None` if the table is not supported.
+    /// Prepares a table for vector instructions; `None` if it is not supported.
     pub(in super::super) fn new(table: &OwnedTable) -> Option<Self> {
         let Conjunctions::Uniform {
             actions_a_cell: 1,

@@ -34,7 +34,7 @@ class Progress:
     def planned(self, counts: Counts) -> None:
         self._counts = counts
         for error in counts.damaged:
-            print(f"warning: {error}; it is written again", file=sys.stderr)
+            print(f"warning: {error}; it is rewritten", file=sys.stderr)
         same = counts.listed - counts.new - counts.changed
         print(
             f"{counts.listed} logs, {_size(counts.listed_bytes)}: {counts.new} new, {counts.changed} changed, {same} done",
@@ -157,7 +157,7 @@ def _assess(given: argparse.Namespace) -> int:
 def _report(given: argparse.Namespace) -> int:
     only = dict(given.only or ())
     if len(only) < len(given.only or ()):
-        raise FleetError("a filter is given twice", "give each of vehicle=, site= and pilot= at most once")
+        raise FleetError("a filter is repeated", "give each of vehicle=, site= and pilot= at most once")
     report = write_report(
         given.dataset,
         given.out,

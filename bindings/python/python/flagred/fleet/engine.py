@@ -99,7 +99,7 @@ def run(client: Client, shards: Iterator[Shard], job: Job, wait: Callable[[int],
         if isinstance(result, Outcome):
             yield result
         elif shard.crashed:
-            raise FleetError(f"a worker ended on a log that it does not read: {result}") from result
+            raise FleetError(f"a worker crashed on a log: {result}") from result
         elif len(shard.logs) == 1:
             suspects.appendleft(replace(shard, crashed=True))
         else:
@@ -195,7 +195,7 @@ def _result(future: Future) -> Outcome | BaseException:
     except Superseded:
         raise
     except OSError as error:
-        raise FleetError(f"the dataset cannot be written: {error}", "make it writable, then run the same command again") from error
+        raise FleetError(f"the dataset cannot be written: {error}", "make the dataset writable, then run the same command again") from error
     except Exception as error:  # KilledWorker, or a bug that one log triggers: the log is found.
         if not isinstance(error, KilledWorker):
             logging.getLogger(__name__).warning("a shard failed and is split: %r", error)
@@ -203,4 +203,4 @@ def _result(future: Future) -> Outcome | BaseException:
 
 
 def _lost() -> FleetError:
-    return FleetError("the scheduler was lost", "run the same command again: it does what is missing")
+    return FleetError("the scheduler was lost", "run the same command again: it continues with the missing logs")

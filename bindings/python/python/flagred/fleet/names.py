@@ -36,7 +36,7 @@ def read_names(path: str | os.PathLike[str]) -> pa.Table:
         if key in rows:
             raise FleetError(f"{_at(path, line)}: vehicle `{key}` is listed twice", "keep one of the lines")
         if name in owners:
-            raise FleetError(f"{_at(path, line)}: vehicles `{owners[name]}` and `{key}` have the same name `{name}`", "give each its own")
+            raise FleetError(f"{_at(path, line)}: vehicles `{owners[name]}` and `{key}` have the same name `{name}`", "give each a different name")
         rows[key] = {"vehicle": key, "name": name, "site": row.get("site") or None, "pilot": row.get("pilot") or None}
         owners[name] = key
     return pa.Table.from_pylist(list(rows.values()), EMPTY.schema)

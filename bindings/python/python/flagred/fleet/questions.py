@@ -140,7 +140,7 @@ def ask(dataset: str | Any, question: str) -> pa.Table:
         The name of the question.
     """
     if question not in _parts()[1]:
-        raise FleetError(f"there is no question `{question}`", f"questions are {', '.join(QUESTIONS)}")
+        raise FleetError(f"`{question}` is not a question", f"write one of {', '.join(QUESTIONS)}")
     connection = open_dataset(dataset) if isinstance(dataset, str) else dataset
     (dataset_of,) = connection.sql("SELECT getvariable('flagred_dataset')").fetchall()[0]
     with _reading(open_place(dataset_of) if dataset_of else None):

@@ -196,7 +196,7 @@ def _compared(vehicles: Sequence[Row]) -> str:
     count = sum(row["days"] >= LEAST_DAYS for row in vehicles)
     if count == len(vehicles) > 0:
         return ""
-    return f"<p class=soft>{count:,} of {len(vehicles):,} vehicles have flights on at least {LEAST_DAYS} days. Of the others no change can be found yet.</p>"
+    return f"<p class=soft>{count:,} of {len(vehicles):,} vehicles have flights on at least {LEAST_DAYS} days. For the others, no change can be detected yet.</p>"
 
 
 def _others(changes: Sequence[Change]) -> str:

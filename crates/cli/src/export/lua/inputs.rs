@@ -20,7 +20,8 @@ const SIGNALS: [(&str, &str); 4] = [
 const CALL_S: f64 = 0.03;
 const BIN_S: f64 = 0.1;
 
-/// The origin of a window's values. Values of one source arrive at the same times, so a window of it has one weight.
+/// The source of a window's values. Values of one source arrive at the same times, so they share
+/// the weights of a window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Source {
     Motors,
@@ -36,7 +37,7 @@ struct Window {
     window_s: f64,
     in_bins: bool,
     source: Source,
-    /// The inputs, by their index in the profile.
+    /// The indices in the profile of the inputs that read this window.
     inputs: Vec<usize>,
 }
 
@@ -161,7 +162,7 @@ pub(super) fn fill(
         if let Some(ratio) = of.ratio {
             let made = quotient(&value, &ratio);
             script.read.push(match of.if_missing {
-                // The assumed value is that of the ratio.
+                // The assumed value replaces the ratio itself, not only its dividend.
                 Some(_) => format!("  if has_come[{}] then\n  {made}\n  end", input + 1),
                 None => made,
             });
@@ -212,7 +213,7 @@ fn carried(channel: &Channel, statistic: Statistic) -> Result<(), Unsupported> {
     };
     Err(Unsupported::new(
         format!("a script on the autopilot cannot compute {what}"),
-        "`export --rust` and `export --c` carry them",
+        "`export --rust` and `export --c` support them",
     ))
 }
 
@@ -270,7 +271,8 @@ impl Window {
     }
 }
 
-/// Maximum number of slots in use at once: one for each call or bin, and at most as many as the monitor has.
+/// Maximum number of slots that are used at once: one for each call or bin, but at most the number
+/// of the monitor.
 fn capacity(window_s: f64, step_s: f64) -> u32 {
     const MOST: f64 = 130.0;
     ((window_s / step_s).floor() + 4.0).min(MOST) as u32

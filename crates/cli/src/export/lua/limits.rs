@@ -67,7 +67,7 @@ impl Size {
         if *locals > LOCALS {
             return too_many(
                 format!(
-                    "the script would have {locals} local variables in a function, and ArduPilot's Lua allows {LOCALS}"
+                    "the script would have {locals} local variables in a function, but ArduPilot's Lua allows {LOCALS}"
                 ),
                 "use fewer inputs with different signals",
             );
@@ -75,7 +75,7 @@ impl Size {
         if *conditions > CONDITIONS {
             return too_many(
                 format!(
-                    "a rule has {conditions} conditions, and ArduPilot's Lua has registers for {CONDITIONS}"
+                    "a rule has {conditions} conditions, but ArduPilot's Lua has registers for {CONDITIONS}"
                 ),
                 "split the rule into rules with the same consequent",
             );
@@ -83,7 +83,7 @@ impl Size {
         if instructions > INSTRUCTIONS {
             return too_many(
                 format!(
-                    "the script would take about {instructions} instructions a call, and ArduPilot allows {INSTRUCTIONS} \
+                    "the script would take about {instructions} instructions per call, but ArduPilot allows {INSTRUCTIONS} \
                      (`SCR_VM_I_COUNT`)"
                 ),
                 "use fewer inputs, or inputs with the same window",
@@ -92,7 +92,7 @@ impl Size {
         if bytes > HEAP_BYTES {
             return too_many(
                 format!(
-                    "the script would take about {bytes} bytes, and ArduPilot has {HEAP_BYTES} for it (`SCR_HEAP_SIZE`)"
+                    "the script would take about {bytes} bytes, but ArduPilot has {HEAP_BYTES} for it (`SCR_HEAP_SIZE`)"
                 ),
                 "use fewer inputs or rules, or shorter windows",
             );

@@ -48,22 +48,22 @@ const SCRIPT: [(&str, &str); 13] = [
     ("BIN_US", "100000"),
     // Maximum number of slots of a window.
     ("SLOTS", "128"),
-    // Longer times are shortened to this.
+    // Maximum time; longer times are shortened.
     ("LONG_US", "1000000000"),
-    // Half of the heap that must stay free for temporary memory of calls.
+    // Half of the heap that must remain free for the temporary memory of calls.
     ("RESERVE_BYTES", "3000"),
     // Severities of MAVLink.
     ("CRITICAL", "2"),
     ("ERROR", "3"),
     ("WARNING", "4"),
     ("INFO", "6"),
-    // The levels.
+    // Numbers of the levels.
     ("GOOD", "0"),
     ("WARN", "2"),
     ("FAIL", "3"),
 ];
 
-/// Why a profile cannot be exported as a script, with advice.
+/// The reason why a profile cannot be exported as a script, with advice.
 pub(super) struct Unsupported {
     pub(super) message: String,
     pub(super) help: &'static str,
@@ -80,7 +80,7 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Uns
     if !plan.rules.stages.is_empty() {
         return Err(Unsupported::new(
             "a script on the autopilot cannot evaluate outputs that read other outputs".into(),
-            "write rules whose conditions name inputs only; `export --rust` and `export --c` carry chains",
+            "write rules whose conditions name inputs only; `export --rust` and `export --c` support chains",
         ));
     }
     let mut filling = Filling::default();

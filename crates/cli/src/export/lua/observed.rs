@@ -12,7 +12,7 @@ use super::{frames, number, template::Filling};
 /// Rounding error of commands in 32 bits.
 const ROUNDING: f64 = 1e-6;
 
-/// Smaller divisors give results that are infinite in 32 bits, or nearly so; these are reported as unknown.
+/// Results of smaller divisors, which may be infinite in 32 bits, are reported as unknown.
 const LEAST_DIVISOR: f64 = 1e-6;
 
 const AXES: [&str; 4] = ["roll", "pitch", "yaw", "thrust"];
@@ -121,7 +121,8 @@ impl Script {
             return (counted(&value, channel.threshold, squared), None);
         }
         match (channel.threshold, statistic) {
-            // Outputs are whole microseconds. A value equal to the limit counts on neither side, despite its rounding error.
+            // Outputs are whole microseconds. A value equal to the limit does not count as above or
+            // below it, despite its rounding error.
             (Some(Threshold::Below(limit)), _) => (
                 self.of_list("share_of_below", list, Some(limit - ROUNDING)),
                 None,

@@ -35,8 +35,8 @@ pub(super) fn fill(
     };
     if !plan.rules.table.blocks.is_empty() {
         return Err(Unsupported::new(
-            "the rule set has activation methods or blocks with different operators, which the script does not have".into(),
-            "the script has rules that all fire, with one AND and one OR",
+            "the rule set has activation methods or blocks with different operators, which the script does not support".into(),
+            "the script supports rules that all fire, with one AND and one OR",
         ));
     }
     let mut script = Script {
@@ -64,7 +64,7 @@ pub(super) fn fill(
         script.operators = model.operators_of(rule);
         for consequent in terms {
             let term = &consequent.term.text;
-            // In the table, rules with the same consequent update the same firing strength.
+            // In the table, rules with the same consequent share one firing strength.
             let strength = actions.iter().find(|action| {
                 let other = model.rules.get(action.rule as usize);
                 other.is_some_and(|other| other.rule.consequents.contains(consequent))
@@ -229,15 +229,14 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Unsuppor
         }
         ClosedForm::WeightedAverage | ClosedForm::WeightedSum => {
             return Err(Unsupported::new(
-                "the output is a Takagi-Sugeno one, which the script does not have".into(),
-                "the script has the centroid, with `implication: product` and `aggregation: sum` or over a `partition` with \
+                "the output is a Takagi-Sugeno output, which the script does not support".into(),
+                "the script supports the centroid, with `implication: product` and `aggregation: sum` or over a `partition` with \
                  minimum and maximum",
             ));
         }
         _ => {
             return Err(Unsupported::new(
-                "the output has neither the centroid of a sum of products nor that of minimum and maximum over a partition, which \
-                 are all the script has"
+                "the output has neither the centroid of a sum of products nor that of minimum and maximum over a partition; the script supports no others"
                     .into(),
                 "choose `implication: product` and `aggregation: sum`, or a `partition` with minimum and maximum, and the centroid",
             ));
@@ -407,14 +406,15 @@ impl Script<'_> {
 }
 
 fn operator(operator: &str, known: &'static str) -> Unsupported {
-    let message = format!("the script does not have the rule set's operator for {operator}");
+    let message =
+        format!("the script does not support the operator of the rule set for {operator}");
     match known {
         "minimum and product" => {
-            Unsupported::new(message, "it has `and: minimum` and `and: product`")
+            Unsupported::new(message, "it supports `and: minimum` and `and: product`")
         }
         _ => Unsupported::new(
             message,
-            "it has `or: maximum`, `or: probabilistic_sum` and `or: bounded_sum`",
+            "it supports `or: maximum`, `or: probabilistic_sum` and `or: bounded_sum`",
         ),
     }
 }
@@ -427,10 +427,10 @@ fn corners(variable: &Variable, term: usize) -> Result<Vec<String>, Unsupported>
     let mut corners = term.membership_function.corners().ok_or_else(|| {
         Unsupported::new(
             format!(
-                "term `{}` of input `{}` is curved, which the script does not have",
+                "term `{}` of input `{}` is curved, which the script does not support",
                 term.name, variable.name
             ),
-            "the script has terms made of straight lines; `piecewise` can come near to a curve",
+            "the script supports terms of straight lines; `piecewise` can approximate a curve",
         )
     })?;
     // At a vertical side the script uses the degree to its right, but to the right of the range there is none.

@@ -11,7 +11,7 @@ use serde::{Serialize, Serializer};
 
 use super::{Doubt, Source};
 
-/// Something to tell. Serialised it is a line of `--jsonl`, with the names of docs/json.md.
+/// An event of a watch; serialised, a line of `--jsonl` with the names of docs/json.md.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(inline)]
 #[serde(tag = "event", rename_all = "snake_case")]
@@ -22,22 +22,22 @@ use super::{Doubt, Source};
 pub(crate) enum Event {
     /// A vehicle was found.
     Found {
-        /// Its MAVLink system.
+        /// The MAVLink system id of the vehicle.
         system: u8,
         #[serde(flatten, serialize_with = "about")]
         #[schemars(with = "About<'_>")]
         vehicle: Vehicle,
     },
-    /// The vehicle sends motor commands: it is believed, and nobody else in its name.
+    /// The vehicle sends motor commands and is trusted; other senders with its system id are not.
     Locked {
         system: u8,
         /// The sender's address and port; null on a serial port.
         #[schemars(with = "Option<String>")]
         address: Source,
     },
-    /// The vehicle that is followed is given up for another one.
+    /// The vehicle is no longer followed, in favour of another one.
     GivenUp { system: u8 },
-    /// It is heard from another address after it had fallen silent.
+    /// After a silence, the vehicle is received from another address.
     SenderChanged {
         system: u8,
         #[schemars(with = "Option<String>")]
@@ -45,7 +45,7 @@ pub(crate) enum Event {
         #[schemars(with = "Option<String>")]
         to: Source,
     },
-    /// Something in its name is not believed; told once of each kind.
+    /// Packets with the system id of the vehicle are not trusted; reported once for each kind.
     Doubt {
         what: Doubt,
         system: u8,
@@ -54,81 +54,81 @@ pub(crate) enum Event {
         #[schemars(with = "Option<String>")]
         address: Source,
     },
-    /// Another watch of the vehicle is heard, or none any more; and whether this one speaks.
+    /// Another watch of the vehicle is received, or is no longer received.
     AnotherWatch {
         system: u8,
-        /// The component that sends the risk too; null where it is not heard any more.
+        /// The component that also sends the risk; null if it is no longer received.
         component: Option<u8>,
         /// Whether this watch sends warnings.
         speaks: bool,
     },
     /// Another vehicle is on the link; it is not followed.
     AnotherVehicle { system: u8 },
-    /// The vehicle that was found is no multirotor; there is nothing to say about it.
+    /// The vehicle is not a multirotor, so it is not followed.
     NotAMultirotor {
         system: u8,
         #[serde(flatten, serialize_with = "about")]
         #[schemars(with = "About<'_>")]
         vehicle: Vehicle,
     },
-    /// Motors and limits are known, or assumed; again where they became known better.
+    /// Motors and limits are known or assumed; repeated when more about them becomes known.
     Ready {
         #[serde(flatten)]
         setup: Setup,
-        /// The parameters that they rest on, and gains, as far as they are known.
+        /// The parameters from which they follow, and gains, as far as they are known.
         parameters: Vec<Parameter>,
     },
-    /// Motor commands come too rarely since somebody else asked for less, or the link became too slow; with the station
-    /// that asked, where the vehicle told it.
+    /// The rate of motor commands is too low, because another station requested a lower rate or the
+    /// link is too slow; with the station, if the vehicle reported it.
     Slowed {
-        /// Motor commands a second.
+        /// The number of motor commands per second.
         rate_hz: f64,
         /// The rate that was requested.
         wanted_hz: f64,
         system: Option<u8>,
         component: Option<u8>,
     },
-    /// Something in words.
+    /// A message in words.
     Note { text: String },
-    /// Nothing comes any more.
+    /// The link or the motor commands are lost.
     Lost { what: Silent },
-    /// It comes again.
+    /// The link or the motor commands are back.
     Back {
         what: Silent,
-        /// The seconds of silence.
+        /// The duration of the silence, in seconds.
         after_s: f64,
     },
-    /// The vehicle started anew.
+    /// The vehicle rebooted.
     Rebooted,
     /// A flight began.
     TookOff {
         /// The time on the clock of the vehicle, in seconds.
         t_s: f64,
     },
-    /// The level changed in flight, with the words, the motor and the cause of the finding that it rests on. It is unknown where the
-    /// risk became unknown while an alarm stood.
+    /// The level changed in flight, with the words, the motor and the cause of the finding behind
+    /// it. The new level is unknown if the risk became unknown during an alarm.
     Level {
         t_s: f64,
-        /// The new level; null where the risk became unknown while an alarm stood.
+        /// The new level; null if the risk became unknown during an alarm.
         level: Option<Level>,
-        /// The level before; null where it was unknown.
+        /// The previous level; null if it was unknown.
         before: Option<Level>,
         /// The text to the ground station, at most 50 characters.
         text: String,
-        /// What kind of finding it rests on: a stable word for programs.
+        /// The code of the finding behind the level: a stable word for programs.
         code: Option<String>,
         /// What to do.
         advice: Option<String>,
         motor: Option<MotorFinding>,
         cause: Option<Cause>,
     },
-    /// A sample was assessed. Its line also has how things stand.
+    /// A sample was assessed. Its line also contains the current state.
     #[serde(skip)]
     Risk { update: Update },
-    /// A finding ended. Its line has it in words, too.
+    /// A finding ended. Its line also contains the finding in words.
     #[serde(skip)]
     Ended { finding: Finding },
-    /// A flight is over, or what was seen of it. Its line is called after its end.
+    /// A flight, or the observed part of it, is over. The name of its line depends on how it ended.
     #[serde(skip)]
     Over { end: End, flown: FlightSummary },
 }
@@ -136,7 +136,7 @@ pub(crate) enum Event {
 /// A vehicle in an event.
 #[derive(Serialize, JsonSchema)]
 struct About<'a> {
-    /// What kind it is, such as `multirotor`.
+    /// The kind of vehicle, such as `multirotor`.
     kind: VehicleKind,
     /// Frame or type name.
     frame: Option<&'a str>,
@@ -180,7 +180,8 @@ pub(crate) enum Lost {
 pub(crate) enum StopReason {
     /// The watch ended.
     WatchEnded,
-    /// Motors or limits became known too late to assess the flight so far anew: the rest is a flight of its own.
+    /// Motors or limits became known too late to assess the flight again from its beginning: the
+    /// rest is assessed as a separate flight.
     SetUpAnew,
 }
 
@@ -195,7 +196,7 @@ pub(crate) struct FlightSummary {
     pub(crate) risk_max: Option<f64>,
 }
 
-/// What fell silent.
+/// The source that fell silent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Silent {

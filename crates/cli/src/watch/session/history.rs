@@ -49,14 +49,14 @@ impl History {
         self.samples.is_empty() && !self.is_cut
     }
 
-    /// Drops the flight.
+    /// Removes all samples.
     pub(super) fn clear(&mut self) {
         if !self.is_empty() {
             *self = History::new(self.most);
         }
     }
 
-    /// The samples since take-off; `None` where not all are kept.
+    /// The samples since take-off; `None` if some were dropped.
     pub(super) fn whole(&self) -> Option<&[Received]> {
         (!self.is_cut).then_some(&self.samples[..])
     }

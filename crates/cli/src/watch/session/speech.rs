@@ -26,7 +26,7 @@ const TEXTS: usize = 8;
 pub(super) struct Speech {
     /// `None` if the watch only listens.
     sender: Option<Sender>,
-    /// Sends even if another watch does.
+    /// Whether it sends even if another watch sends.
     insists: bool,
     other: Option<Other>,
     told: Option<(f64, bool)>,
@@ -196,7 +196,7 @@ impl Speech {
             (None, Some(known)) => known.goes_first || packet.component == 1,
             (None, None) => packet.component == 1 || !self.has_told_risk,
         };
-        // Among several other watches, one with precedence is enough.
+        // If any other watch has precedence, this one does not send.
         if self.other.as_ref().is_some_and(|other| {
             other.goes_first && !goes_first && other.component != packet.component
         }) {
@@ -229,7 +229,7 @@ impl Speech {
         }
     }
 
-    /// Drops all knowledge of other watches, which belongs to another vehicle.
+    /// Forgets the other watches, which belong to another vehicle.
     pub(super) fn forget(&mut self) {
         self.other = None;
         self.told = None;

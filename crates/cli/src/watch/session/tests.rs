@@ -338,7 +338,8 @@ fn a_risk_without_a_motor_at_its_limit_is_reported_with_its_meaning() {
     assert!(text.ends_with(&format!(", {brief}")), "{text}");
 }
 
-/// Motor 3 works harder from some time in flight on: the level remains until the landing, and text and finding name the motor.
+/// Motor 3 gets weaker in flight: the level remains until the landing, and text and finding name
+/// the motor.
 #[test]
 fn a_lasting_imbalance_is_reported_with_its_motor_until_landing() {
     let estimator = shipped::flagred();

@@ -1,4 +1,4 @@
-//! The vehicle that is followed: its link, its motors, and its flight.
+//! The followed vehicle: its link, its motors, and its flight.
 
 use flagred::{
     estimator::Estimator,
@@ -29,18 +29,18 @@ const TELL_SLOWED_S: f64 = 60.0;
 /// A vehicle that is followed.
 pub(super) struct Tracked {
     pub(super) telemetry: Telemetry,
-    /// The origin of its packets.
+    /// The origin of the vehicle's packets.
     pub(super) source: Source,
-    /// Motor commands were received, and their clock advances.
+    /// Whether motor commands with an advancing clock were received.
     pub(super) is_proved: bool,
-    /// The connection on which it was received is closed.
+    /// Whether the connection on which the vehicle was received is closed.
     pub(super) is_gone: bool,
     pub(super) requests: Requests,
     pub(super) found_s: f64,
     pub(super) heard_s: f64,
     pub(super) link_lost: bool,
     pub(super) set_up_tried: bool,
-    /// Why its motors cannot be assessed.
+    /// The reason why the motors cannot be assessed, if there is one.
     pub(super) refused: Option<Reason>,
     /// The flight so far: parameters that arrive later may change motors or limits.
     pub(super) history: History,
@@ -359,7 +359,7 @@ impl Watch {
         }
     }
 
-    /// Takes in a sample.
+    /// Processes a sample.
     pub(super) fn push(&mut self, received: &Received) -> Update {
         self.setup
             .effective_commands(&received.pulses, &mut self.motors);
@@ -378,7 +378,7 @@ impl Watch {
         for input in monitor.assumed().filter_map(|index| inputs.get(index)) {
             let signals: Vec<&str> = input.source.signal.carried().collect();
             let text = format!(
-                "`{}` is not received yet: input `{}` is assumed to be {} (`if_missing`)",
+                "`{}` has not been received yet: input `{}` is assumed to be {} (`if_missing`)",
                 signals.join("` and `"),
                 input.name,
                 number(input.if_missing.unwrap_or(f64::NAN), 6)
@@ -387,7 +387,7 @@ impl Watch {
         }
     }
 
-    /// Takes in a flight up to now; its findings are told anew, its levels are not.
+    /// Processes the samples of a flight so far; findings are reported again, levels are not.
     fn replay(&mut self, flown: &[Received], out: &mut Out) {
         for received in flown {
             let update = self.push(received);

@@ -21,7 +21,7 @@ const CANDIDATES: usize = 256;
 const SERVO_OUTPUT_RAW: u32 = 36;
 const PARAM_VALUE: u32 = 22;
 
-/// Something that is not believed.
+/// A kind of packet that is not trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Doubt {
@@ -29,18 +29,18 @@ pub(crate) enum Doubt {
     SecondSender,
     /// A parameter from another component of the vehicle.
     OtherComponent,
-    /// A time stamp that jumps while the clock goes on.
+    /// A timestamp that jumps although the clock does not.
     ClockJump,
 }
 
-/// How much was not believed.
+/// The numbers of packets that were not trusted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub(crate) struct Doubts {
-    /// Packets in the name of the vehicle's autopilot from another address.
+    /// Packets with the ids of the vehicle's autopilot, from another address.
     pub(crate) second_sender: u64,
     /// Parameters from other components.
     pub(crate) other_component: u64,
-    /// Time stamps that jump.
+    /// Timestamps that jump.
     pub(crate) clock_jumps: u64,
 }
 
@@ -93,12 +93,13 @@ pub(super) enum Proof {
     Commands,
 }
 
-/// Senders that may be a vehicle, while none is followed or the followed one has not proved to be one.
+/// Senders that may be a vehicle, while no vehicle is followed or the followed one is not yet
+/// confirmed.
 #[derive(Debug, Default)]
 pub(super) struct Candidates(Vec<Candidate>);
 
 impl Candidates {
-    /// Counts motor commands.
+    /// Counts the motor commands of a candidate.
     pub(super) fn hear(&mut self, source: Source, packet: &Packet<'_>) {
         if packet.id != SERVO_OUTPUT_RAW || packet.component != 1 {
             return;

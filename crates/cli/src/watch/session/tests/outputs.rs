@@ -86,7 +86,7 @@ fn motors_on_both_ports_require_recent_values_of_both() {
     let geometry = setup.geometry.as_ref().unwrap();
     assert_eq!(geometry.frame.as_deref(), Some("HEXA/X"));
 
-    // The first time stamp alone is not trusted yet.
+    // A single timestamp is not trusted yet.
     for t_s in [9.96, 10.0] {
         bench.pulses(t_s, 0, 1500, 0);
         bench.pulses(t_s, 1, 0, 1900);

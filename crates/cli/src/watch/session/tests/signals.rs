@@ -13,7 +13,7 @@ fn battery(remaining_pct: i8) -> MavMessage {
     })
 }
 
-/// The shipped profile with the battery, with a value for vehicles without a battery monitor.
+/// The profile `flagred-battery` with a value to assume for vehicles without a battery monitor.
 fn with_optional_battery() -> Estimator {
     let shipped = shipped::flagred_battery();
     let mut profile: Profile = shipped.profile().clone();
@@ -23,7 +23,7 @@ fn with_optional_battery() -> Estimator {
 }
 
 impl<'e> Bench<'e> {
-    /// A vehicle whose parameters are known.
+    /// A session with a vehicle whose parameters are known.
     fn known(estimator: &'e Estimator) -> Bench<'e> {
         let mut bench = Bench::new(estimator, Some(191));
         bench.beat(false);
@@ -67,7 +67,7 @@ fn without_a_battery_level_the_flight_has_no_verdict() {
     let estimator = shipped::flagred_battery();
     let mut bench = Bench::known(&estimator);
     bench.hover(10.0, 30.0, 1500);
-    // -1 is MAVLink's word for unknown.
+    // In MAVLink, -1 means unknown.
     bench.hover_with(40.0, -1);
     let verdict = bench.session.finish(&mut Out::default());
     assert!(matches!(verdict, Verdict::NotAvailable(_)), "{verdict}");
@@ -86,7 +86,7 @@ fn the_value_for_missing_signals_holds_until_the_signal_is_received() {
         });
         texts.collect::<Vec<String>>()
     };
-    let assumed = "`battery_remaining_pct` is not received yet: input `battery` is assumed to be 100 (`if_missing`)";
+    let assumed = "`battery_remaining_pct` has not been received yet: input `battery` is assumed to be 100 (`if_missing`)";
     assert_eq!(notes(&bench), [assumed]);
     bench.hover_with(40.0, 2);
     assert_eq!(bench.level(), Some(Level::Fail));

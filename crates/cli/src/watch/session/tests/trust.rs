@@ -287,7 +287,7 @@ fn the_older_of_two_watches_sends_and_the_younger_takes_over() {
     assert_eq!(bench.count(told(None, true)), 1);
     assert!(said_by(&bench) > before + 10);
 
-    // A younger watch does not silence it.
+    // A watch with a shorter running time does not silence it.
     elder.say(&mut bench, &watch_beat(1.0));
     let before = said_by(&bench);
     bench.hover(30.0, 4.0, 1950);
