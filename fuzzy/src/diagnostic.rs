@@ -443,6 +443,11 @@ pub(crate) fn either(words: &[&str]) -> String {
     }
 }
 
+/// Formats all words, without a limit, as `` `A`, `B` and `C` ``
+pub(crate) fn all_of(words: &[&str]) -> String {
+    either(words).replace(" or ", " and ")
+}
+
 pub(crate) fn listed(words: &[&str]) -> String {
     const MOST: usize = 12;
     let mut list = String::new();

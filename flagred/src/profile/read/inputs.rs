@@ -47,13 +47,35 @@ const MOTORS: [(&str, Motors); 4] = [
 
 pub(super) fn inputs(fields: &Fields, window_s: f64, found: &mut Found) -> Vec<ProfileInput> {
     let help =
-        "say where each input of the rule set comes from: `inputs: {margin: {mean: motor_margin}}`";
+        "write the source of each input of the rule set: `inputs: {margin: {mean: motor_margin}}`";
     let Some(node) = fields.require("inputs", help, found) else {
         return Vec::new();
     };
-    let entries = node.entries("`inputs`", "input", found).unwrap_or_default();
+    let help = "write each input by its name, without `-`: `inputs: {margin: {mean: motor_margin}}`";
+    let entries = node.entries("`inputs`", "input", help, found);
+    let entries = entries.unwrap_or_default();
     let read = |entry| input(entry, &entries, window_s, found);
     entries.iter().filter_map(read).collect()
+}
+
+/// The suggestion for the source of an input that is not a mapping, such as `motor_margin` or `mean(motor_margin)`.
+fn source_help(entry: &Entry) -> String {
+    let (statistic, signal) = match &entry.value.value {
+        Value::Scalar(scalar) => match scalar.text.trim_end_matches(')').split_once('(') {
+            Some((statistic, signal)) => (statistic, signal),
+            None => ("mean", scalar.text.as_str()),
+        },
+        _ => ("mean", ""),
+    };
+    let is_word = |text: &str| {
+        let mut letters = text.chars();
+        letters.next().is_some_and(|c| c.is_ascii_alphabetic())
+            && letters.all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    let signal = if is_word(signal) { signal } else { "motor_margin" };
+    let is_known = STATISTICS.iter().any(|(name, _)| *name == statistic);
+    let statistic = if is_known { statistic } else { "mean" };
+    format!("write a statistic of a signal: `{}: {{{statistic}: {signal}}}`", entry.key)
 }
 
 fn input(
@@ -72,7 +94,7 @@ fn input(
         .chain(RATIO)
         .collect();
     let before = found.len();
-    let fields = entry.value.fields(&what, &keys, found)?;
+    let fields = entry.value.fields(&what, &keys, &source_help(entry), found)?;
     let given: Vec<&str> = statistics
         .chain(with_number)
         .filter(|k| fields.get(k).is_some())
@@ -205,7 +227,7 @@ fn ratio(fields: &Fields, entry: &Entry, entries: &[Entry], found: &mut Found) -
 
 /// The name of the input that a ratio divides by.
 fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Option<String> {
-    let name = &node.words("an input of a ratio", found)?.text;
+    let name = &node.words("an input of a ratio", "write the name of another input", found)?.text;
     let is_ratio = |other: &Entry| match &other.value.value {
         Value::Mapping(pairs) => pairs
             .iter()
@@ -224,7 +246,7 @@ fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Op
 
 /// Reads the name of a signal, which is neither a number nor a computation.
 fn signal_name<'n>(node: &'n Node, what: &str, found: &mut Found) -> Option<&'n str> {
-    let name = node.words(what, found)?.text.as_str();
+    let name = node.words(what, "write the name of a signal, such as `motor_margin`", found)?.text.as_str();
     let message = if name.parse::<f64>().is_ok() {
         format!("{what} is a name, not the number {name}")
     } else if [" / ", " * ", " - ", " + "]
@@ -257,7 +279,7 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         .collect();
     let over = format!("the statistic over motors of {what}");
     let before = found.len();
-    let fields = node.fields(&over, &keys, found)?;
+    let fields = node.fields(&over, &keys, "write the name of a signal", found)?;
     let given: Vec<&str> = keys
         .into_iter()
         .filter(|key| fields.get(key).is_some())
@@ -324,17 +346,16 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
 
 /// Reads `[yaw_des_deg, yaw_deg]`.
 fn pair(key: &str, node: &Node, found: &mut Found) -> Option<[String; 2]> {
-    let [a, b] = node.items(&format!("`{key}`"), found)? else {
-        let (what, example) = match key {
-            "difference" => ("the second from the first", "yaw_des_deg, yaw_deg"),
-            "ratio" => ("the first divided by the second", "battery_a, battery_v"),
-            _ => ("which are multiplied", "battery_a, battery_v"),
-        };
-        let message = format!("`{key}` takes two signals, {what}");
-        found.push(
-            Diagnostic::error("signal", node.span.clone(), message)
-                .help(format!("write for example `{{{key}: [{example}]}}`")),
-        );
+    let (what, example) = match key {
+        "difference" => ("and subtracts the second from the first", "yaw_des_deg, yaw_deg"),
+        "ratio" => ("and divides the first by the second", "battery_a, battery_v"),
+        _ => ("and multiplies them", "battery_a, battery_v"),
+    };
+    let help = format!("write for example `{{{key}: [{example}]}}`");
+    let items = node.items(&format!("`{key}`"), &help, found)?;
+    let [a, b] = items else {
+        let message = format!("`{key}` takes two signals, {what}, not {}", items.len());
+        found.push(Diagnostic::error("signal", node.span.clone(), message).help(help));
         return None;
     };
     let mut name = |node: &Node| {
