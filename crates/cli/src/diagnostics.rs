@@ -6,6 +6,7 @@ use std::{
     path::Path,
 };
 
+use flagred_authoring::kind;
 use flagred_report::diagnostics::{self, Style};
 use fuzzy::{
     diagnostic::{Diagnostic, Findings},
@@ -86,6 +87,10 @@ fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
 
 /// Decodes the text of a rule set or profile.
 pub(crate) fn text(bytes: Vec<u8>, shown: &str) -> Result<String, Failure> {
+    if let Some(kind) = kind::binary(&bytes) {
+        let failure = Failure::unreadable(format!("`{shown}` is {}", kind.name));
+        return Err(failure.help(kind.help));
+    }
     decoded(bytes).map_err(|error| error.failure(shown))
 }
 
@@ -104,7 +109,7 @@ impl NoText {
     fn failure(&self, file: &str) -> Failure {
         let failure = Failure::unreadable(match self.at {
             Some((line, byte)) => {
-                format!("`{file}` is not UTF-8: line {line} holds the byte {byte:02X}")
+                format!("`{file}` is not UTF-8: line {line} contains the byte {byte:02X}")
             }
             None => format!("`{file}` is not UTF-16, which its first two bytes announce"),
         });

@@ -82,6 +82,20 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         return None;
     }
     let fields = tree.fields("the profile", &keys, "", found)?;
+    if let Some(entry) = fields.unknown().find(|entry| entry.key == "fuzzy")
+        && fields.get("flagred").is_none()
+    {
+        let (span, message) = (
+            entry.key_span.clone(),
+            "this is a profile, but it begins like a rule set",
+        );
+        found.clear();
+        found.push(
+            Diagnostic::error("unknown-key", span, message)
+                .help("write `flagred: 1` in place of `fuzzy: 1`"),
+        );
+        return None;
+    }
     if let Some(version) = fields.require("flagred", "write `flagred: 1` as its first line", found)
         && version.whole("the version", 1, found) != Some(VERSION)
         && found.is_empty()
@@ -105,7 +119,13 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         .map(|words| words.text.clone());
     let output = fields
         .get("output")
-        .and_then(|node| node.words("the output", "write the name of an output of the rule set: `output: risk`", found))
+        .and_then(|node| {
+            node.words(
+                "the output",
+                "write the name of an output of the rule set: `output: risk`",
+                found,
+            )
+        })
         .map_or_else(|| "risk".into(), |words| words.text.clone());
     let window_s = number(&fields, "window_s", WINDOW_S, Bounds::Above0, found);
     let inputs = inputs(&fields, window_s, found);
@@ -170,13 +190,10 @@ fn sampling(fields: &Fields, found: &mut Found) -> Sampling {
 
 fn gap(fields: &Fields, found: &mut Found) -> GapSettings {
     let mut gap = GapSettings::default();
-    let Some(fields) = fields
-        .get("gap")
-        .and_then(|node| {
-            let help = "write `gap: {method: nearest}`";
-            node.fields("`gap`", &["method", "coverage_below"], help, found)
-        })
-    else {
+    let Some(fields) = fields.get("gap").and_then(|node| {
+        let help = "write `gap: {method: nearest}`";
+        node.fields("`gap`", &["method", "coverage_below"], help, found)
+    }) else {
         return gap;
     };
     gap.coverage_below = fields
@@ -210,7 +227,8 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
 /// Reads the other outputs that are risks; missing settings are those of the first risk.
 fn other_risks(fields: &Fields, defaults: &OtherRisk, found: &mut Found) -> Vec<OtherRisk> {
     let entries = fields.get("other_risks").and_then(|node| {
-        let help = "write each output by its name: `other_risks: {battery_risk: {warn: {risk: 60}}}`";
+        let help =
+            "write each output by its name: `other_risks: {battery_risk: {warn: {risk: 60}}}`";
         node.entries("`other_risks`", "output", help, found)
     });
     let mut risks = Vec::new();
@@ -243,13 +261,10 @@ fn elevated_risk(
     found: &mut Found,
 ) -> AccumulatorSettings {
     let keys = ["window_s", "high", "low", "rise_per_s", "fall_per_s"];
-    let Some(fields) = fields
-        .get("elevated_risk")
-        .and_then(|node| {
-            let help = "write `elevated_risk: {window_s: 10, high: 50, low: 20}`";
-            node.fields("`elevated_risk`", &keys, help, found)
-        })
-    else {
+    let Some(fields) = fields.get("elevated_risk").and_then(|node| {
+        let help = "write `elevated_risk: {window_s: 10, high: 50, low: 20}`";
+        node.fields("`elevated_risk`", &keys, help, found)
+    }) else {
         return default;
     };
     let settings = AccumulatorSettings {

@@ -45,7 +45,8 @@ pub(super) fn of(model: &Model, at: &At<'_>, found: &mut Vec<Diagnostic>) {
                 let message = format!(
                     "the formula of term `{term}` of output `{name}` has no finite value at any of the inputs tried"
                 );
-                let help = "division by 0, and roots and logarithms of negative numbers, have no value";
+                let help =
+                    "division by 0, and roots and logarithms of negative numbers, have no value";
                 let span = at.term_of(name, term);
                 found.push(Diagnostic::warning("no-value", span, message).help(help));
             }
@@ -58,7 +59,10 @@ pub(super) fn of(model: &Model, at: &At<'_>, found: &mut Vec<Diagnostic>) {
             };
             if proposition.hedges.contains(&Hedge::Any) {
                 let (input, term) = (&proposition.variable.text, &term.text);
-                let message = format!("the term `{term}` after `any` has no effect in rule {}", index + 1);
+                let message = format!(
+                    "the term `{term}` after `any` has no effect in rule {}",
+                    index + 1
+                );
                 let help = format!(
                     "write `{input} IS any` for every value of `{input}`, or `{input} IS {term}`"
                 );
@@ -73,17 +77,20 @@ pub(super) fn of(model: &Model, at: &At<'_>, found: &mut Vec<Diagnostic>) {
 /// whole range, including values at which another term is true as well.
 fn constant(input: &Variable, term: &Term) -> Option<(String, String)> {
     let width = input.high - input.low;
-    if matches!(term.membership_function, MembershipFunction::Constant { .. }) || width <= 0.0 {
+    if matches!(
+        term.membership_function,
+        MembershipFunction::Constant { .. }
+    ) || width <= 0.0
+    {
         // A constant is intended.
         return None;
     }
     let at = |step: u32| input.low + width * (f64::from(step) / f64::from(STEPS));
     let degrees: Vec<f64> = (0..=STEPS).map(|step| term.membership(at(step))).collect();
-    let (least, most) = degrees
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), degree| {
-            (least.min(*degree), most.max(*degree))
-        });
+    let (least, most) = degrees.iter().fold(
+        (f64::INFINITY, f64::NEG_INFINITY),
+        |(least, most), degree| (least.min(*degree), most.max(*degree)),
+    );
     if !(most > EQUAL) {
         // A term that is 0 on the whole range is reported on its own.
         return None;
@@ -99,10 +106,15 @@ fn constant(input: &Variable, term: &Term) -> Option<(String, String)> {
             true => shown(rounded(least)),
             false => format!("{} to {}", shown(rounded(least)), shown(rounded(most))),
         };
-        let message = format!("term `{name}` of input `{of}` is nearly constant: {degrees} on the whole range");
+        let message = format!(
+            "term `{name}` of input `{of}` is nearly constant: {degrees} on the whole range"
+        );
         return Some((message, help));
     }
-    let top = degrees.iter().filter(|degree| **degree > most - EQUAL).count();
+    let top = degrees
+        .iter()
+        .filter(|degree| **degree > most - EQUAL)
+        .count();
     let share = top as f64 / degrees.len() as f64;
     let is_beside = |other: &&Term| {
         other.name != *name

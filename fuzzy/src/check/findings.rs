@@ -10,8 +10,7 @@ use core::ops::Range;
 
 use super::{
     AgainstTrend, Contradiction, Coordinate, Counterexample, Direction, EqualTerms, Hole, Jump,
-    Reach, Report, TermOf, Uncovered,
-    effects,
+    Reach, Report, TermOf, Uncovered, effects,
     gaps::{Gap, gaps, is_missing},
     outer, shown,
     terms::is_outside,
@@ -256,7 +255,9 @@ impl At<'_> {
             _ => ("blocks", "are"),
         };
         let names = listed(&names);
-        Some(format!("the {subject} {names} {are} disabled: remove `enabled: false`"))
+        Some(format!(
+            "the {subject} {names} {are} disabled: remove `enabled: false`"
+        ))
     }
 
     fn side(&self, side: &super::Side) -> String {

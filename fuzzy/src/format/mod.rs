@@ -297,11 +297,7 @@ pub(crate) fn write_lists(model: &Model) -> Node {
 }
 
 /// Returns the text of a key, if there is one.
-fn optional_text(
-    fields: &Fields<'_>,
-    key: &str,
-    findings: &mut Vec<Diagnostic>,
-) -> Option<String> {
+fn optional_text(fields: &Fields<'_>, key: &str, findings: &mut Vec<Diagnostic>) -> Option<String> {
     let node = fields.get(key)?;
     let help = format!("write a text: `{key}: ...`");
     let text = node.words(&format!("`{key}`"), &help, findings)?;

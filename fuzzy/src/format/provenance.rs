@@ -19,7 +19,9 @@ pub(super) const LOSS_KEYS: [&str; 3] = ["name", "before", "after"];
 
 pub(super) fn read(node: &Node, findings: &mut Vec<Diagnostic>) -> Vec<Step> {
     let help = "write `provenance: [{command: by hand}]`, with an entry for each step";
-    let items = node.items("`provenance`", help, findings).unwrap_or_default();
+    let items = node
+        .items("`provenance`", help, findings)
+        .unwrap_or_default();
     let steps = items.iter().enumerate();
     let steps = steps.filter_map(|(i, item)| step(item, i + 1, findings));
     steps.collect()

@@ -39,9 +39,16 @@ pub(super) fn read(
             continue;
         }
         let parts = items.iter().skip(i + 1).take_while(|item| continues(item));
-        let parts: Vec<&str> = core::iter::once(item).chain(parts).filter_map(written).collect();
+        let parts: Vec<&str> = core::iter::once(item)
+            .chain(parts)
+            .filter_map(written)
+            .collect();
         if parts.len() > 1 {
-            let message = format!("rule {} is split into {} entries", before + i + 1, parts.len());
+            let message = format!(
+                "rule {} is split into {} entries",
+                before + i + 1,
+                parts.len()
+            );
             let help = format!("write it in one entry: `- {}`", parts.join(" "));
             let finding = Diagnostic::error("rule-syntax", item.span.clone(), message);
             findings.push(finding.help(help));
@@ -79,7 +86,9 @@ fn written(item: &Node) -> Option<&str> {
 fn continues(item: &Node) -> bool {
     let first = written(item).and_then(|text| text.split_whitespace().next());
     first.is_some_and(|first| {
-        ["AND", "OR", "THEN", "WITH"].iter().any(|word| first.eq_ignore_ascii_case(word))
+        ["AND", "OR", "THEN", "WITH"]
+            .iter()
+            .any(|word| first.eq_ignore_ascii_case(word))
     })
 }
 

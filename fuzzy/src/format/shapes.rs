@@ -62,7 +62,10 @@ pub(super) fn read(
         {
             let rest = second.key;
             let message = "a comma in braces ends the formula";
-            let help = format!("put the formula in quotes: `function: \"{}, {rest}\"`", start.text);
+            let help = format!(
+                "put the formula in quotes: `function: \"{}, {rest}\"`",
+                start.text
+            );
             let span = shape.value.span.start..second.key_span.end;
             findings.push(Diagnostic::error("formula-syntax", span, message).help(help));
             return None;
@@ -167,15 +170,21 @@ fn other_parameters(form: &Form, fields: &Fields<'_>) -> Diagnostic {
         all_of(&others)
     );
     let span = unknown.first().map_or(0..0, |entry| entry.key_span.clone());
-    let numbers = fields.entries().iter().filter_map(|entry| match &entry.value.value {
-        Value::Scalar(scalar) => scalar.as_number().map(|_| scalar.text.as_str()),
-        _ => None,
-    });
+    let numbers = fields
+        .entries()
+        .iter()
+        .filter_map(|entry| match &entry.value.value {
+            Value::Scalar(scalar) => scalar.as_number().map(|_| scalar.text.as_str()),
+            _ => None,
+        });
     let numbers: Vec<&str> = numbers.collect();
     let help = match numbers.len() == names.len() {
         true if form.as_list() => format!("write `{}: [{}]`", form.name, numbers.join(", ")),
         true => {
-            let named = names.iter().zip(numbers).map(|(name, number)| format!("{name}: {number}"));
+            let named = names
+                .iter()
+                .zip(numbers)
+                .map(|(name, number)| format!("{name}: {number}"));
             let named: Vec<String> = named.collect();
             format!("write `{}: {{{}}}`", form.name, named.join(", "))
         }
@@ -212,7 +221,9 @@ fn points(
 ) -> Option<MembershipFunction> {
     let items = node.items(&format!("the points of {term}"), POINTS_HELP, findings)?;
     if let Some(first) = items.first()
-        && items.iter().all(|item| matches!(&item.value, Value::Scalar(_)))
+        && items
+            .iter()
+            .all(|item| matches!(&item.value, Value::Scalar(_)))
     {
         // For example `[30, 0, 50, 1, 70, 0]`.
         let numbers = items.iter().filter_map(|item| match &item.value {

@@ -27,7 +27,9 @@ pub(super) fn read(
         return;
     };
     let before = findings.len();
-    let entries = node.entries(what, "term", HELP, findings).unwrap_or_default();
+    let entries = node
+        .entries(what, "term", HELP, findings)
+        .unwrap_or_default();
     let mut steps: Vec<(Entry<'_>, Option<f64>)> = Vec::with_capacity(entries.len());
     for entry in entries {
         let limit = limit(what, &entry, findings);

@@ -45,7 +45,9 @@ pub(super) const OUTPUT_KEYS: [&str; 11] = [
 
 /// The suggestion for the inputs or the outputs; the first field is the key.
 fn variables_help(key: &str) -> String {
-    format!("write each by its name: `{key}: {{speed: {{range: [0, 10], partition: [low, high]}}}}`")
+    format!(
+        "write each by its name: `{key}: {{speed: {{range: [0, 10], partition: [low, high]}}}}`"
+    )
 }
 
 /// The suggestion for a variable.
@@ -74,7 +76,12 @@ pub(super) fn outputs(
     spans: &mut Vec<VariableSpans>,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Output>> {
-    let entries = node.entries("`outputs`", "variable", &variables_help("outputs"), findings)?;
+    let entries = node.entries(
+        "`outputs`",
+        "variable",
+        &variables_help("outputs"),
+        findings,
+    )?;
     let read = |entry: &Entry<'_>| {
         let what = format!("output `{}`", entry.key);
         let fields = entry.fields(&what, &OUTPUT_KEYS, &variable_help(entry.key), findings);
@@ -128,7 +135,11 @@ fn likely_defuzzifier(node: &Node, variable: &Variable) -> Option<Defuzzifier> {
     let is_number = |term: &Term| term.membership_function.number().is_some();
     match likely.next() {
         Some((_, defuzzifier)) => Some(*defuzzifier),
-        None => variable.terms.iter().any(is_number).then_some(Defuzzifier::WeightedAverage),
+        None => variable
+            .terms
+            .iter()
+            .any(is_number)
+            .then_some(Defuzzifier::WeightedAverage),
     }
 }
 
@@ -282,14 +293,24 @@ fn variable(
             let is_weighted = fields.get("defuzzifier").is_some_and(|node| {
                 matches!(&node.value, Value::Scalar(word) if word.text.starts_with("weighted"))
             });
-            if !bare_numbers(what, entry, is_weighted, &mut variable, &mut spans, findings) {
+            if !bare_numbers(
+                what,
+                entry,
+                is_weighted,
+                &mut variable,
+                &mut spans,
+                findings,
+            ) {
                 read(what, entry.value, &mut variable, &mut spans, findings);
             }
         }
         (None, _) if fields.misspells("partition") || fields.misspells("steps") => {}
         (None, _) => {
             let forms = ["partition", "steps", "terms"];
-            let empty = fields.entries().iter().find(|entry| forms.contains(&entry.key));
+            let empty = fields
+                .entries()
+                .iter()
+                .find(|entry| forms.contains(&entry.key));
             let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each";
             fields.require(empty.map_or("terms", |entry| entry.key), help, findings);
             let stray: Vec<&str> = fields.unknown().map(|entry| entry.key).collect();
@@ -299,7 +320,8 @@ fn variable(
                 // The terms are in the column of their key.
                 fields.withdraw(findings);
                 if let Some(finding) = findings.last_mut() {
-                    finding.help = Some(format!("indent {} under `{}:`", all_of(&stray), empty.key));
+                    finding.help =
+                        Some(format!("indent {} under `{}:`", all_of(&stray), empty.key));
                 }
             }
         }
@@ -319,18 +341,23 @@ fn bare_numbers(
     let Value::Mapping(pairs) = &entry.value.value else {
         return false;
     };
-    let numbers = pairs.iter().filter_map(|(key, value)| match (&key.value, &value.value) {
-        (Value::Scalar(name), Value::Scalar(number)) => {
-            number.as_number().map(|_| (key, name.text.as_str(), number.text.as_str()))
-        }
-        _ => None,
-    });
+    let numbers = pairs
+        .iter()
+        .filter_map(|(key, value)| match (&key.value, &value.value) {
+            (Value::Scalar(name), Value::Scalar(number)) => number
+                .as_number()
+                .map(|_| (key, name.text.as_str(), number.text.as_str())),
+            _ => None,
+        });
     let numbers: Vec<(&Node, &str, &str)> = numbers.collect();
     if entry.key != "terms" || numbers.is_empty() || numbers.len() != pairs.len() {
         return false;
     }
     let list = |part: fn(&str, &str) -> String| {
-        let parts: Vec<String> = numbers.iter().map(|(_, name, number)| part(name, number)).collect();
+        let parts: Vec<String> = numbers
+            .iter()
+            .map(|(_, name, number)| part(name, number))
+            .collect();
         parts.join(", ")
     };
     let peaks = list(|name, number| format!("{name}: {number}"));
@@ -339,7 +366,9 @@ fn bare_numbers(
             "write `terms: {{{}}}`",
             list(|name, number| format!("{name}: {{constant: {number}}}"))
         ),
-        false => format!("for peaks write `partition: {{{peaks}}}`; a term is a membership function: `{{triangle: [0, 1, 2]}}`"),
+        false => format!(
+            "for peaks write `partition: {{{peaks}}}`; a term is a membership function: `{{triangle: [0, 1, 2]}}`"
+        ),
     };
     let message = format!("the terms of {what} are numbers, not membership functions");
     let span = entry.value.span.clone();
@@ -392,12 +421,14 @@ fn partition(
     match &node.value {
         Value::List(items) => {
             if let Some(help) = peaks_in_list(items) {
-                let finding = node.unexpected(&format!("peaks in braces for the partition of {what}"));
+                let finding =
+                    node.unexpected(&format!("peaks in braces for the partition of {what}"));
                 findings.push(finding.help(help));
                 return;
             }
             for item in items {
-                let Some(name) = item.words(&format!("a term of {what}"), PARTITION_HELP, findings) else {
+                let Some(name) = item.words(&format!("a term of {what}"), PARTITION_HELP, findings)
+                else {
                     continue;
                 };
                 if let Some(first) = seen.insert(&name.text, item) {
@@ -416,7 +447,8 @@ fn partition(
             let entries = node.entries(what, "term", PARTITION_HELP, findings);
             let mut entries = entries.unwrap_or_default();
             if let Some(help) = colons_without_space(&entries) {
-                let message = format!("a space is missing after the colons of the partition of {what}");
+                let message =
+                    format!("a space is missing after the colons of the partition of {what}");
                 let span = node.span.clone();
                 findings.push(Diagnostic::error("yaml-syntax", span, message).help(help));
                 return;
@@ -447,7 +479,10 @@ fn partition(
                     && entry.key.bytes().all(|c| c.is_ascii_digit())
                     && let Some(finding) = findings.get_mut(before)
                 {
-                    let whole = entries.iter().take_while(|one| one.key_span != entry.key_span).last();
+                    let whole = entries
+                        .iter()
+                        .take_while(|one| one.key_span != entry.key_span)
+                        .last();
                     let whole = whole.map(|one| &one.value.value);
                     finding.help = Some(match whole {
                         Some(Value::Scalar(whole)) => {
@@ -507,7 +542,9 @@ fn peaks_in_list(items: &[Node]) -> Option<String> {
     let peaks = items.iter().map(|item| match &item.value {
         Value::Mapping(pairs) => match pairs.as_slice() {
             [(key, value)] => match (&key.value, &value.value) {
-                (Value::Scalar(name), Value::Scalar(peak)) => Some(format!("{}: {}", name.text, peak.text)),
+                (Value::Scalar(name), Value::Scalar(peak)) => {
+                    Some(format!("{}: {}", name.text, peak.text))
+                }
                 _ => None,
             },
             _ => None,
@@ -611,7 +648,8 @@ fn terms(
     spans: &mut VariableSpans,
     findings: &mut Vec<Diagnostic>,
 ) {
-    let help = "write `terms: {low: {triangle: [0, 1, 2]}}`, or `partition: [low, high]` for even spacing";
+    let help =
+        "write `terms: {low: {triangle: [0, 1, 2]}}`, or `partition: [low, high]` for even spacing";
     let Some(entries) = node.entries(what, "term", help, findings) else {
         return;
     };

@@ -375,7 +375,8 @@ fn quoted(rest: &str, quote: char) -> Step<'_, String> {
 }
 
 /// The suggestion for a choice between two values.
-const IF: &str = "a comparison is 1 or 0: for a if c is true, else b, write `(c) * a + (1 - (c)) * b`";
+const IF: &str =
+    "a comparison is 1 or 0: for a if c is true, else b, write `(c) * a + (1 - (c)) * b`";
 
 /// Returns whether a number with `%` is before this position, as in `50% * x`.
 fn percent(text: &str, start: usize) -> bool {

@@ -248,10 +248,16 @@ fn is_missing(
             }
             Some(last) => match of {
                 Some(other) if other != last => {
-                    format!("name the input: `{} {other} IS {name}`", joint.to_uppercase())
+                    format!(
+                        "name the input: `{} {other} IS {name}`",
+                        joint.to_uppercase()
+                    )
                 }
                 _ => {
-                    format!("name the input again: `{} {last} IS {name}`", joint.to_uppercase())
+                    format!(
+                        "name the input again: `{} {last} IS {name}`",
+                        joint.to_uppercase()
+                    )
                 }
             },
             None => format!("write `{name} IS` and a term"),
@@ -269,7 +275,9 @@ fn is_missing(
         && is_plain_name(next)
         && next.parse::<f64>().is_err()
     {
-        return Some(format!("a condition names a term: write `{name} IS {next}`"));
+        return Some(format!(
+            "a condition names a term: write `{name} IS {next}`"
+        ));
     }
     if found.starts_with(['<', '>', '≤', '≥', '-', '+', '*', '/']) || is("BETWEEN") {
         return Some(format!(
@@ -301,7 +309,10 @@ fn is_missing(
         let behind_next = behind.trim_start().get(next.len()..).unwrap_or("");
         // For example `fan SHOULD BE fast`.
         if next.eq_ignore_ascii_case("BE") {
-            return Some(format!("write `{name} IS {}`", found_here(behind_next.trim_start())));
+            return Some(format!(
+                "write `{name} IS {}`",
+                found_here(behind_next.trim_start())
+            ));
         }
         // For example `fan BECOMES fast`, `temperature WAS hot`.
         let is_verb = is_plain_name(next) && !Rule::is_keyword(next);
@@ -528,7 +539,10 @@ fn behind_conclusion(before: &str, rest: &str, weighted: bool) -> Option<String>
         && let Some(Ok(number)) = before.split_whitespace().next_back().map(str::parse::<f64>)
         && (0.0..=1.0).contains(&(number / divisor))
     {
-        return Some(format!("write a weight as a decimal number: `WITH {}`", number / divisor));
+        return Some(format!(
+            "write a weight as a decimal number: `WITH {}`",
+            number / divisor
+        ));
     }
     let is = |word: &str| found.eq_ignore_ascii_case(word);
     if is("else") {

@@ -208,12 +208,7 @@ impl Node {
     }
 
     /// Reads a list; `help` is the suggestion for other values.
-    pub fn items(
-        &self,
-        what: &str,
-        help: &str,
-        findings: &mut Vec<Diagnostic>,
-    ) -> Option<&[Node]> {
+    pub fn items(&self, what: &str, help: &str, findings: &mut Vec<Diagnostic>) -> Option<&[Node]> {
         match &self.value {
             Value::List(items) => Some(items),
             _ => {
@@ -274,12 +269,7 @@ impl Node {
 
     /// Reads text; `help` is the suggestion for other values. Numbers and booleans are returned as written, because
     /// names may look like them.
-    pub fn words(
-        &self,
-        what: &str,
-        help: &str,
-        findings: &mut Vec<Diagnostic>,
-    ) -> Option<&Scalar> {
+    pub fn words(&self, what: &str, help: &str, findings: &mut Vec<Diagnostic>) -> Option<&Scalar> {
         match &self.value {
             Value::Scalar(scalar) if !scalar.is_null() => Some(scalar),
             _ => {
@@ -463,8 +453,13 @@ impl Node {
         if let Some(number) = other_notation(text) {
             return Some(format!("write decimal digits only: `{number}`"));
         }
-        if let Some(positive) = text.strip_prefix(DASHES).filter(|rest| plain(rest).is_some()) {
-            return Some(format!("this dash is not a minus sign: write `-{positive}`"));
+        if let Some(positive) = text
+            .strip_prefix(DASHES)
+            .filter(|rest| plain(rest).is_some())
+        {
+            return Some(format!(
+                "this dash is not a minus sign: write `-{positive}`"
+            ));
         }
         let digits = text.replace(['O', 'o'], "0").replace('l', "1");
         if plain(&digits).is_some() {
@@ -502,7 +497,10 @@ fn other_notation(text: &str) -> Option<u64> {
     });
     numbers.next().or_else(|| {
         let starts_with_digit = text.starts_with(|c: char| c.is_ascii_digit());
-        text.replace('_', "").parse().ok().filter(|_| starts_with_digit)
+        text.replace('_', "")
+            .parse()
+            .ok()
+            .filter(|_| starts_with_digit)
     })
 }
 

@@ -22,7 +22,10 @@ impl Validator<'_> {
             let message =
                 format!("`least_strength` is {least_strength}, outside [{LEAST_STRENGTH:e}, 1]");
             let help = match *least_strength > 1.0 && *least_strength <= 100.0 {
-                true => format!("a firing strength is from 0 to 1: for {least_strength} % write `{}`", least_strength / 100.0),
+                true => format!(
+                    "a firing strength is from 0 to 1: for {least_strength} % write `{}`",
+                    least_strength / 100.0
+                ),
                 false => "a smaller strength is a rounding error of 0; fuzzylite uses 1e-6".into(),
             };
             self.error("value-outside-range", &spans.least_strength, message, &help);

@@ -259,12 +259,15 @@ impl Validator<'_> {
         };
         if output.defuzzifier == Defuzzifier::Bisector {
             let message = format!("{subject} {are} singleton{kind}, without an area to halve");
-            let help = "write `defuzzifier: centroid`, which weights the positions by their degrees";
+            let help =
+                "write `defuzzifier: centroid`, which weights the positions by their degrees";
             self.error("wrong-term", here, message, help);
             return;
         }
         let message = format!("{subject} {are} fuzzy set{kind}, but the output is a weighted one");
-        let is_monotone = terms.clone().all(|term| term.membership_function.is_monotone());
+        let is_monotone = terms
+            .clone()
+            .all(|term| term.membership_function.is_monotone());
         let defuzzifier = if is_monotone { "tsukamoto" } else { "centroid" };
         let help = format!(
             "write `defuzzifier: {defuzzifier}`, or numbers as terms: `{{{}: {{constant: 5}}}}` or `{{linear: {{input: 2, constant: 1}}}}`",
@@ -326,8 +329,14 @@ impl Validator<'_> {
             } else if !self.inputs.contains_key(input.as_str())
                 && !foreign::meant(input, ["constant"]).is_empty()
             {
-                let message = format!("{what} has a coefficient for `{input}`, which is not an input");
-                self.error("unknown-variable", here, message, "did you mean `constant`?");
+                let message =
+                    format!("{what} has a coefficient for `{input}`, which is not an input");
+                self.error(
+                    "unknown-variable",
+                    here,
+                    message,
+                    "did you mean `constant`?",
+                );
             } else {
                 self.is_read(input, here);
             }

@@ -13,7 +13,8 @@ pub(super) fn cause(text: &str) -> Option<Diagnostic> {
         Some(Diagnostic::error("yaml-syntax", at..at + length, message).help(help))
     };
     if let Some(&(start, line)) = lines.iter().find(|(_, line)| line.starts_with("<<<<<<< ")) {
-        let help = "keep one of the two versions, and remove the lines `<<<<<<<`, `=======` and `>>>>>>>`";
+        let help =
+            "keep one of the two versions, and remove the lines `<<<<<<<`, `=======` and `>>>>>>>`";
         return syntax(start, line.len(), "a merge conflict is not resolved", help);
     }
     if let Some(finding) = foreign(text) {
@@ -29,13 +30,24 @@ pub(super) fn cause(text: &str) -> Option<Diagnostic> {
         {
             let blank = indented.get(found..).and_then(|rest| rest.chars().next());
             let length = blank.map_or(0, char::len_utf8);
-            let help = "indent with plain spaces; text that is copied from a web page may contain others";
-            return syntax(at + found, length, "the line is indented with a no-break space", help);
+            let help =
+                "indent with plain spaces; text that is copied from a web page may contain others";
+            return syntax(
+                at + found,
+                length,
+                "the line is indented with a no-break space",
+                help,
+            );
         }
         at += line.len();
     }
     let slashes = lines.iter().find(|(_, line)| line.starts_with("//"))?;
-    syntax(slashes.0, 2, "`//` does not begin a comment", "a comment begins with `#`")
+    syntax(
+        slashes.0,
+        2,
+        "`//` does not begin a comment",
+        "a comment begins with `#`",
+    )
 }
 
 /// Returns the start of each line behind its indentation, and the line without white space around it.
@@ -74,8 +86,13 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
         return foreign(first, message, "fetch the file: `git lfs pull`");
     }
     if let Some((format, section)) = headless(&lines) {
-        let message = format!("this looks like a {format} file without its first section `{section}`");
-        return foreign(first, message, "look for the lines that are missing at its start");
+        let message =
+            format!("this looks like a {format} file without its first section `{section}`");
+        return foreign(
+            first,
+            message,
+            "look for the lines that are missing at its start",
+        );
     }
     if let Some(program) = program(first.1) {
         let message = format!("this is {program}, not a rule set in YAML");
@@ -84,7 +101,11 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
     }
     if is_table(first.1, content.next().map(|(_, line)| *line)) {
         let message = String::from("this is a table of values, not a rule set");
-        return foreign(first, message, "name the rule set first, and then the table");
+        return foreign(
+            first,
+            message,
+            "name the rule set first, and then the table",
+        );
     }
     None
 }
@@ -105,7 +126,9 @@ fn headless(lines: &[(usize, &str)]) -> Option<(&'static str, &'static str)> {
 /// Returns whether the first two lines have the same number of cells, more than one.
 fn is_table(first: &str, second: Option<&str>) -> bool {
     let cells = |line: &str, sign: char| line.split(sign).count();
-    let is_yaml = |line: &str| line.contains(": ") || line.ends_with(':') || line.starts_with(['{', '[', '-']);
+    let is_yaml = |line: &str| {
+        line.contains(": ") || line.ends_with(':') || line.starts_with(['{', '[', '-'])
+    };
     second.is_some_and(|second| {
         !is_yaml(first)
             && !is_yaml(second)
@@ -121,11 +144,18 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     let before = text.get(..finding.span.start)?;
     let start = before.rfind('\n').map_or(0, |at| at + 1);
     let is_key = |key: &str| {
-        !key.is_empty() && key.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+        !key.is_empty()
+            && key
+                .chars()
+                .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
     };
     // For example `{triangle [30, 50, 70]}`.
     let rest = text.get(finding.span.start..)?;
-    let key = before.get(start..)?.trim_end().rsplit([' ', '{', ',']).next()?;
+    let key = before
+        .get(start..)?
+        .trim_end()
+        .rsplit([' ', '{', ','])
+        .next()?;
     if rest.starts_with(['[', '{']) && is_key(key) && before.ends_with(' ') {
         let at = before.trim_end().len() - key.len();
         let message = format!("a colon is missing after `{key}`");
@@ -188,9 +218,14 @@ fn program(first: &str) -> Option<&'static str> {
 /// Returns whether a line is `[section]` or `key = value` in TOML.
 fn is_toml(line: &str) -> bool {
     let is_name = |name: &str| {
-        !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c))
+        !name.is_empty()
+            && name
+                .chars()
+                .all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c))
     };
-    let section = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
+    let section = line
+        .strip_prefix('[')
+        .and_then(|line| line.strip_suffix(']'));
     let key = line.split_once(" = ").map(|(key, _)| key);
     section.or(key).is_some_and(is_name)
 }

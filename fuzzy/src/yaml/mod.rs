@@ -48,7 +48,9 @@ pub fn read(text: &str) -> Result<Node, Findings> {
         return Err(Findings::locate(alloc::vec![finding], ""));
     }
     build(text).map_err(|finding| {
-        let finding = cause::cause(text).or_else(|| cause::line(text, &finding)).unwrap_or(*finding);
+        let finding = cause::cause(text)
+            .or_else(|| cause::line(text, &finding))
+            .unwrap_or(*finding);
         Findings::locate(alloc::vec![finding], text)
     })
 }
@@ -100,7 +102,9 @@ pub(crate) fn document(tree: &Node, text: &str) -> Result<Document, Findings> {
         }),
         Err(findings) => {
             let mut findings = cause::cause(text).map_or(findings, |cause| alloc::vec![cause]);
-            findings.iter_mut().for_each(|finding| cause::comment(text, finding));
+            findings
+                .iter_mut()
+                .for_each(|finding| cause::comment(text, finding));
             Err(Findings::locate(findings, text))
         }
     }
@@ -159,8 +163,9 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
         let bytes = span.byte_range().unwrap_or(0..0);
         if document.is_some() && matches!(event, Event::DocumentStart(..)) {
             return Err(Box::new(
-                Diagnostic::error("yaml-syntax", bytes, "a second document begins here")
-                    .help("a file contains one document; remove the line `---` and what follows it"),
+                Diagnostic::error("yaml-syntax", bytes, "a second document begins here").help(
+                    "a file contains one document; remove the line `---` and what follows it",
+                ),
             ));
         }
         let (done, anchor) = match event {

@@ -23,7 +23,8 @@ pub(super) fn findings(
     found: &mut Found,
 ) -> Vec<CauseWords> {
     let entries = fields.get("findings").and_then(|node| {
-        let help = format!("write the words for each input by its name: `findings: {{spread: {WORDS}}}`");
+        let help =
+            format!("write the words for each input by its name: `findings: {{spread: {WORDS}}}`");
         node.entries("`findings`", "input", &help, found)
     });
     let mut all = Vec::new();
@@ -80,7 +81,11 @@ fn check_code(node: &Node, code: &str, found: &mut Found) {
 }
 
 fn check_brief(node: &Node, brief: &str, found: &mut Found) {
-    if brief.len() > LONGEST_BRIEF || !brief.is_ascii() {
+    if let Some(letter) = brief.chars().find(|c| !c.is_ascii()) {
+        let message = format!("`{letter}` in `brief` is not an ASCII character");
+        let help = "it is shown by programs that know only ASCII: write letters without accents";
+        refuse(node, message, help.into(), found);
+    } else if brief.len() > LONGEST_BRIEF {
         let message = format!("`brief` takes at most {LONGEST_BRIEF} ASCII characters");
         let help = "it is part of texts of 50 characters: write two or three short words";
         refuse(node, message, help.into(), found);

@@ -23,13 +23,10 @@ pub(super) fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
         "reserve",
         "imbalance",
     ];
-    let Some(fields) = fields
-        .get("verdict")
-        .and_then(|node| {
-            let help = "write `verdict: {warn: {risk: 60}, fail: {risk: 70}}`";
-            node.fields("`verdict`", &keys, help, found)
-        })
-    else {
+    let Some(fields) = fields.get("verdict").and_then(|node| {
+        let help = "write `verdict: {warn: {risk: 60}, fail: {risk: 70}}`";
+        node.fields("`verdict`", &keys, help, found)
+    }) else {
         return default;
     };
     let mut seconds = |key, default| number(&fields, key, default, Bounds::From0, found);
@@ -96,10 +93,17 @@ pub(super) fn level(
                 && lower > upper
             {
                 let message = format!("{what} is held until {lower}, which is above {upper}");
-                found.push(
-                    Diagnostic::error("order", node.span.clone(), message)
-                        .help("a level is held down to a lower value than it is raised at"),
-                );
+                let help = match upper <= 1.0 && lower > 1.0 {
+                    true => format!(
+                        "risks are in percent: did you mean {} in place of {upper}?",
+                        upper * 100.0
+                    ),
+                    false => {
+                        "write a lower value in `until` than the one at which the level is raised"
+                            .into()
+                    }
+                };
+                found.push(Diagnostic::error("order", node.span.clone(), message).help(help));
             }
         }
     }
