@@ -78,7 +78,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         "reliability",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
-        found.push(tree.unexpected_document("the profile"));
+        found.push(tree.unexpected_document("profile"));
         return None;
     }
     let fields = tree.fields("the profile", &keys, "", found)?;

@@ -17,17 +17,12 @@ const EQUAL: f64 = 0.05;
 const MOST: f64 = 0.98;
 
 /// The number of steps over a range.
-const STEPS: u32 = 1000;
+const STEPS: u32 = 200;
 
 /// Adds the findings, in the order of the model's parts.
 pub(super) fn of(model: &Model, at: &At<'_>, found: &mut Vec<Diagnostic>) {
     for input in &model.inputs {
-        for term in &input.terms {
-            if let Some((message, help)) = constant(input, term) {
-                let span = at.term_of(&input.name, &term.name);
-                found.push(Diagnostic::warning("constant-term", span, message).help(help));
-            }
-        }
+        constants(input, at, found);
     }
     for output in &model.outputs {
         let name = &output.variable.name;
@@ -73,62 +68,95 @@ pub(super) fn of(model: &Model, at: &At<'_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Returns the message and the help for a term whose degree is nearly the same on the whole range, or on nearly the
-/// whole range, including values at which another term is true as well.
-fn constant(input: &Variable, term: &Term) -> Option<(String, String)> {
-    let width = input.high - input.low;
-    if matches!(
-        term.membership_function,
-        MembershipFunction::Constant { .. }
-    ) || width <= 0.0
-    {
-        // A constant is intended.
-        return None;
+/// The degrees of a term at evenly spaced values of its variable.
+struct Degrees<'m> {
+    term: &'m Term,
+    at: Vec<f64>,
+    least: f64,
+    most: f64,
+}
+
+impl Degrees<'_> {
+    fn of<'m>(variable: &Variable, term: &'m Term) -> Degrees<'m> {
+        let width = variable.high - variable.low;
+        let x = |step: u32| variable.low + width * (f64::from(step) / f64::from(STEPS));
+        let at: Vec<f64> = (0..=STEPS).map(|step| term.membership(x(step))).collect();
+        Degrees {
+            term,
+            least: at.iter().copied().fold(f64::INFINITY, f64::min),
+            most: at.iter().copied().fold(0.0, f64::max),
+            at,
+        }
     }
-    let at = |step: u32| input.low + width * (f64::from(step) / f64::from(STEPS));
-    let degrees: Vec<f64> = (0..=STEPS).map(|step| term.membership(at(step))).collect();
-    let (least, most) = degrees.iter().fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(least, most), degree| (least.min(*degree), most.max(*degree)),
-    );
-    if !(most > EQUAL) {
-        // A term that is 0 on the whole range is reported on its own.
-        return None;
+
+    /// Whether the degree at each value is nearly the largest one.
+    fn is_top(&self) -> impl Iterator<Item = bool> {
+        self.at.iter().map(|degree| *degree > self.most - EQUAL)
     }
-    let (name, of) = (&term.name, &input.name);
+}
+
+/// Adds the terms of an input whose degree is nearly the same on the whole range, or on nearly the whole range,
+/// including values at which another term is true as well. Degrees below [`EQUAL`] on the whole range are reported by
+/// the analysis of terms outside the range, and a `constant` is intended.
+fn constants(input: &Variable, at: &At<'_>, found: &mut Vec<Diagnostic>) {
+    let degrees: Vec<Degrees<'_>> = input
+        .terms
+        .iter()
+        .map(|term| Degrees::of(input, term))
+        .collect();
+    for one in &degrees {
+        let is_constant = matches!(
+            one.term.membership_function,
+            MembershipFunction::Constant { .. }
+        );
+        if is_constant || one.most <= EQUAL {
+            continue;
+        }
+        if let Some((message, help)) = constant(input, one, &degrees) {
+            let span = at.term_of(&input.name, &one.term.name);
+            found.push(Diagnostic::warning("constant-term", span, message).help(help));
+        }
+    }
+}
+
+/// Returns the message and the help for a term that is nearly constant.
+fn constant(input: &Variable, one: &Degrees<'_>, all: &[Degrees<'_>]) -> Option<(String, String)> {
+    let (name, of) = (&one.term.name, &input.name);
+    if let MembershipFunction::Sigmoid { slope: 0.0, .. } = one.term.membership_function {
+        let message =
+            format!("`slope` of term `{name}` of input `{of}` is 0: its degree is 0.5 everywhere");
+        let help = "write a slope above 0 for a rising term, below 0 for a falling one";
+        return Some((message, help.into()));
+    }
     let help = format!(
         "check its numbers against the unit and the range [{}, {}] of `{of}`",
         shown(input.low),
         shown(input.high)
     );
-    if most - least < EQUAL {
-        let degrees = match shown(rounded(least)) == shown(rounded(most)) {
-            true => shown(rounded(least)),
-            false => format!("{} to {}", shown(rounded(least)), shown(rounded(most))),
+    let (least, most) = (shown(rounded(one.least)), shown(rounded(one.most)));
+    if one.most - one.least < EQUAL {
+        let degrees = match least == most {
+            true => most,
+            false => format!("{least} to {most}"),
         };
         let message = format!(
             "term `{name}` of input `{of}` is nearly constant: {degrees} on the whole range"
         );
         return Some((message, help));
     }
-    let top = degrees
-        .iter()
-        .filter(|degree| **degree > most - EQUAL)
-        .count();
-    let share = top as f64 / degrees.len() as f64;
-    let is_beside = |other: &&Term| {
-        other.name != *name
-            && (0..=STEPS).zip(&degrees).any(|(step, degree)| {
-                *degree > most - EQUAL && other.membership(at(step)) > other.height * (1.0 - EQUAL)
-            })
-    };
+    let share = one.is_top().filter(|is_top| *is_top).count() as f64 / one.at.len() as f64;
     if share < MOST {
         return None;
     }
-    let other = input.terms.iter().find(is_beside)?;
+    let is_beside = |other: &&Degrees<'_>| {
+        let height = other.term.height;
+        other.term.name != *name
+            && (one.is_top().zip(&other.at))
+                .any(|(is_top, degree)| is_top && *degree > height - EQUAL)
+    };
+    let other = all.iter().find(is_beside)?.term;
     let message = format!(
-        "term `{name}` of input `{of}` is {} on {} % of the range, also where `{}` is {}",
-        shown(rounded(most)),
+        "term `{name}` of input `{of}` is {most} on {} % of the range, also where `{}` is {}",
         libm::floor(100.0 * share),
         other.name,
         shown(rounded(other.height))

@@ -159,7 +159,11 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
 fn dashes(what: &str, items: &[Node]) -> Option<(Vec<(Node, Node)>, Diagnostic)> {
     let entries = items.iter().map(|item| match &item.value {
         Value::Mapping(own) => match own.as_slice() {
-            [(name, value), own @ ..] if value.is_null() && !own.is_empty() => {
+            [(name, value), own @ ..]
+                if value.is_null()
+                    && !own.is_empty()
+                    && own.iter().all(|(key, _)| text(key) != Some(NAME)) =>
+            {
                 Some((name.clone(), with(item, Value::Mapping(own.to_vec()))))
             }
             _ => None,

@@ -15,6 +15,7 @@ use crate::{
 mod allow;
 mod blocks;
 mod lists;
+mod notation;
 mod provenance;
 mod rules;
 #[cfg(feature = "serde")]
@@ -141,7 +142,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         "provenance",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
-        let finding = tree.unexpected_document("the rule set");
+        let finding = tree.unexpected_document("rule set");
         findings.push(finding.help("a rule set begins with `fuzzy: 1`"));
         return None;
     }

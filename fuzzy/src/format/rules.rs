@@ -34,15 +34,18 @@ pub(super) fn read(
     let mut rules = Vec::with_capacity(items.len());
     for (i, item) in items.iter().enumerate() {
         // A rule in several entries is reported at its first one.
-        if i > 0 && continues(item) {
+        let last = i.checked_sub(1).and_then(|last| items.get(last));
+        if continues(item) && last.and_then(written).is_some() {
             spans.rules_unread = true;
             continue;
         }
-        let parts = items.iter().skip(i + 1).take_while(|item| continues(item));
-        let parts: Vec<&str> = core::iter::once(item)
-            .chain(parts)
-            .filter_map(written)
-            .collect();
+        let rest = items.iter().skip(i + 1).take_while(|item| continues(item));
+        let parts: Vec<&str> = match written(item) {
+            Some(first) => core::iter::once(first)
+                .chain(rest.filter_map(written))
+                .collect(),
+            None => Vec::new(),
+        };
         if parts.len() > 1 {
             let message = format!(
                 "rule {} is split into {} entries",

@@ -25,8 +25,7 @@ pub struct Fields<'a> {
     entries: Vec<Entry<'a>>,
     /// The known keys that unknown keys probably refer to; they are not reported as missing as well.
     meant: Vec<String>,
-    /// The positions of the unknown keys.
-    unknown: Vec<Range<usize>>,
+    unknown: Vec<&'a str>,
     /// The positions of the unknown keys that resemble no known one.
     unlike: Vec<Range<usize>>,
 }
@@ -71,13 +70,14 @@ impl<'a> Fields<'a> {
     /// Returns the unknown keys with their values.
     pub fn unknown(&self) -> impl Iterator<Item = &Entry<'a>> {
         let entries = self.entries.iter();
-        entries.filter(|entry| self.unknown.contains(&entry.key_span))
+        entries.filter(|entry| self.unknown.contains(&entry.key))
     }
 
     /// Removes the findings about unknown keys, for a single finding in their place.
     pub fn withdraw(&self, findings: &mut Vec<Diagnostic>) {
         findings.retain(|finding| {
-            finding.code != "unknown-key" || !self.unknown.contains(&finding.span)
+            let is_here = |entry: &Entry<'_>| entry.key_span == finding.span;
+            finding.code != "unknown-key" || !self.unknown().any(is_here)
         });
     }
 
@@ -93,11 +93,17 @@ impl<'a> Fields<'a> {
         if found.is_some() || self.misspells(key) {
             return found;
         }
-        if let [unlike] = self.unlike.as_slice()
+        let is_unlike = |finding: &&mut Diagnostic| {
+            // After the first missing key, the help is another one.
+            let is_open = finding
+                .help
+                .as_deref()
+                .is_some_and(|help| help.starts_with("there "));
+            finding.code == "unknown-key" && is_open && self.unlike.contains(&finding.span)
+        };
+        if self.unlike.len() == 1
             && !self.entries.iter().any(|entry| entry.key == key)
-            && let Some(finding) = findings
-                .iter_mut()
-                .find(|finding| finding.code == "unknown-key" && finding.span == *unlike)
+            && let Some(finding) = findings.iter_mut().find(is_unlike)
         {
             finding.help = Some(format!("did you mean `{key}`?"));
         } else {
@@ -157,7 +163,7 @@ impl Node {
                         suggest(entry.key, known.iter().copied())
                     }
                 };
-                unknown.push(entry.key_span.clone());
+                unknown.push(entry.key);
                 misspelt.extend(meant.into_iter().map(String::from));
                 findings.push(finding);
             }
@@ -327,8 +333,10 @@ impl Node {
     #[must_use]
     pub fn unexpected_document(&self, what: &str) -> Diagnostic {
         let message = match &self.value {
-            Value::Scalar(scalar) if !scalar.is_null() => format!("this is plain text, not {what}"),
-            _ => format!("expected a mapping for {what}, found {}", self.shown()),
+            Value::Scalar(scalar) if !scalar.is_null() => {
+                format!("this is plain text, not a {what}")
+            }
+            _ => format!("expected a mapping for the {what}, found {}", self.shown()),
         };
         Diagnostic::error("wrong-type", self.span.clone(), message)
     }
@@ -410,7 +418,12 @@ impl Node {
                 let letters = text.trim_start_matches(|c: char| c.is_ascii_alphabetic());
                 match whole(letters) {
                     Some(number) => format!("write `{number}`"),
-                    None => format!("write a whole number such as `{}`", least.max(1)),
+                    None => {
+                        let near = text.parse::<f64>().map_or(0.0, libm::round);
+                        let near = if near < 1e6 { near } else { 0.0 };
+                        let example = (near as u64).max(least).max(1);
+                        format!("write a whole number such as `{example}`")
+                    }
                 }
             }
         }

@@ -70,7 +70,7 @@ impl Validator<'_> {
                 latest = rule.block;
                 continue;
             };
-            let help = "the rules of a model stand in the order of their blocks";
+            let help = "order the rules of a model by their blocks";
             let here = spans.rules.get(i).map_or(0..0, |rule| rule.whole.clone());
             self.error("wrong-block", &here, message, help);
         }

@@ -86,8 +86,7 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
         return foreign(first, message, "fetch the file: `git lfs pull`");
     }
     if let Some((format, section)) = headless(&lines) {
-        let message =
-            format!("this looks like a {format} file without its first section `{section}`");
+        let message = format!("this looks like {format} without its first section `{section}`");
         return foreign(
             first,
             message,
@@ -158,9 +157,11 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
         .next()?;
     if rest.starts_with(['[', '{']) && is_key(key) && before.ends_with(' ') {
         let at = before.trim_end().len() - key.len();
+        let end = rest.find([']', '}', '\n']).map_or(0, |end| end + 1);
+        let shown = rest.get(..end)?.trim_end();
         let message = format!("a colon is missing after `{key}`");
         let finding = Diagnostic::error("yaml-syntax", at..at + key.len(), message);
-        return Some(finding.help(format!("write `{key}: {}...`", rest.chars().next()?)));
+        return Some(finding.help(format!("write `{key}: {}`", shown)));
     }
     // For example `unit:°C` in the line above.
     let above = before.get(..start)?.trim_end();

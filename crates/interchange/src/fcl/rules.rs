@@ -91,7 +91,10 @@ impl Reader<'_, '_> {
                 .position(|word| *word == ":")
                 .map_or(0, |at| at + 1);
             self.next = start + colon;
-            self.unexpected("`IF`");
+            let part = self.here();
+            let message = format!("expected `IF`, found `{part}`");
+            let help = "write `RULE 1 : IF ... THEN ...;`";
+            self.draft.error("fcl-syntax", part, message, help);
             self.statement(&["RULE", "END_RULEBLOCK"]);
             return;
         }

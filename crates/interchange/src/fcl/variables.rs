@@ -280,7 +280,7 @@ impl<'t> Reader<'_, 't> {
         let (found, (low, high)) = match low <= high {
             true if low < high => ("its terms lie between", (low, high)),
             true => ("its terms lie within", (low - 0.5, low + 0.5)),
-            false => ("its terms tell none, and it is from", (0.0, 1.0)),
+            false => ("its terms have no limits, and it is between", (0.0, 1.0)),
         };
         (variable.low, variable.high) = (low, high);
         spans.range = spans.name.clone();

@@ -460,7 +460,7 @@ impl Reader<'_> {
                     term,
                 } = self.clause(clause)?;
                 if let Some(hedge) = hedges.first() {
-                    let message = format!("a hedge, `{}`, stands in a conclusion", hedge.word());
+                    let message = format!("the hedge `{}` is in a conclusion", hedge.word());
                     let part = tag(self.draft.text, clause);
                     self.draft.loss(
                         "hedge-in-conclusion",

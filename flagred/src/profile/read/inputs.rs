@@ -140,7 +140,7 @@ fn input(
                 );
                 found.push(
                     Diagnostic::error("statistic", stray.key_span.clone(), message)
-                        .help(format!("write the signal behind `{key}` alone")),
+                        .help(format!("write the signal alone: `{{{key}: motor_margin}}`")),
                 );
             }
             (*statistic, behind)
