@@ -177,7 +177,7 @@ fn compile(
         EstimatorError::KeepsPrevious { .. } => (
             "keeps-previous",
             at.of(&["output"]),
-            "write `when_no_rule_fires: undefined` in the rule set; `gap` of the profile says what fills gaps".into(),
+            "write `when_no_rule_fires: undefined` in the rule set; `gap` of the profile defines how gaps are filled".into(),
         ),
         EstimatorError::IfMissingOutside { input, low, high, .. } => (
             "out-of-range",

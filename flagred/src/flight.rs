@@ -8,7 +8,7 @@ use crate::{
     monitor::{Craft, Monitor, MonitorError, Sample, Unknown, Update},
     motor::counted,
     profile::Profile,
-    verdict::{Ended, Level},
+    verdict::{EndedFindings, Level},
 };
 
 mod assessment;
@@ -210,7 +210,7 @@ impl Assessor {
         self.ended()
     }
 
-    fn keep_findings(&mut self, ended: Ended) {
+    fn keep_findings(&mut self, ended: EndedFindings) {
         self.flight.bound_findings();
         self.ended_before = self.flight.findings.len();
         for found in ended.into_iter().flatten() {

@@ -133,7 +133,7 @@ rules:
     }
 
     #[test]
-    fn what_cannot_be_read_is_left_alone() {
+    fn unreadable_text_is_not_changed() {
         for broken in ["a: [1", ""] {
             let found = formatted(broken);
             assert!(matches!(found, Err(Unformatted::NotYaml(_))), "{broken}");

@@ -255,7 +255,7 @@ rules:
     }
 
     #[test]
-    fn formulas_linear_functions_and_beaten_terms_follow() {
+    fn formulas_linear_functions_and_rejected_terms_are_renamed_too() {
         let expected = RULES.replace("\"heat\"", "t_in").replace("heat", "t_in");
         assert_eq!(renamed(RULES, "heat", "t_in").unwrap(), expected);
         let from_formula = renamed(RULES, "heat / 10", "t_in").unwrap();

@@ -368,7 +368,7 @@ rules:
     }
 
     #[test]
-    fn what_cannot_be_changed_in_place_is_written_anew_below_the_head() {
+    fn text_that_cannot_change_in_place_is_rewritten_below_the_header() {
         let reordered = changed(FAN, |model| {
             let mut damp = model.inputs[0].clone();
             damp.name = "damp".into();

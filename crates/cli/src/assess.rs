@@ -18,6 +18,7 @@ use flagred_report::{
 
 use crate::{
     failure::{Exit, Failure},
+    numbers,
     output::{self, Files, Output, Stdout},
     parallel, profile,
     range::RangeArgument,
@@ -29,7 +30,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-battery`, `flagred-paper`, or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, `flagred-battery`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
@@ -61,7 +62,7 @@ pub(crate) struct Arguments {
     fail_on: FailOn,
 
     /// Seconds between the steps shown; every motor sample is assessed
-    #[arg(long, value_name = "SECONDS", default_value_t = steps::STEP_S, value_parser = step)]
+    #[arg(long, value_name = "SECONDS", default_value_t = steps::STEP_S, value_parser = numbers::at_least_0)]
     step: f64,
 }
 
@@ -70,13 +71,6 @@ pub(crate) enum FailOn {
     Warn,
     Fail,
     Never,
-}
-
-fn step(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(step_s) if step_s >= 0.0 && step_s.is_finite() => Ok(step_s),
-        _ => Err("a step is a number of seconds, 0 or more".to_owned()),
-    }
 }
 
 /// Assesses every log. A log that cannot be read does not stop the others.

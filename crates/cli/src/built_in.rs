@@ -45,6 +45,6 @@ pub(crate) fn names() -> clap::builder::PossibleValuesParser {
 }
 
 /// The names of built-in profiles.
-pub(crate) fn profile_names() -> impl Iterator<Item = &'static str> {
+pub(crate) fn profile_names() -> impl Iterator<Item = &'static str> + Clone {
     PROFILES.iter().map(|known| known.name)
 }

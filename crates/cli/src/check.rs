@@ -24,6 +24,7 @@ use crate::{
     built_in,
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
+    numbers,
     output::{Files, Stdout},
     profile, rows,
 };
@@ -42,9 +43,9 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     claims: rows::Claims,
     /// Warn where no rule fires with at least this strength
-    #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = degree)]
+    #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = numbers::degree_above_0)]
     coverage: f64,
-    /// Exit with 1 for these, too, and not only for errors
+    /// Exit with 1 for findings of this severity, too; by default only for errors
     #[arg(long, value_name = "SEVERITY")]
     deny: Option<Deny>,
 }
@@ -55,13 +56,6 @@ enum Deny {
     Warnings,
     /// Warnings and notes
     Notes,
-}
-
-fn degree(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(degree) if degree > 0.0 && degree <= 1.0 => Ok(degree),
-        _ => Err("write a number above 0 and at most 1".into()),
-    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {

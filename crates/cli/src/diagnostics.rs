@@ -77,6 +77,11 @@ fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
     let bytes = bytes.map_err(|error| cannot_read(shown, &error))?;
     match bytes.len() > LARGEST_BYTES {
         true => {
+            if flagred_flightlog::kind_of(&bytes) == Some("a flight log") {
+                let failure =
+                    Failure::unreadable(format!("`{shown}` is a flight log, not a rule set"));
+                return Err(failure.help(format!("`flagred assess {shown}` assesses a flight")));
+            }
             let limit = LARGEST_BYTES / 1_000_000;
             let failure = Failure::unreadable(format!("`{shown}` is larger than {limit} MB"));
             Err(failure.help("rule sets and profiles are small YAML files"))

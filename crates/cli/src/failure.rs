@@ -3,7 +3,12 @@
 use std::{fmt, io, io::Write, path::Path};
 
 use clap::error::{ContextKind, ContextValue};
-use fuzzy::drawing::{visible, visible_lines};
+use fuzzy::{
+    diagnostic::nearest,
+    drawing::{visible, visible_lines},
+};
+
+use crate::built_in;
 
 /// The result of a command that completed. For several inputs the last variant in this order counts, so that a finding is never hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -135,6 +140,9 @@ pub(crate) fn command_forgotten(error: &clap::Error) -> Option<Failure> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {
         return None;
     };
+    if word == "version" {
+        return Some(Failure::usage("`version` is not a command").help("`flagred --version`"));
+    }
     Path::new(word).exists().then(|| {
         let path = Path::new(word);
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -154,7 +162,13 @@ pub(crate) fn cannot_read(shown: &str, error: &io::Error) -> Failure {
             Failure::unreadable(format!("`{shown}` is a folder")).help("name the files in it")
         }
         _ => {
-            Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
+            let failure = Failure::unreadable(format!("`{shown}` cannot be read: {error}"));
+            let built_in = built_in::profile_names();
+            failure.help(match nearest(shown, built_in) {
+                Some(name) => format!("did you mean the built-in `{name}`?"),
+                None if shown.contains('*') => "no file has a name of this form".to_owned(),
+                None => "check the path".to_owned(),
+            })
         }
     }
 }
@@ -171,8 +185,8 @@ impl From<flagred_flightlog::ReadError> for Failure {
 pub(crate) fn refuse(error: &clap::Error) -> u8 {
     let text = error.render().to_string();
     let mut shown = visible_lines(&text).into_owned();
-    if let Some(tip) = shown.find("  tip: to pass '--") {
-        // Removes the advice for files whose names begin with `--`: hardly anybody has one.
+    if let Some(tip) = shown.find("  tip: to pass '-") {
+        // Removes the advice for values that begin with `-`: hardly anybody has one.
         let end = shown.get(tip..).and_then(|tip| tip.find("\n\n"));
         shown.replace_range(tip..end.map_or(shown.len(), |end| tip + end + 2), "");
     }

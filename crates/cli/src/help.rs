@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn the_definitions_are_sound() {
+    fn the_definitions_of_arguments_are_valid() {
         Arguments::command().debug_assert();
     }
 }

@@ -29,7 +29,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     if let Some(folder) = &arguments.folder {
         fs::create_dir_all(folder).map_err(|error| {
-            Failure::usage(format!("`{}` cannot be made: {error}", folder.display()))
+            let shown = folder.display();
+            match folder.is_file() {
+                true => Failure::usage(format!("`{shown}` is a file, not a folder")),
+                false => Failure::usage(format!("`{shown}` cannot be made: {error}")),
+            }
         })?;
         let mut files = Files::reading::<PathBuf>([])?;
         for command in std::iter::once(&flagred).chain(commands()) {

@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn taking_can_stop() {
+    fn the_consumer_can_stop_early() {
         let items: Vec<u64> = (0..10_000).collect();
         let mut taken = 0;
         in_order(

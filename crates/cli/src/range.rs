@@ -6,7 +6,7 @@ use crate::failure::Failure;
 
 #[derive(clap::Args)]
 pub(crate) struct RangeArgument {
-    /// Range of the motor outputs in us, only where the log or the vehicle reports none: `--range 1100 1900`
+    /// Range of the motor outputs in us, used if the log or the vehicle reports none: `--range 1100 1900`
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = pulse_width)]
     range: Option<Vec<u16>>,
 }

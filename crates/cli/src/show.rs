@@ -10,7 +10,7 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A built-in profile
+    /// The name of a built-in profile
     #[arg(value_name = "NAME", value_parser = built_in::names())]
     name: String,
     /// Print the rule set of the profile instead

@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use crate::{
     failure::{Exit, Failure},
+    numbers,
     output::{Files, Replace, Stdout},
     provenance, rows, rule_set,
 };
@@ -27,7 +28,7 @@ pub(crate) struct Arguments {
     data: Vec<PathBuf>,
 
     /// Largest difference of an output, in its unit [default: 1e-12 of its range]
-    #[arg(long, value_name = "VALUE", value_parser = tolerance)]
+    #[arg(long, value_name = "VALUE", value_parser = numbers::at_least_0)]
     tolerance: Option<f64>,
 
     /// Compare outputs only at the rows of DATA; elsewhere they may differ by any amount
@@ -35,15 +36,8 @@ pub(crate) struct Arguments {
     rows_only: bool,
 
     /// Random seed (test points)
-    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = numbers::seed)]
     seed: u64,
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    let tolerance: Option<f64> = text.parse().ok();
-    tolerance
-        .filter(|tolerance| *tolerance >= 0.0 && tolerance.is_finite())
-        .ok_or_else(|| "write a number from 0, in the unit of the output".into())
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -53,6 +47,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let name = rewrite.model.display().to_string();
     let source = rule_set::read(&rewrite.model)?;
     let model = rule_set::engine(&source, &name)?.model();
+    let widest = model
+        .outputs
+        .iter()
+        .map(|output| output.variable.high - output.variable.low);
+    let widest = widest.fold(0.0, f64::max);
+    if let Some(tolerance) = arguments.tolerance.filter(|tolerance| *tolerance >= widest) {
+        let message = format!(
+            "a tolerance of {} allows any output: the widest range is {}",
+            short(tolerance),
+            short(widest)
+        );
+        return Err(Failure::usage(message)
+            .help("write a smaller `--tolerance`, in the unit of the output"));
+    }
     let (rows, refused) = rows(arguments, model)?;
     let mut settings = SimplifySettings::default();
     settings.tolerance = arguments.tolerance;

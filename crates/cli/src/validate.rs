@@ -13,6 +13,7 @@ use flagred_evaluation::{
 use crate::{
     dataset::summary::refuse,
     failure::{Exit, Failure},
+    numbers,
     output::{self, Files, Stdout},
     parallel, profile,
     table::Table,
@@ -24,7 +25,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
     flights: Vec<PathBuf>,
 
-    /// Validate with a table with a row for each flight instead of logs, as `flagred dataset --profile NAME` writes it
+    /// Validate on this table instead of logs: a row for each flight, as `flagred dataset --profile NAME` writes it
     #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
     rows: Option<PathBuf>,
 
@@ -33,7 +34,7 @@ pub(crate) struct Arguments {
     profiles: Vec<String>,
 
     /// How many seconds ahead the risk should predict
-    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = horizon, conflicts_with = "rows")]
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = numbers::positive, conflicts_with = "rows")]
     horizon: f64,
 
     /// Print a JSON document instead of text
@@ -43,13 +44,6 @@ pub(crate) struct Arguments {
     /// Also write an SVG picture of the ROC curves and the reliability to this file
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
-}
-
-fn horizon(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(horizon_s) if horizon_s > 0.0 && horizon_s.is_finite() => Ok(horizon_s),
-        _ => Err("a horizon is a number of seconds above 0".to_owned()),
-    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -135,7 +129,7 @@ fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
     let table = Table::read(path, b',')?;
     table.header.require(
         flagred_evaluation::ERROR,
-        "without an attitude error nobody knows what was critical",
+        "critical moments cannot be identified without an attitude error",
     )?;
     let rows = Rows {
         columns: table.header.names.iter().map(String::as_str).collect(),

@@ -43,7 +43,7 @@ fn snapshots_in(name: &str) -> insta::Settings {
 }
 
 #[test]
-fn every_wrong_file_is_told_what_is_wrong_where_and_what_to_do() {
+fn every_invalid_file_has_messages_with_positions_and_help() {
     let cases = cases("err");
     assert!(cases.len() >= 60);
     let mut poor = Vec::new();
@@ -86,7 +86,7 @@ fn every_wrong_file_is_told_what_is_wrong_where_and_what_to_do() {
 }
 
 #[test]
-fn every_right_file_is_the_tree_it_should_be() {
+fn every_valid_file_has_the_expected_tree() {
     for (name, path) in cases("ok") {
         let text = fs::read_to_string(path).unwrap();
         let document = fuzzy::yaml::parse(&text).unwrap_or_else(|f| panic!("{name}:\n{f}"));

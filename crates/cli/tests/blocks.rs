@@ -39,7 +39,7 @@ fn eval_keeps_the_previous_value_from_row_to_row() {
 }
 
 #[test]
-fn what_has_no_row_before_says_so() {
+fn explain_and_map_report_a_missing_previous_row() {
     let folder = folder(&[("fan.yaml", FAN)]);
     let (_, text, _) = flagred(folder.path(), &["explain", "fan.yaml", "heat=22"]);
     for told in [

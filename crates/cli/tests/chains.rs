@@ -20,7 +20,7 @@ rules:
 ";
 
 #[test]
-fn explain_shows_the_chain_and_why_it_ends() {
+fn explain_shows_the_chain_and_the_reason_for_its_end() {
     let folder = folder(&[("fan.yaml", FAN)]);
     let explain = |heat: &str| flagred(folder.path(), &["explain", "fan.yaml", heat]).1;
     let known = explain("heat=12");

@@ -32,7 +32,7 @@ fn tipper(folder: &tempfile::TempDir, ending: &str) -> PathBuf {
 }
 
 #[test]
-fn commands_take_the_files_of_other_programs_as_they_are() {
+fn commands_accept_files_of_other_programs() {
     let folder = tempfile::tempdir().unwrap();
     let point = ["service=8", "food=9"];
     let value = |file: &str| {
@@ -67,7 +67,7 @@ fn commands_take_the_files_of_other_programs_as_they_are() {
 }
 
 #[test]
-fn what_a_format_cannot_say_is_refused_or_told() {
+fn features_that_a_format_lacks_are_refused_or_reported() {
     let refused = flagred(&["export", "--fis", "tests/onboard/blocks.yaml"]);
     assert_eq!(refused.status.code(), Some(3));
     assert!(refused.stdout.is_empty());
@@ -88,7 +88,7 @@ fn what_a_format_cannot_say_is_refused_or_told() {
 }
 
 #[test]
-fn what_is_no_such_file_is_told() {
+fn files_of_the_wrong_format_are_reported() {
     let output = flagred(&["import", "rules/tipper.yaml"]);
     assert_eq!(output.status.code(), Some(3));
     assert!(

@@ -39,7 +39,7 @@ fn tune(files: &[(&str, &str)], more: &[&str]) -> (Option<i32>, String, String, 
 }
 
 #[test]
-fn what_moved_is_told_and_written() {
+fn moved_numbers_are_printed_and_written() {
     let (code, out, err, written) = tune(&[], &["--round", "2", "--group-by", "room"]);
     assert_eq!((code, err.as_str()), (Some(0), ""));
     assert!(
@@ -67,7 +67,7 @@ fn what_moved_is_told_and_written() {
 }
 
 #[test]
-fn check_tells_what_made_a_rule_set_and_whether_it_was_edited_since() {
+fn check_reports_the_provenance_and_later_edits() {
     let (.., written) = tune(&[], &["--round", "2", "--no-validation"]);
     let written = written.unwrap();
     let described = written.replace("name: fan", "name: attic\ndescription: A fan");
@@ -86,7 +86,7 @@ fn check_tells_what_made_a_rule_set_and_whether_it_was_edited_since() {
 }
 
 #[test]
-fn only_what_may_move_does() {
+fn only_free_parameters_move() {
     let (_, _, _, written) = tune(
         &[],
         &["--only", "heat", "--fix", "heat.cool", "--no-validation"],
@@ -95,7 +95,7 @@ fn only_what_may_move_does() {
     let (code, _, err, written) = tune(&[], &["--only", "haet"]);
     assert_eq!((code, written), (Some(2), None));
     assert!(
-        err.contains("the model has no variable and no term `haet`"),
+        err.contains("the rule set has no variable and no term `haet`"),
         "{err}"
     );
 }
@@ -117,7 +117,7 @@ fn rows_that_do_not_fit_the_loss_are_refused() {
 }
 
 #[test]
-fn a_checkpoint_is_begun_with_and_another_rule_set_is_none() {
+fn a_checkpoint_is_the_starting_point_unless_it_is_of_another_rule_set() {
     let better = FAN.replace("cool: 5, hot: 35", "cool: 19, hot: 31");
     let (_, out, _, _) = tune(
         &[("best.yaml", &better)],
@@ -135,7 +135,7 @@ fn a_checkpoint_is_begun_with_and_another_rule_set_is_none() {
 }
 
 #[test]
-fn what_is_not_monotone_to_begin_with_is_refused() {
+fn a_start_that_is_not_monotone_is_refused() {
     let (code, _, err, _) = tune(&[], &["--falling", "heat"]);
     assert_eq!(code, Some(3));
     assert!(
@@ -146,7 +146,7 @@ fn what_is_not_monotone_to_begin_with_is_refused() {
 
 /// All weights are 0, or values are so large that errors overflow: the existing file is kept.
 #[test]
-fn rows_that_say_nothing_or_overflow_are_refused() {
+fn rows_without_information_or_with_overflow_are_refused() {
     let weightless = rows().replace(",1,", ",0,");
     let extreme = "heat,speed,w\n10,2,1\n30,1e308,1\n";
     let heavy = "heat,speed,w\n10,2,1e308\n30,8,1\n";
@@ -193,7 +193,7 @@ rules:
 
 /// The rows are on a line that reaches 14 where `hot` is highest.
 #[test]
-fn constants_stay_in_the_range_unless_asked() {
+fn constants_stay_in_the_range_by_default() {
     let mut rows = String::from("heat,speed\n");
     for heat in 5..=25 {
         writeln!(rows, "{heat},{}", 2.0 + 0.4 * f64::from(heat - 5)).unwrap();
@@ -245,7 +245,7 @@ fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
 }
 
 #[test]
-fn numbers_are_rounded_to_three_digits_unless_asked() {
+fn numbers_are_rounded_to_three_digits_by_default() {
     let mut rows = String::from("heat,speed\n");
     for heat in 0..=40 {
         writeln!(rows, "{heat},{}", 3.123_456 + 0.123_456 * f64::from(heat)).unwrap();
@@ -312,7 +312,7 @@ fn shape(text: &str) -> String {
 
 /// Comments, order, quotes and layout are kept.
 #[test]
-fn numbers_change_in_the_text_where_they_stand() {
+fn numbers_change_in_place_in_the_text() {
     let mut rows = String::from("heat,damp,speed\n");
     for i in 0..200 {
         let (heat, damp) = (f64::from(i * 7 % 41), f64::from(i * 13 % 20) / 20.0);
@@ -350,7 +350,7 @@ fn numbers_change_in_the_text_where_they_stand() {
 
 /// Two terms share an anchor: the whole rule set is written anew, with correct values.
 #[test]
-fn what_cannot_change_in_place_is_written_anew() {
+fn a_text_that_cannot_change_in_place_is_rewritten() {
     let shared = FAN.replace(
         "terms: {slow: {singleton: 2}, fast: {singleton: 8}}",
         "terms: {slow: &n {singleton: 3}, fast: {singleton: 8}, idle: *n}",
@@ -364,7 +364,7 @@ fn what_cannot_change_in_place_is_written_anew() {
 /// Files cannot grow beyond 512 bytes, but a pipe can transfer more.
 #[test]
 #[cfg(unix)]
-fn a_full_disk_keeps_no_other_output_from_being_written() {
+fn other_outputs_are_written_despite_a_full_disk() {
     let long = FAN.replace(
         "name: fan\n",
         &format!("name: fan\ndescription: {}\n", "x".repeat(600)),
@@ -476,7 +476,7 @@ fn a_checkpoint_that_differs_in_more_than_numbers_is_refused() {
 }
 
 #[test]
-fn a_header_without_names_is_told() {
+fn a_header_without_names_is_reported() {
     let (code, _, err, _) = tune(&[("rows.csv", ",,\n1,2,3\n")], &[]);
     assert_eq!(code, Some(3));
     assert!(

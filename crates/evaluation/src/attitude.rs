@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rmse_is_over_samples_and_leaves_unknown_ones_out() {
+    fn rmse_is_over_samples_and_ignores_unknown_ones() {
         let attitudes = [1.0, f64::NAN, 7.0].map(|roll_deg| Attitude {
             roll_des_deg: 0.0,
             roll_deg,

@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn judged_time_leaves_out_take_off_and_landing() {
+    fn assessed_time_excludes_take_off_and_landing() {
         let settings = VerdictSettings::default();
         let air = Span {
             from_s: 10.0,

@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_reads_back_with_the_same_values() {
+    fn written_formulas_read_back_with_the_same_values() {
         for text in FORMULAS {
             let formula: Formula = text.parse().unwrap();
             let written = write(&formula, None);

@@ -160,7 +160,7 @@ fn as_fuzzylite(name: &str, model: &mut Model) {
 /// rules take from outputs, the kind of a hybrid system, and hedges that Octave reads as cubes.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn the_twins_of_fuzzylites_models_equal_them() {
+fn copies_of_fuzzylites_models_have_the_same_values() {
     for (file, refused) in [
         (
             "model.fis",

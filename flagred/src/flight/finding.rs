@@ -194,7 +194,7 @@ rules:
 
     /// A hedge, and an alternative that is not true.
     #[test]
-    fn a_term_is_told_with_its_hedges_and_only_where_it_holds() {
+    fn a_term_is_reported_with_its_hedges_and_only_where_it_applies() {
         let rules = RULES.replace(
             "shake IS violent THEN",
             "(at_limit IS much OR shake IS very violent) THEN",
@@ -213,7 +213,7 @@ rules:
     }
 
     #[test]
-    fn only_limits_of_motors_are_about_a_motor() {
+    fn only_findings_about_motor_limits_name_a_motor() {
         let estimator = shipped::flagred();
         let plan = estimator.plan().unwrap();
         let about = (0..6).map(|input| is_of_limits((plan.channels, plan.inputs), input, 0));

@@ -39,7 +39,7 @@ fn time_on_the_ground_is_not_in_the_air() {
 }
 
 #[test]
-fn risk_just_after_take_off_and_just_before_landing_is_not_judged() {
+fn risk_just_after_take_off_and_just_before_landing_is_not_assessed() {
     let flown = fly(&[
         (2.0, true, LIMIT),
         (20.0, true, HOVER),
@@ -76,7 +76,7 @@ fn a_flight_of_unknown_motors_has_no_verdict() {
 }
 
 #[test]
-fn a_known_time_in_the_air_decides_what_is_enough() {
+fn a_flight_with_too_little_known_risk_has_no_verdict() {
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
     for i in 0..1000 {
         let t_s = f64::from(i) * 0.02;
@@ -98,7 +98,7 @@ fn a_known_time_in_the_air_decides_what_is_enough() {
 }
 
 #[test]
-fn a_second_flight_begins_anew() {
+fn a_second_flight_starts_without_the_state_of_the_first() {
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
     let mut fly = |from_s: f64, motors: [f64; 4]| {
         for i in 0..1000 {
@@ -223,7 +223,7 @@ fn a_lasting_fault_stays_a_finding_until_landing() {
 }
 
 #[test]
-fn a_flight_with_information_alone_is_good() {
+fn a_flight_with_only_information_is_good() {
     let mut profile = shipped::flagred_paper().profile().clone();
     profile.verdict.notices.noise = Some(crate::verdict::Limit {
         value: 0.04,
@@ -376,7 +376,7 @@ fn several_risks_have_the_findings_of_profiles_of_each() {
     let refused = both.plan().unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "the profile has the risks `weak` and `torn`, and what flies on board has one"
+        "the profile has the risks `weak` and `torn`, but exported code has one"
     );
 }
 

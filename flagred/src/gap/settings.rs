@@ -123,7 +123,7 @@ mod tests {
     use alloc::format;
 
     #[test]
-    fn what_counts_as_covered_follows_from_the_terms_and_the_conjunction() {
+    fn the_coverage_of_a_gap_follows_from_the_terms_and_the_conjunction() {
         let below = |partition: &str, and: &str| {
             let text = format!(
                 "

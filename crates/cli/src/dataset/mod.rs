@@ -15,6 +15,7 @@ use flagred::{
 
 use crate::{
     failure::{Exit, Failure},
+    numbers,
     output::{self, Files, Stdout},
     parallel, profile,
 };
@@ -25,36 +26,29 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// Add the inputs of this profile, as `input_NAME` where another column has the name: `flagred`, `flagred-battery`, `flagred-paper`, or a file
+    /// Add the inputs of this profile (an input whose name is taken becomes `input_NAME`): `flagred`, `flagred-paper`, `flagred-battery`, or a file
     #[arg(long, value_name = "NAME|FILE")]
     profile: Option<String>,
 
     /// Make a row for each period of this length instead of each time in the air
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, conflicts_with = "horizon")]
+    #[arg(long, value_name = "SECONDS", value_parser = numbers::positive, conflicts_with = "horizon")]
     window: Option<f64>,
 
-    /// Make rows that look this far ahead: the inputs of the profile at a time, and the largest attitude error in the seconds after it
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    /// Make a row for each moment instead, with the inputs then and the largest attitude error in this many seconds after it
+    #[arg(long, value_name = "SECONDS", value_parser = numbers::positive)]
     horizon: Option<f64>,
 
     /// The time between the rows of `--horizon`
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value_t = 0.5, requires = "horizon")]
+    #[arg(long, value_name = "SECONDS", value_parser = numbers::positive, default_value_t = 0.5, requires = "horizon")]
     every: f64,
 
     /// Attitude error that counts as a risk of 100 %, in degrees
-    #[arg(long, value_name = "DEG", value_parser = seconds, default_value_t = CRITICAL_ERROR_DEG)]
+    #[arg(long, value_name = "DEG", value_parser = numbers::positive, default_value_t = CRITICAL_ERROR_DEG)]
     critical: f64,
 
     /// The file to write [default: standard output]
     #[arg(short, long, value_name = "OUT.csv", value_parser = output::csv_path)]
     output: Option<PathBuf>,
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("write a number above 0".to_owned()),
-    }
 }
 
 /// How the rows are made.

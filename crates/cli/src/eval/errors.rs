@@ -2,6 +2,7 @@
 
 use fuzzy::drawing::short;
 
+use super::tally::Rows;
 use crate::output::say;
 
 /// The number of worst rows that are listed.
@@ -11,6 +12,8 @@ const WORST: usize = 5;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Errors {
     rows: u64,
+    /// Rows without a measured number, and the first of them.
+    unmeasured: Rows,
     sum: f64,
     sum_of_squares: f64,
     /// Line, computed and measured value of the rows with the largest errors, the largest first.
@@ -25,12 +28,19 @@ impl Errors {
             sum: error,
             sum_of_squares: error * error,
             worst: vec![(line, computed, measured)],
+            ..Errors::default()
         });
+    }
+
+    /// Counts a row whose measured value is not a number.
+    pub(super) fn add_unmeasured(&mut self, line: u64) {
+        self.unmeasured.add(line);
     }
 
     /// Adds the errors of later rows.
     pub(super) fn merge(&mut self, later: Errors) {
         self.rows += later.rows;
+        self.unmeasured.merge(later.unmeasured);
         self.sum += later.sum;
         self.sum_of_squares += later.sum_of_squares;
         let size = |(_, computed, measured): &(u64, f64, f64)| (computed - measured).abs();
@@ -48,6 +58,12 @@ impl Errors {
 
     /// Prints the errors on standard error if there are measured values.
     pub(super) fn say(&self, output: &str) {
+        if let Some(line) = self.unmeasured.first_line() {
+            say(&format!(
+                "`{output}` is not compared in {} rows, whose measured value is not a number (first in line {line})",
+                self.unmeasured.count()
+            ));
+        }
         if self.rows == 0 {
             return;
         }

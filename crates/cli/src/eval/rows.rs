@@ -98,6 +98,7 @@ impl<'p> Evaluator<'p> {
         for (row, (record, outcomes)) in records.iter().zip(outcomes).enumerate() {
             let line = record.position().map_or(0, csv::Position::line);
             let problem = self.problems.get(row).and_then(Option::as_deref);
+            tally.has_misfit |= plan.header.misfit(record.len()).is_some();
             match problem {
                 Some(problem) => {
                     tally.add_bad(line, problem);
@@ -171,10 +172,12 @@ impl<'p> Evaluator<'p> {
             .zip(&mut tally.errors)
         {
             let measured = column.and_then(|column| record.get(column));
-            if let (Some(computed), Some(Cell::Number(measured))) =
-                (outcome.value(), measured.map(Cell::of))
-            {
-                errors.add(line, computed, measured);
+            match (outcome.value(), measured.map(Cell::of)) {
+                (Some(computed), Some(Cell::Number(measured))) => {
+                    errors.add(line, computed, measured);
+                }
+                (_, Some(Cell::Unknown | Cell::Bad)) => errors.add_unmeasured(line),
+                _ => {}
             }
         }
         for (outcome, silent) in outcomes.iter().zip(&mut tally.silent) {

@@ -21,8 +21,16 @@ impl Rows {
         });
     }
 
+    pub(super) fn count(self) -> u64 {
+        self.count
+    }
+
+    pub(super) fn first_line(self) -> Option<u64> {
+        (self.count > 0).then_some(self.first_line)
+    }
+
     /// Adds rows that come later.
-    fn merge(&mut self, later: Rows) {
+    pub(super) fn merge(&mut self, later: Rows) {
         if self.count == 0 {
             self.first_line = later.first_line;
         }
@@ -34,6 +42,8 @@ impl Rows {
 pub(super) struct Tally {
     pub(super) rows: u64,
     bad: Rows,
+    /// Whether a row has another number of cells than the header.
+    pub(super) has_misfit: bool,
     /// The problems of the first bad rows.
     shown: Vec<String>,
     /// Rows with an unknown input.
@@ -51,6 +61,7 @@ impl Tally {
         Tally {
             rows: 0,
             bad: Rows::default(),
+            has_misfit: false,
             shown: Vec::new(),
             unknown: Rows::default(),
             silent: vec![Rows::default(); plan.engine.output_names().len()],
@@ -70,6 +81,7 @@ impl Tally {
     pub(super) fn merge(&mut self, later: Tally) {
         self.rows += later.rows;
         self.bad.merge(later.bad);
+        self.has_misfit |= later.has_misfit;
         let free = SHOWN - self.shown.len();
         self.shown.extend(later.shown.into_iter().take(free));
         self.unknown.merge(later.unknown);
@@ -92,6 +104,9 @@ impl Tally {
 
     /// Prints the counts on standard error.
     pub(super) fn say(&self, plan: &Plan) {
+        if self.rows == 0 {
+            say(&format!("`{}` has a header, but no rows", plan.header.file));
+        }
         let of = |rows: Rows| format!("{} of {} rows", rows.count, self.rows);
         let first = |rows: Rows| format!("first in line {}", rows.first_line);
         for bad in &self.shown {
@@ -107,6 +122,9 @@ impl Tally {
                 false => "no value in",
             };
             say(&format!("{what} {}: they cannot be read", of(self.bad)));
+            if self.has_misfit {
+                say(&format!("help: {}", plan.header.misfit_help()));
+            }
         }
         if self.unknown.count > 0 {
             say(&format!(

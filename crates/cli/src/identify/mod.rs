@@ -17,6 +17,7 @@ use fuzzy::diagnostic::suggest;
 
 use crate::{
     failure::{Exit, Failure},
+    numbers::{self, whole},
     output::{self, Files, Replace, Stdout},
     rows,
     table::{Cell, Format, Table},
@@ -49,15 +50,15 @@ pub(crate) struct Arguments {
     ignore: Vec<String>,
 
     /// Maximum number of inputs
-    #[arg(long, default_value_t = 4, value_name = "COUNT", value_parser = count(1, 20))]
+    #[arg(long, default_value_t = 4, value_name = "COUNT", value_parser = whole(1_u32, 20))]
     max_inputs: u32,
 
     /// Maximum number of terms of an input
-    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = count(2, MOST_TERMS as i64))]
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = whole(2, MOST_TERMS as u32))]
     max_terms: u32,
 
     /// Maximum number of rules
-    #[arg(long, default_value_t = 25, value_name = "COUNT", value_parser = count(2, 1000))]
+    #[arg(long, default_value_t = 25, value_name = "COUNT", value_parser = whole(2_u32, 1000))]
     max_rules: u32,
 
     /// Make one rule per cluster of rows (subtractive clustering) instead of one per combination of terms
@@ -69,15 +70,15 @@ pub(crate) struct Arguments {
     lines: bool,
 
     /// Minimum relative gain in cross-validation error per step
-    #[arg(long, default_value_t = 0.02, value_name = "SHARE", value_parser = rows::share)]
+    #[arg(long, default_value_t = 0.02, value_name = "SHARE", value_parser = numbers::share)]
     min_gain: f64,
 
     /// Minimum number of rows for a rule
-    #[arg(long, default_value_t = 1, value_name = "ROWS")]
+    #[arg(long, default_value_t = 1, value_name = "ROWS", value_parser = whole(1, usize::MAX))]
     min_support: usize,
 
     /// Random seed (folds of cross-validation)
-    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = numbers::seed)]
     seed: u64,
 
     /// The column with the weights of the rows
@@ -89,7 +90,7 @@ pub(crate) struct Arguments {
     group_by: Option<String>,
 
     /// Number of cross-validation folds
-    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = count(2, 100))]
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = whole(2_u32, 100))]
     folds: u32,
 
     /// Skip the cross-validation of the whole search
@@ -102,10 +103,6 @@ pub(crate) struct Arguments {
     /// Print the report as a JSON document
     #[arg(long)]
     json: bool,
-}
-
-fn count(least: i64, most: i64) -> clap::builder::RangedI64ValueParser<u32> {
-    clap::value_parser!(u32).range(least..=most)
 }
 
 /// The results for the report.
@@ -126,6 +123,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let message = format!("`{}` is both the target and an input", arguments.target);
         return Err(Failure::usage(message).help("name the other columns with `--input`"));
     }
+    rows::distinct(&arguments.data)?;
     let mut files = Files::reading(&arguments.data)?;
     let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
     // A table is read only once, since it may be standard input.
@@ -245,7 +243,11 @@ fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
     if table.len() == 0 || cells.any(|cell| matches!(cell, Cell::Number(_))) {
         return Ok(());
     }
-    let message = format!("`{}` holds no number", arguments.target);
+    let message = format!("`{}` contains no number", arguments.target);
+    let first = column.first().map_or("", |column| table.text(0, *column));
+    if first.starts_with(|c: char| c.is_ascii_digit()) {
+        return Err(Failure::unreadable(message).help(Cell::problem(first.as_bytes())));
+    }
     Err(Failure::unreadable(message).help(
         "for two classes write 0 and 1; `FuzzyClassifier` of the Python package takes words and many classes",
     ))

@@ -21,6 +21,7 @@ use fuzzy::{
 
 use crate::{
     failure::{Exit, Failure},
+    numbers::{self, whole},
     output::Stdout,
     rows, rule_set,
 };
@@ -35,11 +36,11 @@ pub(crate) struct Arguments {
     resolve: Resolve,
 
     /// Minimum number of rows for a rule
-    #[arg(long, default_value_t = 1, value_name = "ROWS")]
+    #[arg(long, default_value_t = 1, value_name = "ROWS", value_parser = whole(1, u64::MAX))]
     min_support: u64,
 
     /// Minimum confidence of a rule
-    #[arg(long, default_value_t = 0.0, value_name = "DEGREE")]
+    #[arg(long, default_value_t = 0.0, value_name = "DEGREE", value_parser = numbers::degree)]
     min_degree: f64,
 
     /// Add rules for combinations of terms without rows, each from the nearest combination with rows
@@ -96,6 +97,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let learned = whole.measured_output();
     let learned = learned.and_then(|output| whole.outputs.get(output));
     let learned = learned.map_or("", |output| output.variable.name.as_str());
+    arguments.rows.claims.check_inputs(whole)?;
     let claims = arguments.rows.claims.about(learned)?;
     let settings = settings(arguments, &claims);
     let mut learner = Learner::new(&model, settings.clone()).map_err(wrong)?;
@@ -202,7 +204,7 @@ fn monotone_help(outcome: &Outcome) -> Option<&'static str> {
     let holds = counterexamples(&outcome.claims, &model).is_ok_and(|found| found.is_empty());
     match (holds, outcome.learned.missing) {
         (true, _) => Some(
-            "the same rules hold it with `operators: {and: product, implication: product, aggregation: sum}`",
+            "the same rules satisfy it with `operators: {and: product, implication: product, aggregation: sum}`",
         ),
         (false, 0) => None,
         (false, _) => Some(

@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_are_counted_as_the_editor_does() {
+    fn positions_are_counted_as_by_the_editor() {
         let text = "a: °C 𝛼 x\nb: y";
         let x = text.find('x').unwrap();
         for (encoding, column) in [(Encoding::Utf8, 12), (Encoding::Utf16, 9)] {

@@ -85,7 +85,7 @@ mod tests {
     const EXIT: &str = "{\"jsonrpc\":\"2.0\",\"method\":\"exit\"}";
 
     #[test]
-    fn what_is_too_long_or_damaged_is_passed_over() {
+    fn messages_that_are_too_long_or_damaged_are_skipped() {
         let long = message(&" ".repeat(LONGEST as usize + 1));
         let all = format!("{long}{}{}", message("{"), message(EXIT));
         let mut all = all.as_bytes();
@@ -98,7 +98,7 @@ mod tests {
 
     /// A buffer of an excessive announced length is not allocated.
     #[test]
-    fn a_message_that_never_ends_takes_no_memory() {
+    fn a_message_without_end_takes_little_memory() {
         for length in ["18446744073709551615", "99999999999999", "3000000000"] {
             let text = format!("Content-Length: {length}\r\n\r\n{EXIT}");
             assert!(read(&mut text.as_bytes()).unwrap().is_none(), "{length}");

@@ -71,9 +71,14 @@ pub(crate) fn table_path(text: &str) -> Result<PathBuf, String> {
 pub(crate) fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     match extensions.first() {
-        Some(first) if path.extension().is_some() && !has_ending(&path, extensions) => Err(
-            format!("{what}; write `{}`", path.with_extension(first).display()),
-        ),
+        Some(first) if path.extension().is_some() && !has_ending(&path, extensions) => {
+            let stem = path.with_extension("");
+            let written = match has_ending(&stem, extensions) {
+                true => stem,
+                false => path.with_extension(first),
+            };
+            Err(format!("{what}; write `{}`", written.display()))
+        }
         _ => Ok(path),
     }
 }

@@ -136,7 +136,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn what_is_flattened_is_merged_before_objects_are_closed() {
+    fn flattened_parts_are_merged_before_objects_are_closed() {
         let schema = json!({
             "type": "object",
             "properties": {"at_s": {"type": "number", "format": "double"}, "format": {"type": "string"}},

@@ -264,7 +264,7 @@ mod tests {
 
     /// Two headers with one name form a list, which is not a valid host, origin or length.
     #[test]
-    fn a_header_that_stands_twice_is_no_single_value() {
+    fn a_repeated_header_has_no_single_value() {
         let text = "PUT / HTTP/1.1\r\nContent-Length: 1\r\nContent-Length: 1\r\n\r\na";
         let mut request = read(text).unwrap().unwrap();
         assert_eq!(request.header("content-length").as_deref(), Some("1, 1"));
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_large_or_too_short_is_refused() {
+    fn requests_that_are_too_large_or_too_short_are_refused() {
         let status = |text: &str| read(text).map(|_| ()).unwrap_err().0;
         assert!(read("").unwrap().is_none());
         assert_eq!(status("GET / HT"), Status::BAD_REQUEST);
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_comes_is_answered() {
+    fn any_bytes_are_answered() {
         let seed =
             "PUT /token/api/file HTTP/1.1\r\nHost: 127.0.0.1:1\r\nContent-Length: 4\r\n\r\nabcd";
         let mut random = fastrand::Rng::with_seed(24);

@@ -23,6 +23,7 @@ use fuzzy::drawing::visible;
 
 use crate::{
     failure::{Exit, Failure},
+    numbers::whole,
     output::{self, Files, Replace, Stdout},
 };
 use file::EditedFile;
@@ -47,7 +48,8 @@ pub(crate) struct Arguments {
         long,
         value_name = "NUMBER",
         default_value_t = 0,
-        hide_default_value = true
+        hide_default_value = true,
+        value_parser = whole(0, u16::MAX)
     )]
     port: u16,
 

@@ -29,6 +29,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
     failure::{Exit, Failure},
+    numbers::{self, whole},
     output::{self, Output, Stdout},
     rows, rule_set,
 };
@@ -55,7 +56,7 @@ pub(crate) struct Arguments {
     weights: bool,
 
     /// Minimum distance between neighbouring peaks, as a share of the range
-    #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = rows::share)]
+    #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = numbers::share)]
     min_distance: f64,
 
     /// Let constants leave the range of the output, by its width at most
@@ -67,15 +68,15 @@ pub(crate) struct Arguments {
     round: Digits,
 
     /// Number of starts: the rule set, then random points around it
-    #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = whole(1_u32, 1000))]
     starts: u32,
 
     /// Maximum number of steps per start
-    #[arg(long, default_value_t = 100, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, default_value_t = 100, value_name = "COUNT", value_parser = whole(1_u32, 100_000))]
     iterations: u32,
 
     /// Random seed (starting points, folds of cross-validation)
-    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = numbers::seed)]
     seed: u64,
 
     /// Save the best rule set so far to this file; if the file exists, start from it
@@ -83,7 +84,7 @@ pub(crate) struct Arguments {
     checkpoint: Option<PathBuf>,
 
     /// Number of cross-validation folds
-    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=100))]
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = whole(2_u32, 100))]
     folds: u32,
 
     /// Also report the cross-validation error after tuning on 1/8, 1/4 and 1/2 of the training rows
@@ -148,6 +149,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let name = arguments.rows.rewrite.model.display().to_string();
     let source = rule_set::read(&arguments.rows.rewrite.model)?;
     let original = rule_set::engine(&source, &name)?.model();
+    arguments.rows.claims.check_inputs(original)?;
     let settings = settings(arguments)?;
     let resumed = resumed(arguments, original, &settings)?;
     let begun = resumed.as_ref().unwrap_or(original);
@@ -236,6 +238,7 @@ fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
 /// The rows as columns, and the reasons why other rows cannot be used.
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
     let read = rows::read(&arguments.rows, model)?;
+    let read = rows::in_range(read, model, !arguments.beyond_range);
     let (data, refused) = rows::in_columns(read, model.inputs.len(), arguments.loss());
     if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
         let failure = rows::refuse(&refused, "used");

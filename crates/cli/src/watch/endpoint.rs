@@ -35,11 +35,14 @@ impl FromStr for Endpoint {
             }
         });
         if let Some(endpoint) = socket {
+            if let Some((kind, address)) = text.split_once("://") {
+                return Err(format!("write `{kind}:{address}`, without `//`"));
+            }
             let port = text.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
             return match (port, text.matches(':').count()) {
                 (Some(Ok(_)), 2..) => Ok(endpoint),
                 _ => Err(format!(
-                    "`{text}` names no address with a port, such as `127.0.0.1:14550`"
+                    "`{text}` has no address with a port from 0 to 65535, such as `127.0.0.1:14550`"
                 )),
             };
         }
@@ -56,7 +59,10 @@ impl FromStr for Endpoint {
                 baud,
             });
         }
-        Err(unknown(text))
+        match std::path::Path::new(text).is_file() {
+            true => Err(format!("`{text}` is a file: `flagred assess {text}`")),
+            false => Err(unknown(text)),
+        }
     }
 }
 
@@ -99,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_endpoint_is_told() {
+    fn invalid_endpoints_are_reported() {
         for text in [
             "",
             "14550",

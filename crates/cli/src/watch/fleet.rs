@@ -268,7 +268,7 @@ pub(crate) mod tests {
     pub(crate) const AT_LIMITS: [u16; 4] = [1000, 2000, 1000, 2000];
 
     #[test]
-    fn a_vehicle_lost_in_the_air_stands_above_those_that_are_good() {
+    fn a_vehicle_lost_in_the_air_is_listed_above_good_ones() {
         let estimator = estimator();
         let mut air = Air::new(&estimator);
         let calm = [(1, false, [1000; 4]), (2, true, HOVER), (3, true, HOVER)];

@@ -32,6 +32,7 @@ use flagred_flightlog::{
 use crate::{
     assess::{FailOn, exit_of},
     failure::{Exit, Failure},
+    numbers::whole,
     profile,
     range::RangeArgument,
 };
@@ -65,7 +66,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with_all = ["record", "send_anyway", "component", "range"])]
     all: bool,
 
-    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-battery`, `flagred-paper`, or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, `flagred-battery`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
@@ -93,7 +94,7 @@ pub(crate) struct Arguments {
     no_wait: bool,
 
     /// The MAVLink component id to send as
-    #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = clap::value_parser!(u8).range(2..))]
+    #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = whole(2, u8::MAX))]
     component: u8,
 
     /// Record received packets to this telemetry log, a new file
@@ -373,7 +374,7 @@ impl Display {
             (
                 told.signed,
                 now.signed,
-                "signed packets are left out: without the key (`--key`) nobody can tell whether they are genuine",
+                "signed packets are left out: without the key (`--key`) they cannot be verified",
             ),
             (
                 told.unsigned,

@@ -463,7 +463,7 @@ mod tests {
 
     /// The buffer is as large as the system allows; Linux also counts the overhead of the packets.
     #[test]
-    fn a_socket_keeps_a_second_of_many_vehicles() {
+    fn a_socket_buffers_a_second_of_many_vehicles() {
         let usual = buffer(&UdpSocket::bind("127.0.0.1:0").unwrap()).unwrap();
         let most = std::fs::read_to_string("/proc/sys/net/core/rmem_max").unwrap();
         let most: usize = most.trim().parse().unwrap();

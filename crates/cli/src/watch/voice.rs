@@ -135,7 +135,7 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
 /// its words. Without a finding, the alarm is still on because the motors have changed since it was raised.
 pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Words)>) -> String {
     if level > Level::Good && finding.is_none() {
-        return format!("{PREFIX}{level} stands: motors not as before");
+        return format!("{PREFIX}{level} stays: motors not as before");
     }
     let elevated = || ("elevated", update.elevated_risk_pct);
     let risk = || ("risk", update.risk.ok().map(|estimate| estimate.risk_pct));
@@ -182,7 +182,7 @@ mod tests {
 
     /// The text may contain names from rule sets.
     #[test]
-    fn a_text_does_nothing_on_a_terminal_and_ends_with_a_whole_character() {
+    fn a_text_is_safe_on_a_terminal_and_ends_with_a_whole_character() {
         let MavMessage::STATUSTEXT(sent) = status(Level::Warn, "a\u{1b}[2J\u{202e}") else {
             panic!("another message");
         };

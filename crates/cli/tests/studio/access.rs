@@ -16,7 +16,7 @@ use super::{
 };
 
 #[test]
-fn the_page_comes_with_its_own_policy() {
+fn the_page_has_its_own_content_security_policy() {
     let folder = folder(&[]);
     let studio = Studio::start(folder.path(), &[]);
     assert_eq!(studio.said.len(), 2, "{:?}", studio.said);
@@ -44,7 +44,7 @@ fn the_page_comes_with_its_own_policy() {
 }
 
 #[test]
-fn nobody_else_gets_anything() {
+fn requests_of_others_are_refused() {
     let folder = folder(&[("rules.yaml", RULES), ("secret.txt", "secret")]);
     let studio = Studio::start(folder.path(), &["rules.yaml"]);
     let (authority, token) = (&studio.authority, &studio.token);
@@ -130,7 +130,7 @@ fn nobody_else_gets_anything() {
 
 /// The address in the browser's command line redirects to the page once, so that another user who reads it is too late.
 #[test]
-fn the_address_that_a_browser_is_given_works_once() {
+fn the_address_for_the_browser_works_once() {
     let folder = folder(&[]);
     let opener = folder.path().join("xdg-open");
     fs::write(
@@ -169,7 +169,7 @@ fn the_address_that_a_browser_is_given_works_once() {
 
 /// Any user of the machine can connect and send single bytes slowly.
 #[test]
-fn connections_that_drip_keep_nobody_out() {
+fn slow_connections_do_not_block_others() {
     let folder = folder(&[("rules.yaml", RULES)]);
     let studio = Studio::start(folder.path(), &["rules.yaml"]);
     let start = Instant::now();
@@ -200,7 +200,7 @@ fn connections_that_drip_keep_nobody_out() {
 
 /// A request ends, however slowly it is sent.
 #[test]
-fn a_request_that_is_refused_is_not_listened_to_for_long() {
+fn a_refused_request_is_not_read_for_long() {
     let folder = folder(&[]);
     let studio = Studio::start(folder.path(), &[]);
     let mut stream = TcpStream::connect(&studio.authority).unwrap();

@@ -14,7 +14,7 @@ use super::{
 };
 
 #[test]
-fn the_file_is_read_and_written_as_long_as_nobody_else_writes_it() {
+fn the_file_is_written_only_if_nobody_else_changed_it() {
     let folder = folder(&[("my räder.yaml", RULES)]);
     let studio = Studio::start(folder.path(), &["my räder.yaml"]);
     assert_eq!(studio.said[1], "edits `my räder.yaml`");
@@ -66,7 +66,7 @@ fn the_file_is_read_and_written_as_long_as_nobody_else_writes_it() {
 }
 
 #[test]
-fn a_text_that_is_too_large_or_none_changes_nothing() {
+fn refused_texts_change_nothing() {
     let folder = folder(&[("rules.yaml", RULES)]);
     let studio = Studio::start(folder.path(), &["rules.yaml"]);
     let tag = studio.file().header("etag").to_owned();
@@ -113,7 +113,7 @@ fn a_text_that_is_too_large_or_none_changes_nothing() {
 }
 
 #[test]
-fn what_is_read_only_is_never_written() {
+fn a_read_only_file_is_never_written() {
     let folder = folder(&[("rules.yaml", RULES)]);
     let studio = Studio::start(folder.path(), &["rules.yaml", "--read-only"]);
     assert_eq!(studio.said[1], "shows `rules.yaml`, read only");
@@ -132,7 +132,7 @@ fn what_is_read_only_is_never_written() {
 
 /// A hard link to the old file shows that the new file is another one in its place.
 #[test]
-fn the_file_is_replaced_where_its_link_leads_and_keeps_its_mode() {
+fn the_target_of_a_link_is_replaced_and_keeps_its_mode() {
     let folder = folder(&[("real.yaml", RULES)]);
     let (real, old) = (
         folder.path().join("real.yaml"),
@@ -160,7 +160,7 @@ fn the_file_is_replaced_where_its_link_leads_and_keeps_its_mode() {
 
 /// Opening a FIFO would wait for its other end forever, and so would the next save.
 #[test]
-fn a_file_that_becomes_something_else_is_told_at_once() {
+fn a_file_that_becomes_unreadable_is_reported_at_once() {
     let folder = folder(&[("rules.yaml", RULES)]);
     let studio = Studio::start(folder.path(), &["rules.yaml"]);
     let tag = studio.file().header("etag").to_owned();

@@ -194,7 +194,7 @@ impl<'e> Bench<'e> {
 }
 
 #[test]
-fn parameters_that_never_come_are_assumed_and_those_that_come_late_are_taken() {
+fn missing_parameters_are_assumed_and_late_ones_are_used() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.wait_beating(9, false);
@@ -254,7 +254,7 @@ fn a_given_range_is_used_until_the_vehicle_reports_its_own() {
 }
 
 #[test]
-fn damaged_parameters_are_not_believed() {
+fn damaged_parameters_are_ignored() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -271,7 +271,7 @@ fn damaged_parameters_are_not_believed() {
 }
 
 #[test]
-fn listening_only_sends_nothing() {
+fn a_watch_that_only_listens_sends_nothing() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, None);
     bench.wait_beating(9, false);
@@ -284,7 +284,7 @@ fn listening_only_sends_nothing() {
 }
 
 #[test]
-fn a_flight_at_the_limit_is_told_once_a_level() {
+fn a_flight_at_the_limit_is_reported_once_per_level() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -307,7 +307,7 @@ fn a_flight_at_the_limit_is_told_once_a_level() {
 }
 
 #[test]
-fn a_risk_without_a_motor_at_its_limit_is_told_with_its_meaning() {
+fn a_risk_without_a_motor_at_its_limit_is_reported_with_its_meaning() {
     let estimator = shipped::flagred();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -340,7 +340,7 @@ fn a_risk_without_a_motor_at_its_limit_is_told_with_its_meaning() {
 
 /// Motor 3 works harder from some time in flight on: the level remains until the landing, and text and finding name the motor.
 #[test]
-fn a_lasting_imbalance_is_told_with_its_motor_until_landing() {
+fn a_lasting_imbalance_is_reported_with_its_motor_until_landing() {
     let estimator = shipped::flagred();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -373,7 +373,7 @@ fn a_lasting_imbalance_is_told_with_its_motor_until_landing() {
 
 /// A motor is weak; the link is lost for 6 s; the vehicle lands.
 #[test]
-fn good_is_never_said_where_nothing_is_known() {
+fn good_is_never_reported_for_an_unknown_risk() {
     let estimator = shipped::flagred();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -402,7 +402,7 @@ fn good_is_never_said_where_nothing_is_known() {
 }
 
 #[test]
-fn silence_takes_the_risk_away_and_is_told_once() {
+fn a_silence_makes_the_risk_unknown_and_is_reported_once() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -439,7 +439,7 @@ fn silence_takes_the_risk_away_and_is_told_once() {
 
 /// The microseconds since boot wrap after 71 minutes. That is not a reboot, and no state is lost.
 #[test]
-fn a_clock_that_starts_over_goes_on() {
+fn a_restarted_clock_is_continued() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);

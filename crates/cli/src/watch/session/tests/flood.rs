@@ -167,14 +167,14 @@ fn flood(packets: usize) {
 }
 
 #[test]
-fn a_million_packets_of_others_do_not_cost_the_vehicle() {
+fn a_million_packets_of_others_do_not_lose_the_vehicle() {
     flood(1_000_000);
 }
 
 /// A day of packets, in 130 s: `cargo test -p flagred-cli --lib flood -- --ignored --nocapture`.
 #[test]
 #[ignore = "a day's flood takes two minutes"]
-fn a_hundred_million_packets_of_others_do_not_cost_the_vehicle() {
+fn a_hundred_million_packets_of_others_do_not_lose_the_vehicle() {
     flood(100_000_000);
 }
 

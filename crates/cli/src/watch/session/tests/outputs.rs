@@ -56,7 +56,7 @@ impl Bench<'_> {
 }
 
 #[test]
-fn motors_on_both_ports_are_complete_with_the_second_and_not_carried_on_without_the_first() {
+fn motors_on_both_ports_require_recent_values_of_both() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat_as(HEXAROTOR, MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA);
@@ -100,7 +100,7 @@ fn motors_on_both_ports_are_complete_with_the_second_and_not_carried_on_without_
 }
 
 #[test]
-fn a_px4_vehicle_is_asked_for_the_functions_and_limits_of_its_outputs() {
+fn functions_and_limits_of_outputs_are_requested_from_px4() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     let px4 = MavAutopilot::MAV_AUTOPILOT_PX4;

@@ -178,7 +178,7 @@ fn a_parameter_that_the_vehicle_does_not_have_is_not_waited_for() {
 }
 
 #[test]
-fn a_vehicle_found_in_the_air_gets_its_risk_while_parameters_are_still_awaited() {
+fn a_vehicle_found_in_the_air_has_a_risk_before_its_parameters_arrive() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_fly(100.0, 0.8, [1500; 4]);
@@ -201,7 +201,7 @@ fn a_vehicle_found_in_the_air_gets_its_risk_while_parameters_are_still_awaited()
 
 /// Limits that arrive in flight change the commands of the whole flight: the verdict is the one for the right limits.
 #[test]
-fn limits_that_come_in_the_air_apply_to_the_flight_from_its_beginning() {
+fn limits_that_arrive_in_the_air_apply_to_the_whole_flight() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_beat();
@@ -224,7 +224,7 @@ fn limits_that_come_in_the_air_apply_to_the_flight_from_its_beginning() {
 
 /// The range of the motors changes between two flights. A change in flight applies after the landing.
 #[test]
-fn limits_that_are_set_anew_count_from_the_next_flight_on() {
+fn changed_limits_apply_from_the_next_flight() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_beat();
@@ -258,7 +258,7 @@ fn limits_that_are_set_anew_count_from_the_next_flight_on() {
 
 /// PX4 refused these parameters; later a ground station loads all of them.
 #[test]
-fn a_refused_parameter_that_comes_in_the_air_takes_no_alarm_back() {
+fn a_refused_parameter_that_arrives_in_the_air_clears_no_alarm() {
     const FAULT: [u16; 4] = [1000, 2000, 1000, 2000];
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
@@ -326,7 +326,7 @@ fn parameters_that_change_nothing_change_nothing() {
 
 /// PX4 repeats the last NAMED_VALUE_FLOAT that it received as its own, with its own time.
 #[test]
-fn a_value_that_px4_sends_again_as_its_own_is_no_other_watch() {
+fn a_value_forwarded_by_px4_is_not_taken_for_another_watch() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_beat();
@@ -364,7 +364,7 @@ fn a_value_that_px4_sends_again_as_its_own_is_no_other_watch() {
 }
 
 #[test]
-fn a_warning_is_sent_where_another_one_speaks_and_does_not_warn() {
+fn a_warning_is_sent_if_another_watch_does_not_warn() {
     let estimator = estimator();
     for warns in [false, true] {
         let mut bench = Bench::new(&estimator, Some(191));
@@ -398,7 +398,7 @@ fn a_warning_is_sent_where_another_one_speaks_and_does_not_warn() {
 
 /// EVENT, which PX4 sends and this program's dialect lacks.
 #[test]
-fn an_unknown_message_is_the_vehicles_and_tells_nothing() {
+fn an_unknown_message_of_the_vehicle_is_ignored() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_beat();
@@ -445,7 +445,7 @@ fn cut(in_the_air: impl Fn(&mut Bench<'_>)) -> (Vec<String>, Verdict) {
 }
 
 #[test]
-fn the_landed_state_is_believed_over_idle_motors() {
+fn the_landed_state_overrides_idle_motors() {
     let (texts, verdict) = cut(|bench| {
         bench.px4_beat();
         bench.px4_state(MavLandedState::MAV_LANDED_STATE_IN_AIR);
@@ -456,7 +456,7 @@ fn the_landed_state_is_believed_over_idle_motors() {
 
 /// The landed state may be outdated; or a pilot who landed stops the motors before the land detector reports it.
 #[test]
-fn an_old_landed_state_and_stopped_motors_are_no_fall() {
+fn an_old_landed_state_and_stopped_motors_are_not_a_fall() {
     let silent = cut(|bench| bench.px4_beat());
     let killed = cut(|bench| {
         bench.hear(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {

@@ -54,7 +54,7 @@ impl Bench<'_> {
 }
 
 #[test]
-fn rates_are_asked_for_until_they_come_in_the_old_way_too() {
+fn rates_are_requested_until_they_arrive_also_by_the_old_message() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.wait_beating(1, false);
@@ -81,7 +81,7 @@ fn rates_are_asked_for_until_they_come_in_the_old_way_too() {
 
 /// Requests apply to all receivers on a link: sufficient rates are not requested, so that no other receiver's attitude slows down.
 #[test]
-fn a_rate_that_is_high_enough_is_not_asked_for() {
+fn a_rate_that_is_high_enough_is_not_requested() {
     let estimator = estimator();
     for (motors_hz, others_hz, expected) in [(50, 50, 0), (25, 5, 0), (10, 50, 1), (50, 2, 2)] {
         let mut bench = Bench::new(&estimator, Some(191));
@@ -156,7 +156,7 @@ fn the_station_that_slows_the_motor_commands_is_named_once() {
 
 /// Wherever the rate changes within a measuring interval, the reported rate is the one after the change.
 #[test]
-fn the_rate_that_is_told_is_measured_after_the_fall() {
+fn the_reported_rate_is_measured_after_the_drop() {
     let estimator = estimator();
     for tenths in 0..20 {
         let mut bench = Bench::new(&estimator, Some(191));

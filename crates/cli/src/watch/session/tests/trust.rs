@@ -45,7 +45,7 @@ impl Bench<'_> {
 }
 
 #[test]
-fn one_heartbeat_is_no_vehicle_and_a_stray_one_does_not_lock_the_vehicle_out() {
+fn one_stray_heartbeat_does_not_select_a_vehicle() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     let mut stray = Peer::new(1, 9, 1);
@@ -80,7 +80,7 @@ fn one_heartbeat_is_no_vehicle_and_a_stray_one_does_not_lock_the_vehicle_out() {
 }
 
 #[test]
-fn heartbeats_alone_give_way_to_other_heartbeats_where_requests_are_in_vain() {
+fn another_vehicle_is_selected_if_the_first_only_sends_heartbeats() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     let (mut stray, mut vehicle) = (Peer::new(1, 9, 1), Peer::new(2, 1, 1));
@@ -95,7 +95,7 @@ fn heartbeats_alone_give_way_to_other_heartbeats_where_requests_are_in_vain() {
 }
 
 #[test]
-fn a_second_sender_is_told_once_and_not_believed_until_the_first_is_silent() {
+fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -138,7 +138,7 @@ fn a_second_sender_is_told_once_and_not_believed_until_the_first_is_silent() {
         matches!(
             event,
             Event::Over {
-                end: End::Left(Left::WatchEnded),
+                end: End::LeftInAir(StopReason::WatchEnded),
                 ..
             }
         )
@@ -181,7 +181,7 @@ fn another_system_is_followed_only_long_after_the_vehicle_fell_silent() {
 }
 
 #[test]
-fn parameters_of_other_components_are_not_those_of_the_autopilot() {
+fn parameters_of_other_components_are_ignored() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -208,7 +208,7 @@ fn parameters_of_other_components_are_not_those_of_the_autopilot() {
 /// A sender at the vehicle's own address sends two packets for each of the vehicle's. A clock that jumps back is not a reboot
 /// while the original clock continues.
 #[test]
-fn a_clock_that_jumps_while_it_goes_on_is_no_reboot() {
+fn a_clock_that_jumps_once_is_not_a_reboot() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -264,7 +264,7 @@ fn said_by(bench: &Bench<'_>) -> usize {
 }
 
 #[test]
-fn of_two_watches_the_older_speaks_and_the_younger_again_when_that_is_gone() {
+fn the_older_of_two_watches_sends_and_the_younger_takes_over() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.wait(10.0);
@@ -295,7 +295,7 @@ fn of_two_watches_the_older_speaks_and_the_younger_again_when_that_is_gone() {
 }
 
 #[test]
-fn a_risk_from_the_autopilot_itself_is_not_told_twice_unless_asked_for() {
+fn a_risk_sent_by_the_autopilot_is_repeated_only_on_request() {
     let estimator = estimator();
     for insists in [false, true] {
         let mut bench = Bench::new(&estimator, None);
@@ -314,7 +314,7 @@ fn a_risk_from_the_autopilot_itself_is_not_told_twice_unless_asked_for() {
 
 /// A link that returns every packet is not another watch.
 #[test]
-fn its_own_echo_is_no_other_watch() {
+fn an_echo_of_the_watch_is_not_taken_for_another_watch() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
