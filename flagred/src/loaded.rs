@@ -272,19 +272,20 @@ pub fn rules<E>(
         let text = read(&path).map_err(LoadError::Read)?;
         return Ok((path.display().to_string(), text));
     }
-    if folder.is_some_and(|folder| folder.join(&profile.rules).is_dir()) {
-        return Err(LoadError::unusable(format!(
-            "profile `{}` names the rule set `{}`, which is a folder",
-            profile.name, profile.rules
-        ))
-        .help("name a file in it"));
-    }
     let shipped = shipped::RULE_SETS
         .iter()
         .find(|known| known.name == profile.rules);
     shipped
         .map(|known| (known.file.to_owned(), known.text.to_owned()))
         .ok_or_else(|| {
+            let path = folder.map(|folder| folder.join(&profile.rules));
+            if path.is_some_and(|path| path.is_dir() && is_allowed(&path, folder)) {
+                return LoadError::unusable(format!(
+                    "profile `{}` names the rule set `{}`, which is a folder",
+                    profile.name, profile.rules
+                ))
+                .help("name a file in it");
+            }
             let names = shipped::RULE_SETS.iter().map(|known| known.name);
             let help = match nearest(&profile.rules, names) {
                 Some(near) => format!("did you mean `{near}`?"),
