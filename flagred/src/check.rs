@@ -418,16 +418,34 @@ fn signal(
         }
     }
     let mut carried = input.source.signal.carried();
+    if let Some(number) = carried.clone().find_map(motor_column) {
+        let message = format!(
+            "input `{}` reads a column of motor {number}, which is not a signal",
+            input.name
+        );
+        let help = format!("write `{{motor: {number}, of: motor_command}}` in place of its name");
+        return Some(Diagnostic::warning("unknown-signal", place, message).help(help));
+    }
     if let Some(name) = carried.find(|name| unit_of(name).is_none())
         // CSV logs may have signals of any name; only a near miss is a mistake.
         && let Some(meant) = nearest(name, known.iter().map(|(name, _)| *name))
             .or_else(|| nearest(name, Signal::names()))
     {
         let message = format!("no log format has a signal `{name}`");
-        return Some(
-            Diagnostic::warning("unknown-signal", place, message)
-                .help(format!("did you mean `{meant}`?")),
-        );
+        // For example `wind`, of which there are several.
+        let start = format!("{name}_");
+        let longer = known
+            .iter()
+            .map(|(name, _)| *name)
+            .filter(|name| name.starts_with(&start));
+        let longer: Vec<String> = longer.map(|name| format!("`{name}`")).collect();
+        let help = match longer.split_last() {
+            Some((last, rest)) if !rest.is_empty() => {
+                format!("did you mean {} or {last}?", rest.join(", "))
+            }
+            _ => format!("did you mean `{meant}`?"),
+        };
+        return Some(Diagnostic::warning("unknown-signal", place, message).help(help));
     }
     let mut first = input.source.signal.carried().next();
     // A ratio or a product does not have the unit of its signals.
@@ -465,6 +483,25 @@ fn signal(
     if input.ratio.is_some() {
         return None;
     }
+    let keeps_unit = matches!(
+        input.source.statistic,
+        Statistic::Mean
+            | Statistic::Min
+            | Statistic::Max
+            | Statistic::Last
+            | Statistic::Percentile(_)
+    );
+    if let Some((name, "%")) = first
+        && keeps_unit
+        && variable.high <= 1.0
+    {
+        let message = format!(
+            "input `{}` goes from {} to {}, but `{name}` is in percent",
+            input.name, variable.low, variable.high
+        );
+        let help = "write the terms of the input in percent, from 0 to 100";
+        return Some(Diagnostic::warning("unit", place, message).help(help));
+    }
     let (low, high) = range(&input.source)?;
     let shared = high.min(variable.high) - low.max(variable.low);
     if shared >= LEAST_SHARE * (variable.high - variable.low) {
@@ -477,6 +514,14 @@ fn signal(
     let help =
         "motor commands are fractions of their range, from 0 to 1; write the terms of the input so";
     Some(Diagnostic::warning("unit", place, message).help(help))
+}
+
+/// The number of the motor whose column of a CSV has this name: 3 for `pwm3` and `motor3`.
+fn motor_column(name: &str) -> Option<u32> {
+    let number = name
+        .strip_prefix("pwm")
+        .or_else(|| name.strip_prefix("motor"))?;
+    number.parse().ok().filter(|number| *number > 0)
 }
 
 /// Returns the normalised spelling of a unit.

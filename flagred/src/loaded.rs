@@ -12,7 +12,11 @@ use alloc::{
     vec::Vec,
 };
 
-use fuzzy::{Findings, Source};
+use fuzzy::{
+    Findings, Source,
+    diagnostic::nearest,
+    tree::{Node, Value},
+};
 
 use crate::{check, estimator::Estimator, profile::Profile, shipped};
 
@@ -189,6 +193,13 @@ pub fn rule_set<E>(
 
 /// Verifies that a rule set compiles; `file` is its name in findings.
 fn compiled<E>(profile: &Profile, file: String, source: Source) -> Result<Source, LoadError<E>> {
+    if source.document().is_err() && is_profile(&source) {
+        return Err(LoadError::unusable(format!(
+            "profile `{}` names `{}`, which is a profile, not a rule set",
+            profile.name, profile.rules
+        ))
+        .help("name a rule set, which begins with `fuzzy: 1`, such as `rules: flagred-paper`"));
+    }
     if source.document().is_err() && !is_meant_as_rules(source.text()) {
         return Err(LoadError::unusable(format!(
             "profile `{}` names `{file}`, which is not a rule set",
@@ -266,14 +277,27 @@ pub fn rules<E>(
         let text = read(&path).map_err(LoadError::Read)?;
         return Ok((path.display().to_string(), text));
     }
+    let path = folder.map(|folder| folder.join(&profile.rules));
+    if path.is_some_and(|path| path.is_dir() && is_allowed(&path, folder)) {
+        return Err(LoadError::unusable(format!(
+            "profile `{}` names the rule set `{}`, which is a folder",
+            profile.name, profile.rules
+        ))
+        .help("name a file in it"));
+    }
+    let names = shipped::RULE_SETS.iter().map(|known| known.name);
+    let help = match nearest(&profile.rules, names) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!(
+            "built in are {}; paths are relative to the folder of the profile",
+            built_in()
+        ),
+    };
     Err(LoadError::unusable(format!(
         "profile `{}` names the rule set `{}`, which is neither a file next to it nor built in",
         profile.name, profile.rules
     ))
-    .help(format!(
-        "built in are {}; paths are relative to the folder of the profile",
-        built_in()
-    )))
+    .help(help))
 }
 
 /// The names of the built-in rule sets.
@@ -297,6 +321,31 @@ pub fn is_meant_as_rules(text: &str) -> bool {
                 rest.is_some_and(|rest| rest.trim_start_matches(['"', '\'', ' ']).starts_with(':'))
             })
     })
+}
+
+/// Whether a text is meant to be a profile: whether it has the key `flagred` or the settings of a profile, and not the
+/// outputs of a rule set. A text that is not valid YAML yet is searched for the key.
+#[doc(hidden)] // For the programs of this repository.
+pub fn is_profile(source: &Source) -> bool {
+    let Ok(Value::Mapping(pairs)) = source.tree().map(|tree| &tree.value) else {
+        return source
+            .text()
+            .lines()
+            .any(|line| line.starts_with("flagred:"));
+    };
+    let has = |name: &str| {
+        let is = |key: &Node| matches!(&key.value, Value::Scalar(key) if key.text == name);
+        pairs.iter().any(|(key, _)| is(key))
+    };
+    let settings = [
+        "verdict",
+        "elevated_risk",
+        "window_s",
+        "min_samples",
+        "other_risks",
+    ];
+    let is_rules = has("outputs") || has("blocks");
+    !is_rules && (has("flagred") || settings.iter().any(|key| has(key)))
 }
 
 /// Whether a file, with all links resolved, is in the folder of its profile or in the folder that the caller allows.

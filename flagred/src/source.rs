@@ -102,7 +102,7 @@ impl Signal {
     }
 
     /// The names of the signals that samples must contain to compute this signal.
-    pub fn carried(&self) -> impl Iterator<Item = &str> {
+    pub fn carried(&self) -> impl Iterator<Item = &str> + Clone {
         let (first, second) = match self {
             Signal::Named(name) => (Some(name), None),
             Signal::Difference { a, b } | Signal::Product { a, b } => (Some(a), Some(b)),

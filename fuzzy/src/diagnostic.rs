@@ -437,11 +437,20 @@ pub(crate) fn is_curly_quote(c: char) -> bool {
 
 /// Formats words as `` `A`, `B` or `C` ``
 pub(crate) fn either(words: &[&str]) -> String {
+    joined(words, "or")
+}
+
+fn joined(words: &[&str], join: &str) -> String {
     let quoted: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
     match quoted.split_last() {
-        Some((last, first)) if !first.is_empty() => format!("{} or {last}", first.join(", ")),
+        Some((last, first)) if !first.is_empty() => format!("{} {join} {last}", first.join(", ")),
         _ => quoted.join(""),
     }
+}
+
+/// Formats all words, without a limit, as `` `A`, `B` and `C` ``
+pub(crate) fn all_of(words: &[&str]) -> String {
+    joined(words, "and")
 }
 
 pub(crate) fn listed(words: &[&str]) -> String {

@@ -26,6 +26,25 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("points", &["piecewise"]),
     ("binary", &["right_shoulder", "left_shoulder"]),
     ("spikemf", &["spike"]),
+    // Parameters of membership functions.
+    ("mu", &["mean"]),
+    ("c", &["mean", "center"]),
+    ("centre", &["center", "mean"]),
+    ("center", &["mean"]),
+    ("mean", &["center"]),
+    ("sigma", &["sd"]),
+    ("std", &["sd"]),
+    ("stddev", &["sd", "std"]),
+    ("standarddeviation", &["sd", "std"]),
+    ("const", &["constant"]),
+    ("value", &["constant"]),
+    ("number", &["constant"]),
+    // Statistics of a profile.
+    ("average", &["mean"]),
+    ("avg", &["mean"]),
+    ("stdev", &["std"]),
+    ("sd", &["std"]),
+    ("variance", &["std"]),
     // Operators.
     ("fmin", &["minimum"]),
     ("fmax", &["maximum"]),
@@ -77,7 +96,10 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("mfs", &["terms"]),
     ("membershipfunctions", &["terms"]),
     ("universe", &["range"]),
-    ("default", &["when_no_rule_fires"]),
+    ("version", &["fuzzy", "flagred"]),
+    ("cmd", &["command"]),
+    ("reason", &["because"]),
+    ("default", &["when_no_rule_fires", "if_missing"]),
     ("defaultvalue", &["when_no_rule_fires"]),
     ("method", &["defuzzifier"]),
     ("defuzzmethod", &["defuzzifier"]),
@@ -106,7 +128,7 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
 const ELSEWHERE: &[(&str, &str)] = &[
     (
         "weight",
-        "a weight stands at the end of its rule: `IF ... THEN ... WITH 0.8`",
+        "a weight is at the end of its rule: `IF ... THEN ... WITH 0.8`",
     ),
     (
         "type",
@@ -120,6 +142,10 @@ const ELSEWHERE: &[(&str, &str)] = &[
     (
         "defuzzifier",
         "each output has its own: `defuzzifier: centroid`",
+    ),
+    (
+        "<<",
+        "merge keys have no meaning here: write the keys out, or repeat a whole value with `&name` and `*name`",
     ),
     ("andmethod", "write `operators: {and: minimum}`"),
     ("ormethod", "write `operators: {or: maximum}`"),

@@ -5,14 +5,13 @@ use std::cell::OnceCell;
 use flagred::{
     check::{Alone, alone, outvoted},
     estimator::Estimator,
-    loaded,
+    loaded::{self, is_profile},
     profile::Profile,
 };
 use fuzzy::{
     Model, Source, check,
     diagnostic::{Diagnostic, Findings},
     format::{self, Partial},
-    tree::Value,
 };
 
 use crate::provenance;
@@ -136,18 +135,6 @@ impl OpenProfile {
 
 pub(crate) fn partial(source: &Source) -> Option<Partial> {
     format::read_partly(source.tree().ok()?)
-}
-
-/// Whether a text is meant to be a profile: whether it has the key `flagred`, even if it is not valid YAML yet.
-pub fn is_profile(source: &Source) -> bool {
-    let Ok(Value::Mapping(pairs)) = source.tree().map(|tree| &tree.value) else {
-        return source
-            .text()
-            .lines()
-            .any(|line| line.starts_with("flagred:"));
-    };
-    let mut keys = pairs.iter().map(|(key, _)| &key.value);
-    keys.any(|key| matches!(key, Value::Scalar(key) if key.text == "flagred"))
 }
 
 /// The result of examining a rule set.

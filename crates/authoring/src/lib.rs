@@ -31,6 +31,7 @@ pub mod answers;
 pub mod completion;
 mod document;
 pub mod handles;
+pub mod kind;
 pub mod layout;
 pub mod names;
 mod numbers;
@@ -40,7 +41,8 @@ pub mod slice;
 pub mod starter;
 pub mod structure;
 
-pub use document::{Document, Examined, examine, is_profile};
+pub use document::{Document, Examined, examine};
+pub use flagred::loaded::is_profile;
 
 use std::ops::Range;
 

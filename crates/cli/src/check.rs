@@ -182,7 +182,8 @@ fn examine_profile(
     };
     let is_file = path != Path::new("-") && built_in::profile_at(path).is_none();
     let folder = is_file.then(|| path.parent()).flatten();
-    let rules = profile::rule_set(&profile, folder)?;
+    let file = path.display().to_string();
+    let rules = profile::rule_set(&profile, (&file, source), folder)?;
     let (findings, estimator) = profile::examine(source, &rules);
     let alone = estimator.as_ref().map(alone).unwrap_or_default();
     Ok((Some(profile), findings, alone))

@@ -6,6 +6,7 @@ use std::{
     path::Path,
 };
 
+use flagred_authoring::kind;
 use flagred_report::diagnostics::{self, Style};
 use fuzzy::{
     diagnostic::{Diagnostic, Findings},
@@ -92,6 +93,10 @@ fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
 
 /// Decodes the text of a rule set or profile.
 pub(crate) fn text(bytes: Vec<u8>, shown: &str) -> Result<String, Failure> {
+    if let Some(kind) = kind::binary(&bytes) {
+        let failure = Failure::unreadable(format!("`{shown}` is {}", kind.name));
+        return Err(failure.help(kind.help));
+    }
     decoded(bytes).map_err(|error| error.failure(shown))
 }
 

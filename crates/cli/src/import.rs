@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use flagred_interchange::{Format, Losses};
+use fuzzy::Findings;
 
 use crate::{
     diagnostics::{is_meant_as_rules, read_text, refuse, show},
@@ -35,6 +36,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let text = read_text(&arguments.file)?;
     let file = arguments.file.display().to_string();
     let Some(format) = Format::of(&text) else {
+        if let Some(finding) = fuzzy::yaml::foreign(&text) {
+            return Err(refuse(
+                &Findings::locate(vec![finding], &text),
+                &file,
+                &text,
+            ));
+        }
         let failure = Failure::unreadable(format!("`{file}` is not a FIS, FLL, FCL or FML file"));
         return Err(failure.help_if(advice(&arguments.file, &text)));
     };

@@ -7,7 +7,7 @@ use flagred::{
     profile::Profile,
     shipped,
 };
-use fuzzy::Source;
+use fuzzy::{Diagnostic, Findings, Source};
 
 use crate::{
     diagnostics::{read_text, refuse, show},
@@ -36,9 +36,23 @@ pub(crate) fn from_source(path: &Path, source: Source) -> Result<Loaded, Failure
     Ok(loaded)
 }
 
-/// Returns the rule set that a profile names, after compiling it.
-pub(crate) fn rule_set(profile: &Profile, folder: Option<&Path>) -> Result<Source, Failure> {
-    loaded::rule_set(profile, folder, read_text).map_err(failure)
+/// Returns the rule set that a profile names, after compiling it. If it is not a rule set, the failure is at the line
+/// of the profile that names it.
+pub(crate) fn rule_set(
+    profile: &Profile,
+    (file, source): (&str, &Source),
+    folder: Option<&Path>,
+) -> Result<Source, Failure> {
+    loaded::rule_set(profile, folder, read_text).map_err(|error| match error {
+        LoadError::Unusable { message, help } => {
+            let text = source.text();
+            let place = text.find("\nrules:").map_or(0, |at| at + 1);
+            let mut finding = Diagnostic::error("rule-set", place..place + 5, message);
+            finding.help = help;
+            refuse(&Findings::locate(vec![finding], text), file, text)
+        }
+        other => failure(other),
+    })
 }
 
 /// Reads a profile without its rule set. Also returns its text and, for a file, its folder.

@@ -155,6 +155,33 @@ pub(crate) fn named(format: Format, name: &str) -> Option<(Shape, usize)> {
     Some((spelling.shape, spelling.order(format).len()))
 }
 
+/// The parameters of a shape in the order of a format, such as `left peak right`.
+pub(crate) fn parameters(format: Format, shape: Shape) -> String {
+    let names: &[&str] = match shape {
+        Shape::Triangle => &["left", "peak", "right"],
+        Shape::Trapezoid => &["left", "left_top", "right_top", "right"],
+        Shape::Rectangle => &["left", "right"],
+        Shape::Ramp => &["start", "end"],
+        Shape::RampBack => &["end", "start"],
+        Shape::Gaussian => &["mean", "sd"],
+        Shape::Gaussian2 => &["left_mean", "left_sd", "right_mean", "right_sd"],
+        Shape::Bell => &["center", "width", "slope"],
+        Shape::Sigmoid => &["inflection", "slope"],
+        Shape::SigmoidDifference | Shape::SigmoidProduct => &["left", "rising", "falling", "right"],
+        Shape::S => &["foot", "top"],
+        Shape::Z => &["top", "foot"],
+        Shape::Pi => &["left", "left_top", "right_top", "right"],
+        Shape::Cosine | Shape::Spike => &["center", "width"],
+        Shape::HalfCosine => &["half_width", "center"],
+        Shape::Concave => &["inflection", "end"],
+        Shape::Arc | Shape::SemiEllipse => &["start", "end"],
+    };
+    let spelling = SPELLINGS.iter().find(|known| known.shape == shape);
+    let order = spelling.map_or(&[][..], |spelling| spelling.order(format));
+    let names = order.iter().filter_map(|index| names.get(*index).copied());
+    names.collect::<Vec<_>>().join(" ")
+}
+
 /// All names of a format.
 pub(crate) fn names(format: Format) -> impl Iterator<Item = &'static str> + Clone {
     SPELLINGS

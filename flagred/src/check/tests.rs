@@ -125,6 +125,12 @@ fn misfits_are_reported_at_their_positions() {
             "{rate: battery_remaining_pct}",
         ),
         ("range: [0, 0.5]", "range: [0, 50]"),
+        (
+            "range: [0, 100], unit: '%', partition: [empty",
+            "range: [0, 1], partition: [empty",
+        ),
+        ("mean: motor_margin", "mean: pwm1"),
+        ("battery_remaining_pct", "roll"),
         ("warn: {risk: 60, until: {risk: 30}}", "warn: {risk: 0.6}"),
         ("fail: {risk: 80}", "fail: {risk: 80, after_s: 200}"),
         ("rules: rules.yaml", "rules: rules.yaml\nwindow_s: 3000"),

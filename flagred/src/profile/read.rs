@@ -78,10 +78,24 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         "reliability",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
-        found.push(tree.unexpected_document("the profile"));
+        found.push(tree.unexpected_document("profile"));
         return None;
     }
-    let fields = tree.fields("the profile", &keys, found)?;
+    let fields = tree.fields("the profile", &keys, "", found)?;
+    if let Some(entry) = fields.unknown().find(|entry| entry.key == "fuzzy")
+        && fields.get("flagred").is_none()
+    {
+        let (span, message) = (
+            entry.key_span.clone(),
+            "this is a profile, but it begins like a rule set",
+        );
+        found.clear();
+        found.push(
+            Diagnostic::error("unknown-key", span, message)
+                .help("write `flagred: 1` in place of `fuzzy: 1`"),
+        );
+        return None;
+    }
     if let Some(version) = fields.require("flagred", "write `flagred: 1` as its first line", found)
         && version.whole("the version", 1, found) != Some(VERSION)
         && found.is_empty()
@@ -101,11 +115,17 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
     );
     let description = fields
         .get("description")
-        .and_then(|node| node.words("the description", found))
+        .and_then(|node| node.words("the description", "write a text: `description: ...`", found))
         .map(|words| words.text.clone());
     let output = fields
         .get("output")
-        .and_then(|node| node.words("the output", found))
+        .and_then(|node| {
+            node.words(
+                "the output",
+                "write the name of an output of the rule set: `output: risk`",
+                found,
+            )
+        })
         .map_or_else(|| "risk".into(), |words| words.text.clone());
     let window_s = number(&fields, "window_s", WINDOW_S, Bounds::Above0, found);
     let inputs = inputs(&fields, window_s, found);
@@ -137,7 +157,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
 
 fn required_words(fields: &Fields, key: &str, help: &str, found: &mut Found) -> Option<String> {
     let node = fields.require(key, help, found)?;
-    node.words(&format!("`{key}`"), found)
+    node.words(&format!("`{key}`"), help, found)
         .map(|words| words.text.clone())
 }
 
@@ -170,10 +190,10 @@ fn sampling(fields: &Fields, found: &mut Found) -> Sampling {
 
 fn gap(fields: &Fields, found: &mut Found) -> GapSettings {
     let mut gap = GapSettings::default();
-    let Some(fields) = fields
-        .get("gap")
-        .and_then(|node| node.fields("`gap`", &["method", "coverage_below"], found))
-    else {
+    let Some(fields) = fields.get("gap").and_then(|node| {
+        let help = "write `gap: {method: nearest}`";
+        node.fields("`gap`", &["method", "coverage_below"], help, found)
+    }) else {
         return gap;
     };
     gap.coverage_below = fields
@@ -190,13 +210,11 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
     let Value::Mapping(_) = node.value else {
         return node.choice("the gap method", &words, found);
     };
-    let fields = node.fields("the gap method", &["inverse_distance"], found)?;
-    let settings = fields.require(
-        "inverse_distance",
-        "write `{inverse_distance: {power: 2, neighbours: 3}}`",
-        found,
-    )?;
-    let fields = settings.fields("`inverse_distance`", &["power", "neighbours"], found)?;
+    let help = "write `{inverse_distance: {power: 2, neighbours: 3}}`";
+    let fields = node.fields("the gap method", &["inverse_distance"], help, found)?;
+    let settings = fields.require("inverse_distance", help, found)?;
+    let keys = ["power", "neighbours"];
+    let fields = settings.fields("`inverse_distance`", &keys, help, found)?;
     let neighbours = fields
         .get("neighbours")
         .and_then(|node| node.whole("`neighbours`", 1, found));
@@ -208,21 +226,24 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
 
 /// Reads the other outputs that are risks; missing settings are those of the first risk.
 fn other_risks(fields: &Fields, defaults: &OtherRisk, found: &mut Found) -> Vec<OtherRisk> {
-    let entries = fields
-        .get("other_risks")
-        .and_then(|node| node.entries("`other_risks`", "output", found));
+    let entries = fields.get("other_risks").and_then(|node| {
+        let help =
+            "write each output by its name: `other_risks: {battery_risk: {warn: {risk: 60}}}`";
+        node.entries("`other_risks`", "output", help, found)
+    });
     let mut risks = Vec::new();
     for entry in entries.unwrap_or_default() {
         if entry.key == defaults.output {
             let message = format!("`{}` is the `output` of the profile already", entry.key);
             found.push(
                 Diagnostic::error("other-risk", entry.key_span.clone(), message)
-                    .help("its levels stand in `verdict`; name other outputs here"),
+                    .help("its levels are in `verdict`; name other outputs here"),
             );
         }
         let what = format!("risk `{}`", entry.key);
         let keys = ["elevated_risk", "warn", "fail"];
-        if let Some(fields) = entry.value.fields(&what, &keys, found) {
+        let help = format!("write `{}: {{warn: {{risk: 60}}}}`", entry.key);
+        if let Some(fields) = entry.value.fields(&what, &keys, &help, found) {
             risks.push(OtherRisk {
                 output: entry.key.into(),
                 elevated_risk: elevated_risk(&fields, defaults.elevated_risk, found),
@@ -240,10 +261,10 @@ fn elevated_risk(
     found: &mut Found,
 ) -> AccumulatorSettings {
     let keys = ["window_s", "high", "low", "rise_per_s", "fall_per_s"];
-    let Some(fields) = fields
-        .get("elevated_risk")
-        .and_then(|node| node.fields("`elevated_risk`", &keys, found))
-    else {
+    let Some(fields) = fields.get("elevated_risk").and_then(|node| {
+        let help = "write `elevated_risk: {window_s: 10, high: 50, low: 20}`";
+        node.fields("`elevated_risk`", &keys, help, found)
+    }) else {
         return default;
     };
     let settings = AccumulatorSettings {

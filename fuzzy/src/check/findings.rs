@@ -10,7 +10,7 @@ use core::ops::Range;
 
 use super::{
     AgainstTrend, Contradiction, Coordinate, Counterexample, Direction, EqualTerms, Hole, Jump,
-    Reach, Report, TermOf, Uncovered,
+    Reach, Report, TermOf, Uncovered, effects,
     gaps::{Gap, gaps, is_missing},
     outer, shown,
     terms::is_outside,
@@ -106,6 +106,7 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
             .map(|one| at.counterexample(one)),
     );
     found.extend(report.jumps.iter().map(|one| at.jump(one)));
+    effects::of(model, &at, &mut found);
     found.extend(at.unexamined(report));
     found
 }
@@ -132,13 +133,13 @@ fn duplicate_rules(model: &Model, at: &At<'_>, findings: &mut Vec<Diagnostic>) {
 }
 
 /// The positions of the parts of a model.
-struct At<'a> {
+pub(super) struct At<'a> {
     model: &'a Model,
     spans: &'a Spans,
 }
 
 impl At<'_> {
-    fn rule(&self, index: usize) -> Range<usize> {
+    pub(super) fn rule(&self, index: usize) -> Range<usize> {
         let rule = self.spans.rules.get(index);
         rule.map_or(0..0, |rule| rule.whole.clone())
     }
@@ -151,7 +152,7 @@ impl At<'_> {
             .map(|(variable, spans)| (spans, variable))
     }
 
-    fn name(&self, variable: &str) -> Range<usize> {
+    pub(super) fn name(&self, variable: &str) -> Range<usize> {
         self.variable(variable)
             .map_or(0..0, |(spans, _)| spans.name.clone())
     }
@@ -165,6 +166,13 @@ impl At<'_> {
             Some(spans.terms.get(index)?.name.clone())
         });
         term.unwrap_or_else(|| self.name(&one.variable))
+    }
+
+    pub(super) fn term_of(&self, variable: &str, term: &str) -> Range<usize> {
+        self.term(&TermOf {
+            variable: variable.into(),
+            term: Some(term.into()),
+        })
     }
 
     fn place(&self, one: &Uncovered) -> String {
@@ -223,7 +231,7 @@ impl At<'_> {
         };
         let weak: Vec<&str> = one.weak.iter().map(String::as_str).collect();
         finding.help = match rules.as_slice() {
-            [] if weak.is_empty() => None,
+            [] if weak.is_empty() => self.disabled_blocks(),
             [] => Some(format!(
                 "no term of {} reaches that there; let the terms overlap more",
                 listed(&weak)
@@ -235,6 +243,21 @@ impl At<'_> {
             )),
         };
         finding
+    }
+
+    /// Returns a suggestion that names the disabled blocks.
+    fn disabled_blocks(&self) -> Option<String> {
+        let disabled = self.model.blocks.iter().filter(|block| !block.enabled);
+        let names: Vec<&str> = disabled.map(|block| block.name.as_str()).collect();
+        let (subject, are) = match names.as_slice() {
+            [] => return None,
+            [_] => ("block", "is"),
+            _ => ("blocks", "are"),
+        };
+        let names = listed(&names);
+        Some(format!(
+            "the {subject} {names} {are} disabled: remove `enabled: false`"
+        ))
     }
 
     fn side(&self, side: &super::Side) -> String {

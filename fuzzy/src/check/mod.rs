@@ -20,6 +20,7 @@ use crate::{
 mod accepted;
 mod axis;
 mod coverage;
+mod effects;
 mod extent;
 mod findings;
 mod gaps;

@@ -464,6 +464,69 @@ fn terms_that_are_the_same_and_rules_that_contradict_themselves_are_found() {
 }
 
 #[test]
+fn parts_without_an_effect_or_a_value_are_found() {
+    let text = "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 100], terms: {low: {left_shoulder: [30, 50]}, high: TERM}}}\n\
+                outputs: {z: {range: [0, 100], OUTPUT}}\n\
+                rules: [IF x IS low THEN z IS slow, IF x IS high THEN z IS fast]\n";
+    let sets = "partition: [slow, fast]";
+    let numbers = "terms: {slow: {constant: 0}, fast: {function: 100 / (x - x)}}, defuzzifier: weighted_average";
+    let shoulder = "{right_shoulder: [30, 50]}";
+    let found = |term: &str, output: &str, rule: [&str; 2]| {
+        let text = text.replace("TERM", term).replace("OUTPUT", output);
+        let (_, findings) = report_of(&text.replace(rule[0], rule[1]), &Options::default());
+        let codes = ["constant-term", "no-effect", "no-value"];
+        let found: Vec<Diagnostic> = findings
+            .into_iter()
+            .filter(|one| codes.contains(&one.code))
+            .collect();
+        found
+            .iter()
+            .map(ToString::to_string)
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    let none = ["", ""];
+    insta::assert_snapshot!(
+        [
+            found("{sigmoid: {inflection: 50, slope: 0}}", sets, none),
+            found("{gaussian: {mean: 50, sd: 1000}}", sets, none),
+            found("{gaussian: {mean: 50, sd: 200}}", sets, none),
+            found("{right_shoulder: [0.3, 0.5]}", sets, none),
+            found(shoulder, &format!("{sets}, clamp: true"), none),
+            found(shoulder, numbers, none),
+            found(shoulder, sets, ["x IS low", "x IS any low"]),
+        ]
+        .join("\n")
+    );
+    // These are intended.
+    for (term, output) in [
+        (shoulder, sets),
+        ("{constant: 1}", sets),
+        ("{gaussian: {mean: 50, sd: 100}}", sets),
+        (
+            shoulder,
+            "terms: {slow: {constant: 0}, fast: {constant: 200}}, defuzzifier: weighted_average, clamp: true",
+        ),
+        (
+            shoulder,
+            "terms: {slow: {constant: 0}, fast: {function: sqrt(x - 99)}}, defuzzifier: weighted_average",
+        ),
+    ] {
+        assert_eq!(found(term, output, none), "", "{term} {output}");
+    }
+    let steps = "{range: [0, 1000], steps: {none: 1, some: }}";
+    let text = format!(
+        "fuzzy: 1\nname: a\ninputs: {{x: {steps}}}\noutputs: {{z: {{range: [0, 100], {sets}}}}}\n\
+         rules: [IF x IS none THEN z IS slow, IF x IS some THEN z IS fast]\n"
+    );
+    let (_, findings) = report_of(&text, &Options::default());
+    assert!(
+        findings.iter().all(|one| one.code != "constant-term"),
+        "{findings:?}"
+    );
+}
+
+#[test]
 fn a_sugeno_output_beyond_its_range_is_found() {
     let said = findings_of(
         "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 1], partition: [low, high]}}\n\

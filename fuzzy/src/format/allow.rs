@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use super::optional_text;
 use crate::{
-    diagnostic::{Diagnostic, duplicate},
+    diagnostic::{Diagnostic, all_of, duplicate},
     model::Allowed,
     tree::Node,
 };
@@ -13,7 +13,7 @@ use crate::{
 pub(super) const KEYS: [&str; 2] = ["finding", "because"];
 
 /// The codes of findings that an author can accept: the findings of the analysis that depend only on the rule set.
-pub(crate) const CODES: [&str; 14] = [
+pub(crate) const CODES: [&str; 17] = [
     "uncovered",
     "no-rule-fires",
     "contradiction",
@@ -28,6 +28,9 @@ pub(crate) const CODES: [&str; 14] = [
     "output-outside-range",
     "against-trend",
     "jump",
+    "constant-term",
+    "no-effect",
+    "no-value",
 ];
 
 pub(super) fn read(
@@ -35,7 +38,8 @@ pub(super) fn read(
     spans: &mut Vec<Range<usize>>,
     findings: &mut Vec<Diagnostic>,
 ) -> Vec<Allowed> {
-    let items = node.items("`allow`", findings).unwrap_or_default();
+    let help = format!("write `allow: [{ENTRY}]`, with an entry for each finding");
+    let items = node.items("`allow`", &help, findings).unwrap_or_default();
     let mut all: Vec<Allowed> = Vec::new();
     for (i, item) in items.iter().enumerate() {
         let Some(allowed) = entry(item, i + 1, findings) else {
@@ -54,18 +58,34 @@ pub(super) fn read(
     all
 }
 
+const ENTRY: &str = "{finding: jump, because: limits of the regulation}";
+
 fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Allowed> {
     let what = format!("entry {number} of `allow`");
-    let fields = node.fields(&what, &KEYS, findings)?;
+    let fields = node.fields(&what, &KEYS, &format!("write `{ENTRY}`"), findings)?;
     let code = "name a finding of `check`: `finding: jump`";
     let reason = "write why it is accepted: `because: limits of the regulation`";
     let code = fields.require("finding", code, findings).and_then(|node| {
         let words = CODES.map(|code| (code, code));
-        node.choice(&format!("`finding` of {what}"), &words, findings)
+        let before = findings.len();
+        let code = node.choice(&format!("`finding` of {what}"), &words, findings);
+        if let Some(finding) = findings.get_mut(before)
+            && !finding.help.as_deref().is_some_and(|help| help.starts_with("did you mean"))
+        {
+            finding.help = Some(format!(
+                "only warnings and notes about the rules can be accepted, not errors and claims: {}",
+                all_of(&CODES)
+            ));
+        }
+        code
     });
-    let because = fields.require("because", reason, findings);
-    because?;
+    let node = fields.require("because", reason, findings)?;
     let because = optional_text(&fields, "because", findings)?;
+    if because.trim().is_empty() {
+        let message = format!("`because` of {what} is empty");
+        findings.push(Diagnostic::error("missing-key", node.span.clone(), message).help(reason));
+        return None;
+    }
     Some(Allowed {
         finding: code?.into(),
         because,

@@ -33,7 +33,8 @@ pub(super) fn read(
     spans: &mut Spans,
     findings: &mut Vec<Diagnostic>,
 ) {
-    let Some(entries) = node.entries("`blocks`", "block", findings) else {
+    let help = "write each block by its name: `blocks: {main: {rules: [IF ... THEN ...]}}`";
+    let Some(entries) = node.entries("`blocks`", "block", help, findings) else {
         spans.rules_unread = true;
         return;
     };
@@ -63,7 +64,12 @@ fn one(
         activation: model.activation,
         ..Block::new(entry.key)
     };
-    let Some(fields) = entry.fields(&what, &KEYS, findings) else {
+    let help = match entry.key {
+        // The rules are below `blocks`, without a block.
+        key if KEYS.contains(&key) => "write the name of the block above its keys: `blocks: {main: {rules: [IF ... THEN ...]}}`".into(),
+        name => format!("write `{name}: {{rules: [IF ... THEN ...]}}`"),
+    };
+    let Some(fields) = entry.fields(&what, &KEYS, &help, findings) else {
         spans.rules_unread = true;
         return block;
     };
@@ -93,7 +99,8 @@ fn one(
     }
     let help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`";
     let rules = fields.require("rules", help, findings);
-    let read = rules.and_then(|node| rules::read(node, model.rules.len(), spans, findings));
+    let (before, inputs) = (model.rules.len(), &model.inputs);
+    let read = rules.and_then(|node| rules::read(node, before, inputs, spans, findings));
     spans.rules_unread |= read.is_none();
     let of_block = |rule: Rule| Rule {
         block: index,
@@ -126,7 +133,7 @@ pub(super) fn activation(
     };
     let keys = ["first", "last", "highest", "lowest", "threshold"];
     let before = findings.len();
-    let fields = node.fields(what, &keys, findings)?;
+    let fields = node.fields(what, &keys, HELP, findings)?;
     let [method] = fields.entries() else {
         if findings.len() == before {
             let message = format!("{what} has {} methods", pairs.len());
@@ -165,8 +172,9 @@ fn counted(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(u
     let Value::Mapping(_) = &node.value else {
         return Some((count(what, node, findings)?, 0.0));
     };
-    let fields = node.fields(what, &["rules", "at_least"], findings)?;
-    let rules = fields.require("rules", "write `{rules: 1, at_least: 0.1}`", findings);
+    let help = "write `{rules: 1, at_least: 0.1}`";
+    let fields = node.fields(what, &["rules", "at_least"], help, findings)?;
+    let rules = fields.require("rules", help, findings);
     let rules = rules.and_then(|node| count(&format!("`rules` of {what}"), node, findings));
     let at_least = fields.get("at_least").map_or(Some(0.0), |node| {
         node.finite(&format!("`at_least` of {what}"), findings)
@@ -183,7 +191,7 @@ fn threshold(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<
         return None;
     };
     let keys = COMPARISONS.map(|(word, _)| word);
-    let fields = node.fields(what, &keys, findings)?;
+    let fields = node.fields(what, &keys, help, findings)?;
     let found = COMPARISONS
         .iter()
         .filter_map(|(word, comparison)| Some((*comparison, fields.get(word)?)));

@@ -112,6 +112,10 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
     if !items.is_empty() && !items.iter().any(is_mapping) {
         return None;
     }
+    if let Some((entries, finding)) = dashes(what, items) {
+        findings.push(finding);
+        return Some(with(list, Value::Mapping(entries)));
+    }
     let mut entries = Vec::with_capacity(items.len());
     for (i, item) in items.iter().enumerate() {
         let entry = format!("entry {} of {what}", i + 1);
@@ -148,6 +152,33 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
         }
     }
     Some(with(list, Value::Mapping(entries)))
+}
+
+/// Reads names with a `-` before them, with their keys in the same column below, as named entries:
+/// `- heat:` and, below the `h`, `range: [0, 40]`. They are a single error.
+fn dashes(what: &str, items: &[Node]) -> Option<(Vec<(Node, Node)>, Diagnostic)> {
+    let entries = items.iter().map(|item| match &item.value {
+        Value::Mapping(own) => match own.as_slice() {
+            [(name, value), own @ ..]
+                if value.is_null()
+                    && !own.is_empty()
+                    && own.iter().all(|(key, _)| text(key) != Some(NAME)) =>
+            {
+                Some((name.clone(), with(item, Value::Mapping(own.to_vec()))))
+            }
+            _ => None,
+        },
+        _ => None,
+    });
+    let entries: Vec<(Node, Node)> = entries.collect::<Option<_>>()?;
+    let (name, _) = entries.first()?;
+    let message = format!("the names of {what} begin with `-`");
+    let help = format!(
+        "remove the `-`, and indent the keys below the name: `{}:`",
+        text(name).unwrap_or_default()
+    );
+    let finding = Diagnostic::error("wrong-type", name.span.clone(), message);
+    Some((entries, finding.help(help)))
 }
 
 /// Returns another value with the same position.

@@ -8,13 +8,14 @@ use alloc::{format, string::String, vec::Vec};
 use crate::{
     diagnostic::{Diagnostic, Findings, Severity},
     model::{LEAST_STRENGTH, Model, Operators},
-    tree::{Node, Value},
+    tree::{Fields, Node, Value},
     validate::validate,
 };
 
 mod allow;
 mod blocks;
 mod lists;
+mod notation;
 mod provenance;
 mod rules;
 #[cfg(feature = "serde")]
@@ -141,16 +142,16 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         "provenance",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
-        let finding = tree.unexpected_document("the rule set");
+        let finding = tree.unexpected_document("rule set");
         findings.push(finding.help("a rule set begins with `fuzzy: 1`"));
         return None;
     }
     let mut unknown_keys = Vec::new();
-    let fields = tree.fields("the rule set", &KEYS, &mut unknown_keys)?;
+    let fields = tree.fields("the rule set", &KEYS, "", &mut unknown_keys)?;
     if let Some(node) = fields.get("fuzzy")
         && node.whole("the format version `fuzzy`", 0, findings)? != VERSION
     {
-        let written = node.words("the version", findings)?;
+        let written = node.words("the version", "write `fuzzy: 1`", findings)?;
         let message = format!("format version `{}` is not supported", written.text);
         findings.push(
             Diagnostic::error("unsupported-version", node.span.clone(), message).help(format!(
@@ -161,6 +162,10 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         return None;
     }
     findings.append(&mut unknown_keys);
+    if let Some(finding) = outputs_among_inputs(&fields) {
+        findings.push(finding);
+        return None;
+    }
     fields.require("fuzzy", "begin the file with `fuzzy: 1`", findings);
     let name = optional_text(&fields, "name", findings);
     let description = optional_text(&fields, "description", findings);
@@ -225,20 +230,57 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
     (spans.outputs_key, spans.rules_key) = (key("outputs"), key("rules"));
     let Some(node) = fields.get("blocks") else {
         let rules = fields.require("rules", rules_help, findings);
-        let rules = rules.and_then(|node| rules::read(node, 0, spans, findings));
+        let rules = rules.and_then(|node| rules::read(node, 0, &model.inputs, spans, findings));
         spans.rules_unread |= rules.is_none();
         model.rules = rules.unwrap_or_default();
         return Some(model);
     };
     if fields.entry("rules").is_some() {
         let message = "the rule set has both `rules` and `blocks`";
-        let help = "put the rules into a block: then all rules stand in blocks";
+        let help = "move the rules of `rules` into a block and remove `rules`; if there are blocks, all rules are in blocks";
         findings.push(Diagnostic::error("duplicate-key", key("blocks"), message).help(help));
         spans.rules_unread = true;
     }
     spans.rules_key = key("blocks");
     blocks::read(node, &mut model, spans, findings);
     Some(model)
+}
+
+/// Returns a finding if the outputs are below `inputs`, because `outputs:` is missing above them or both were exchanged.
+fn outputs_among_inputs(fields: &Fields<'_>) -> Option<Diagnostic> {
+    let variables = |key: &str| match fields.get(key).map(|node| &node.value) {
+        Some(Value::Mapping(pairs)) => pairs.as_slice(),
+        _ => &[],
+    };
+    let keys_of_outputs = |(_, variable): &&(Node, Node)| {
+        let Value::Mapping(pairs) = &variable.value else {
+            return false;
+        };
+        pairs.iter().any(|(key, _)| match &key.value {
+            Value::Scalar(key) => {
+                let key = key.text.as_str();
+                variables::OUTPUT_KEYS.contains(&key) && !variables::INPUT_KEYS.contains(&key)
+            }
+            _ => false,
+        })
+    };
+    let (inputs, outputs) = (variables("inputs"), variables("outputs"));
+    let (name, _) = inputs.iter().find(keys_of_outputs)?;
+    let Value::Scalar(scalar) = &name.value else {
+        return None;
+    };
+    let all_exchanged = inputs.iter().all(|input| keys_of_outputs(&input))
+        && !outputs.is_empty()
+        && !outputs.iter().any(|output| keys_of_outputs(&output));
+    let help = match () {
+        () if fields.get("outputs").is_none() && !fields.misspells("outputs") => {
+            format!("write a line `outputs:` above `{}:`", scalar.text)
+        }
+        () if all_exchanged => "exchange the keys `inputs` and `outputs`".into(),
+        () => return None,
+    };
+    let message = format!("input `{}` has keys of outputs", scalar.text);
+    Some(Diagnostic::error("unknown-key", name.span.clone(), message).help(help))
 }
 
 /// Converts the model to a tree; reading it gives the same model.
@@ -256,12 +298,9 @@ pub(crate) fn write_lists(model: &Model) -> Node {
 }
 
 /// Returns the text of a key, if there is one.
-fn optional_text(
-    fields: &crate::tree::Fields<'_>,
-    key: &str,
-    findings: &mut Vec<Diagnostic>,
-) -> Option<String> {
+fn optional_text(fields: &Fields<'_>, key: &str, findings: &mut Vec<Diagnostic>) -> Option<String> {
     let node = fields.get(key)?;
-    let text = node.words(&format!("`{key}`"), findings)?;
+    let help = format!("write a text: `{key}: ...`");
+    let text = node.words(&format!("`{key}`"), &help, findings)?;
     Some(text.text.clone())
 }

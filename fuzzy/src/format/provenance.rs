@@ -18,7 +18,10 @@ pub(super) const DATA_KEYS: [&str; 2] = ["file", "sha256"];
 pub(super) const LOSS_KEYS: [&str; 3] = ["name", "before", "after"];
 
 pub(super) fn read(node: &Node, findings: &mut Vec<Diagnostic>) -> Vec<Step> {
-    let items = node.items("`provenance`", findings).unwrap_or_default();
+    let help = "write `provenance: [{command: by hand}]`, with an entry for each step";
+    let items = node
+        .items("`provenance`", help, findings)
+        .unwrap_or_default();
     let steps = items.iter().enumerate();
     let steps = steps.filter_map(|(i, item)| step(item, i + 1, findings));
     steps.collect()
@@ -26,11 +29,12 @@ pub(super) fn read(node: &Node, findings: &mut Vec<Diagnostic>) -> Vec<Step> {
 
 fn step(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Step> {
     let what = format!("step {number} of the provenance");
-    let fields = node.fields(&what, &KEYS, findings)?;
-    let help = "write the command that made the rule set: `command: by hand`";
+    let help = "write the command that made the rule set: `{command: by hand}`";
+    let fields = node.fields(&what, &KEYS, help, findings)?;
     fields.require("command", help, findings);
     let text = |node: &Node, key: &str, findings: &mut Vec<Diagnostic>| {
-        let text = node.words(&format!("`{key}` of {what}"), findings)?;
+        let help = format!("write a text: `{key}: ...`");
+        let text = node.words(&format!("`{key}` of {what}"), &help, findings)?;
         Some(text.text.clone())
     };
     let mut step = Step {
@@ -46,12 +50,17 @@ fn step(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<St
     }
     let items = |key: &str, findings: &mut Vec<Diagnostic>| {
         let node = fields.get(key)?;
-        node.items(&format!("`{key}` of {what}"), findings)
+        let help = match key {
+            "data" => "write `data: [{file: rows.csv}]`",
+            _ => "write a list of texts: `moved: [a peak]`",
+        };
+        node.items(&format!("`{key}` of {what}"), help, findings)
     };
     for item in items("data", findings).unwrap_or_default() {
-        let of_file = item.fields(&format!("the data of {what}"), &DATA_KEYS, findings);
+        let help = "write `{file: rows.csv}`";
+        let of_file = item.fields(&format!("the data of {what}"), &DATA_KEYS, help, findings);
         let Some(of_file) = of_file else { continue };
-        of_file.require("file", "write `{file: rows.csv}`", findings);
+        of_file.require("file", help, findings);
         step.data.push(DataFile {
             file: optional_text(&of_file, "file", findings).unwrap_or_default(),
             sha256: optional_text(&of_file, "sha256", findings),
@@ -62,15 +71,15 @@ fn step(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<St
     }
     step.rules = fields.get("rules").and_then(|node| {
         let what = format!("`rules` of {what}");
-        let items = node.items(&what, findings)?;
+        let help = "write how many there were before and after: `[28, 9]`";
+        let items = node.items(&what, help, findings)?;
         let counts = items.iter().map(|item| item.whole(&what, 0, findings));
         let counts: Vec<u64> = counts.collect::<Option<_>>()?;
         counts
             .try_into()
             .inspect_err(|_| {
                 let finding = node.unexpected(&format!("two numbers for {what}"));
-                findings
-                    .push(finding.help("write how many there were before and after: `[28, 9]`"));
+                findings.push(finding.help(help));
             })
             .ok()
     });
@@ -82,8 +91,8 @@ fn step(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<St
 
 fn loss(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<LossChange> {
     let what = format!("the loss of {what}");
-    let fields = node.fields(&what, &LOSS_KEYS, findings)?;
     let help = "write `{name: RMS error, before: 3, after: 2}`";
+    let fields = node.fields(&what, &LOSS_KEYS, help, findings)?;
     let number = |key: &str, findings: &mut Vec<Diagnostic>, fields: &Fields<'_>| {
         let node = fields.require(key, help, findings)?;
         node.finite(&format!("`{key}` of {what}"), findings)

@@ -6,17 +6,18 @@ use core::ops::Range;
 use super::{RuleSpans, Spans, optional_text};
 use crate::{
     diagnostic::Diagnostic,
-    model::{Beaten, Rule},
-    rule::{self, Condition},
-    tree::{Node, Scalar, Value},
+    model::{Beaten, Rule, Variable},
+    rule::{self, Condition, Owner},
+    tree::{Fields, Node, Scalar, Value},
 };
 
 pub(super) const KEYS: [&str; 5] = ["rule", "confidence", "support", "against", "note"];
 
-/// Reads the rules of a list; `before` is the number of rules that precede it.
+/// Reads the rules of a list; `before` is the number of rules that precede it, `inputs` are those that they read.
 pub(super) fn read(
     node: &Node,
     before: usize,
+    inputs: &[Variable],
     spans: &mut Spans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Rule>> {
@@ -25,13 +26,43 @@ pub(super) fn read(
         findings.push(finding.help("begin the line of each rule with `- IF`; rules have no names"));
         return None;
     };
+    let owner = |term: &str| {
+        let mut inputs = inputs.iter();
+        let input = inputs.find(|input| input.terms.iter().any(|one| one.name == term))?;
+        Some(input.name.clone())
+    };
     let mut rules = Vec::with_capacity(items.len());
     for (i, item) in items.iter().enumerate() {
+        // A rule in several entries is reported at its first one.
+        let last = i.checked_sub(1).and_then(|last| items.get(last));
+        if continues(item) && last.and_then(written).is_some() {
+            spans.rules_unread = true;
+            continue;
+        }
+        let rest = items.iter().skip(i + 1).take_while(|item| continues(item));
+        let parts: Vec<&str> = match written(item) {
+            Some(first) => core::iter::once(first)
+                .chain(rest.filter_map(written))
+                .collect(),
+            None => Vec::new(),
+        };
+        if parts.len() > 1 {
+            let message = format!(
+                "rule {} is split into {} entries",
+                before + i + 1,
+                parts.len()
+            );
+            let help = format!("write it in one entry: `- {}`", parts.join(" "));
+            let finding = Diagnostic::error("rule-syntax", item.span.clone(), message);
+            findings.push(finding.help(help));
+            spans.rules_unread = true;
+            continue;
+        }
         let mut here = RuleSpans {
             whole: item.span.clone(),
             ..RuleSpans::default()
         };
-        match one(item, before + i + 1, &mut here, findings) {
+        match one(item, before + i + 1, &owner, &mut here, findings) {
             Some(rule) => {
                 rules.push(rule);
                 spans.rules.push(here);
@@ -42,9 +73,42 @@ pub(super) fn read(
     Some(rules)
 }
 
+const HELP: &str = "write `IF input IS term THEN output IS term`, or remove the entry";
+
+const BEATEN: &str = "{term: high, degree: 0.4, support: 3}";
+
+/// Returns the text of an entry, if it is one.
+fn written(item: &Node) -> Option<&str> {
+    match &item.value {
+        Value::Scalar(scalar) => Some(scalar.text.as_str()),
+        _ => None,
+    }
+}
+
+/// Returns whether an entry begins with a word that cannot begin a rule, so that it belongs to the one before it.
+fn continues(item: &Node) -> bool {
+    let first = written(item).and_then(|text| text.split_whitespace().next());
+    first.is_some_and(|first| {
+        ["AND", "OR", "THEN", "WITH"]
+            .iter()
+            .any(|word| first.eq_ignore_ascii_case(word))
+    })
+}
+
+/// Returns the rule of a mapping with its parts as keys: `{if: heat IS high, then: speed IS fast}`.
+fn of_parts(fields: &Fields<'_>) -> Option<String> {
+    let part = |name: &str| {
+        let mut unknown = fields.unknown();
+        let entry = unknown.find(|entry| entry.key.eq_ignore_ascii_case(name))?;
+        written(entry.value)
+    };
+    Some(format!("IF {} THEN {}", part("if")?, part("then")?))
+}
+
 fn one(
     node: &Node,
     number: usize,
+    owner: Owner<'_>,
     spans: &mut RuleSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Rule> {
@@ -62,12 +126,12 @@ fn one(
         note: None,
     };
     if let Value::Scalar(_) = &node.value {
-        (found.rule, spans.weight) = parse(node.words(&what, findings)?, findings)?;
+        (found.rule, spans.weight) = parse(node.words(&what, HELP, findings)?, owner, findings)?;
         return Some(found);
     }
     let Value::Mapping(pairs) = &node.value else {
         let finding = node.unexpected(&format!("text or a mapping for {what}"));
-        findings.push(finding.help("write `IF input IS term THEN output IS term`"));
+        findings.push(finding.help(HELP));
         return None;
     };
     if let [(key, value)] = pairs.as_slice()
@@ -76,7 +140,14 @@ fn one(
         findings.push(finding);
         return None;
     }
-    let fields = node.fields(&what, &KEYS, findings)?;
+    let fields = node.fields(&what, &KEYS, HELP, findings)?;
+    if let Some(rule) = of_parts(&fields) {
+        fields.withdraw(findings);
+        let message = format!("{what} has its parts as keys");
+        let finding = Diagnostic::error("unknown-key", node.span.clone(), message);
+        findings.push(finding.help(format!("write it as one text: `- {rule}`")));
+        return None;
+    }
     let help = "write `{rule: IF input IS term THEN output IS term, confidence: 0.8}`";
     let text = fields.require("rule", help, findings);
     if let Some(node) = fields.get("confidence") {
@@ -89,7 +160,8 @@ fn one(
     found.note = optional_text(&fields, "note", findings);
     if let Some(node) = fields.get("against") {
         let what = format!("`against` of {what}");
-        let items = node.items(&what, findings).unwrap_or_default();
+        let help = format!("write `against: [{BEATEN}]`");
+        let items = node.items(&what, &help, findings).unwrap_or_default();
         for item in items {
             if let Some((beaten, term, degree)) = beaten(&what, item, findings) {
                 found.against.push(beaten);
@@ -98,7 +170,7 @@ fn one(
             }
         }
     }
-    (found.rule, spans.weight) = parse(text?.words(&what, findings)?, findings)?;
+    (found.rule, spans.weight) = parse(text?.words(&what, HELP, findings)?, owner, findings)?;
     Some(found)
 }
 
@@ -112,8 +184,8 @@ fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
         _ => false,
     };
     let (message, help) = if is_rule(key) {
-        let help = "put the rule in quotes, or a remark behind `#`";
-        (format!("{what} holds a colon"), help)
+        let help = "put the rule in quotes, or write a remark after `#`";
+        (format!("{what} contains a colon"), help)
     } else if is_rule(value) && !matches!(&key.value, Value::Scalar(key) if key.text == "rule") {
         let help = "rules have no names or numbers; write `- IF ... THEN ...`";
         (format!("{what} has a name before it"), help)
@@ -129,11 +201,11 @@ fn beaten(
     node: &Node,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<(Beaten, Range<usize>, Range<usize>)> {
-    let fields = node.fields(what, &["term", "degree", "support"], findings)?;
-    let help = "write `{term: high, degree: 0.4, support: 3}`";
+    let help = &format!("write `{BEATEN}`");
+    let fields = node.fields(what, &["term", "degree", "support"], help, findings)?;
     let term = fields.require("term", help, findings);
     let term_span = term.map_or(0..0, |node| node.span.clone());
-    let term = term.and_then(|node| node.words(&format!("the term in {what}"), findings));
+    let term = term.and_then(|node| node.words(&format!("the term in {what}"), help, findings));
     let degree = fields.require("degree", help, findings);
     let span = degree.map_or(0..0, |node| node.span.clone());
     let degree = degree.and_then(|node| node.finite(&format!("the degree in {what}"), findings));
@@ -150,8 +222,12 @@ fn beaten(
 
 /// Parses the rule in a scalar, and also returns the position of its weight. Positions are converted to those in the
 /// document.
-fn parse(scalar: &Scalar, findings: &mut Vec<Diagnostic>) -> Option<(rule::Rule, Range<usize>)> {
-    match rule::parse_with_weight(&scalar.text) {
+fn parse(
+    scalar: &Scalar,
+    owner: Owner<'_>,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<(rule::Rule, Range<usize>)> {
+    match rule::parse_with_weight(&scalar.text, owner) {
         Ok((mut rule, weight)) => {
             rule.names_mut(&mut |name| name.span = scalar.span(name.span.clone()));
             Some((rule, scalar.span(weight)))

@@ -7,10 +7,10 @@ use alloc::{
 };
 
 use crate::{
-    diagnostic::{Diagnostic, suggest},
+    diagnostic::{Diagnostic, all_of, suggest},
     model::{Form, Formula, MembershipFunction, Parts, document::TermSpans},
     rule::Name,
-    tree::{Fields, Node, Value},
+    tree::{Entry, Fields, Node, Value},
 };
 
 /// Reads the membership function of a term such as `{triangle: [0, 1, 2], height: 1}`; `term` names it in messages. The
@@ -54,6 +54,22 @@ pub(super) fn read(
         return None;
     }
     if let Some(second) = shapes.next() {
+        // In braces, a comma ends the formula: `{function: max(x, 3)}` has a second key `3)`.
+        if shape.key == "function"
+            && second.value.is_null()
+            && let Value::Scalar(start) = &shape.value.value
+            && !start.quoted
+        {
+            let rest = second.key;
+            let message = "a comma in braces ends the formula";
+            let help = format!(
+                "put the formula in quotes: `function: \"{}, {rest}\"`",
+                start.text
+            );
+            let span = shape.value.span.start..second.key_span.end;
+            findings.push(Diagnostic::error("formula-syntax", span, message).help(help));
+            return None;
+        }
         let message = format!("{term} has a second membership function, `{}`", second.key);
         findings.push(
             Diagnostic::error("duplicate-key", second.key_span.clone(), message)
@@ -90,11 +106,19 @@ fn by_form(
     match &node.value {
         Value::Mapping(_) => {
             let what = format!("the {name}");
-            let fields = node.fields(&what, &names, findings)?;
-            for parameter in &names {
-                let help = spelling(form);
-                let node = fields.require(parameter, &help, findings)?;
-                read(parameter, node, findings);
+            let before = findings.len();
+            let fields = node.fields(&what, &names, "", findings)?;
+            let help = spelling(form);
+            let found: Vec<Option<&Node>> = names
+                .iter()
+                .map(|parameter| fields.require(parameter, &help, findings))
+                .collect();
+            if fields.unknown().next().is_some() && findings.len() > before + 1 {
+                findings.truncate(before);
+                findings.push(other_parameters(form, &fields));
+            }
+            for (parameter, node) in names.iter().zip(found) {
+                read(parameter, node?, findings);
             }
         }
         Value::List(items) if form.as_list() && items.len() == names.len() => {
@@ -134,6 +158,41 @@ fn by_form(
     (form.build)(&values)
 }
 
+/// Returns a single finding for several parameters with other names, such as `{low: 1, mid: 2, high: 3}`.
+fn other_parameters(form: &Form, fields: &Fields<'_>) -> Diagnostic {
+    let names = form.names();
+    let unknown: Vec<&Entry<'_>> = fields.unknown().collect();
+    let others: Vec<&str> = unknown.iter().map(|entry| entry.key).collect();
+    let message = format!(
+        "the {} takes {}, not {}",
+        form.name,
+        all_of(&names),
+        all_of(&others)
+    );
+    let span = unknown.first().map_or(0..0, |entry| entry.key_span.clone());
+    let numbers = fields
+        .entries()
+        .iter()
+        .filter_map(|entry| match &entry.value.value {
+            Value::Scalar(scalar) => scalar.as_number().map(|_| scalar.text.as_str()),
+            _ => None,
+        });
+    let numbers: Vec<&str> = numbers.collect();
+    let help = match numbers.len() == names.len() {
+        true if form.as_list() => format!("write `{}: [{}]`", form.name, numbers.join(", ")),
+        true => {
+            let named = names
+                .iter()
+                .zip(numbers)
+                .map(|(name, number)| format!("{name}: {number}"));
+            let named: Vec<String> = named.collect();
+            format!("write `{}: {{{}}}`", form.name, named.join(", "))
+        }
+        false => spelling(form),
+    };
+    Diagnostic::error("unknown-key", span, message).help(help)
+}
+
 /// Returns the notation of the shape for messages.
 fn spelling(form: &Form) -> String {
     let names = form.names();
@@ -152,13 +211,37 @@ fn spelling(form: &Form) -> String {
     }
 }
 
+const POINTS_HELP: &str = "write `piecewise: [[x, degree], [x, degree]]`";
+
 fn points(
     term: &str,
     node: &Node,
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<MembershipFunction> {
-    let items = node.items(&format!("the points of {term}"), findings)?;
+    let items = node.items(&format!("the points of {term}"), POINTS_HELP, findings)?;
+    if let Some(first) = items.first()
+        && items
+            .iter()
+            .all(|item| matches!(&item.value, Value::Scalar(_)))
+    {
+        // For example `[30, 0, 50, 1, 70, 0]`.
+        let numbers = items.iter().filter_map(|item| match &item.value {
+            Value::Scalar(scalar) => scalar.as_number().map(|_| scalar.text.as_str()),
+            _ => None,
+        });
+        let numbers: Vec<&str> = numbers.collect();
+        let (pairs, rest) = numbers.as_chunks::<2>();
+        let help = match rest.is_empty() && numbers.len() == items.len() {
+            true => {
+                let pairs: Vec<String> = pairs.iter().map(|[x, y]| format!("[{x}, {y}]")).collect();
+                format!("write each point in brackets: `[{}]`", pairs.join(", "))
+            }
+            false => POINTS_HELP.into(),
+        };
+        findings.push(first.unexpected("a point").help(help));
+        return None;
+    }
     let mut points = Vec::with_capacity(items.len());
     for item in items {
         spans.parameters.push(item.span.clone());
@@ -172,10 +255,7 @@ fn points(
                     points.push((x, degree));
                 }
             }
-            _ => findings.push(
-                item.unexpected("a point")
-                    .help("write `piecewise: [[x, degree], [x, degree]]`"),
-            ),
+            _ => findings.push(item.unexpected("a point").help(POINTS_HELP)),
         }
     }
     (points.len() == items.len()).then_some(MembershipFunction::Piecewise { points })
@@ -218,7 +298,9 @@ fn linear(
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<MembershipFunction> {
-    let entries = node.entries("the linear term", "key", findings)?;
+    let help = "write a factor for each input and a constant: `linear: {temperature: 2, constant: 5}`; a formula is a \
+                `function: 2 * temperature + 5`";
+    let entries = node.entries("the linear term", "key", help, findings)?;
     let mut coefficients = Vec::new();
     let (mut constant, mut constant_span) = (0.0, 0..0);
     for entry in entries {

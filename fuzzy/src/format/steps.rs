@@ -27,7 +27,9 @@ pub(super) fn read(
         return;
     };
     let before = findings.len();
-    let entries = node.entries(what, "term", findings).unwrap_or_default();
+    let entries = node
+        .entries(what, "term", HELP, findings)
+        .unwrap_or_default();
     let mut steps: Vec<(Entry<'_>, Option<f64>)> = Vec::with_capacity(entries.len());
     for entry in entries {
         let limit = limit(what, &entry, findings);
@@ -74,7 +76,7 @@ fn limit(what: &str, entry: &Entry<'_>, findings: &mut Vec<Diagnostic>) -> Optio
     let limit = format!("the limit of `{}` of {what}", entry.key);
     let number = match &entry.value.value {
         Value::Mapping(_) => {
-            let fields = entry.value.fields(&limit, &["below"], findings)?;
+            let fields = entry.value.fields(&limit, &["below"], HELP, findings)?;
             fields.get("below")?
         }
         _ if entry.value.is_null() => return None,

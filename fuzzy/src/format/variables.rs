@@ -9,11 +9,13 @@ use alloc::{
 use core::ops::Range;
 
 use super::{
-    TermSpans, VariableSpans, optional_text, shapes, steps,
+    TermSpans, VariableSpans,
+    notation::{bare_numbers, colons_without_space, likely_defuzzifier, meant_by, peaks_in_list},
+    optional_text, shapes, steps,
     words::{AGGREGATIONS, DEFUZZIFIERS},
 };
 use crate::{
-    diagnostic::{Diagnostic, duplicate},
+    diagnostic::{Diagnostic, all_of, duplicate},
     model::{
         Defuzzifier, MembershipFunction, NoRuleFires, Output, Sampling, SamplingRule, Term,
         Variable, between_peaks, even_peaks,
@@ -43,15 +45,27 @@ pub(super) const OUTPUT_KEYS: [&str; 11] = [
     "clamp",
 ];
 
+/// The suggestion for the inputs or the outputs; the first field is the key.
+fn variables_help(key: &str) -> String {
+    format!(
+        "write each by its name: `{key}: {{speed: {{range: [0, 10], partition: [low, high]}}}}`"
+    )
+}
+
+/// The suggestion for a variable.
+fn variable_help(name: &str) -> String {
+    format!("write `{name}: {{range: [0, 10], partition: [low, high]}}`")
+}
+
 pub(super) fn inputs(
     node: &Node,
     spans: &mut Vec<VariableSpans>,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Variable>> {
-    let entries = node.entries("`inputs`", "variable", findings)?;
+    let entries = node.entries("`inputs`", "variable", &variables_help("inputs"), findings)?;
     let read = |entry: &Entry<'_>| {
         let what = format!("input `{}`", entry.key);
-        let fields = entry.fields(&what, &INPUT_KEYS, findings);
+        let fields = entry.fields(&what, &INPUT_KEYS, &variable_help(entry.key), findings);
         let (variable, here) = variable(&what, entry, fields.as_ref(), findings);
         spans.push(here);
         variable
@@ -64,10 +78,15 @@ pub(super) fn outputs(
     spans: &mut Vec<VariableSpans>,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Output>> {
-    let entries = node.entries("`outputs`", "variable", findings)?;
+    let entries = node.entries(
+        "`outputs`",
+        "variable",
+        &variables_help("outputs"),
+        findings,
+    )?;
     let read = |entry: &Entry<'_>| {
         let what = format!("output `{}`", entry.key);
-        let fields = entry.fields(&what, &OUTPUT_KEYS, findings);
+        let fields = entry.fields(&what, &OUTPUT_KEYS, &variable_help(entry.key), findings);
         let (variable, mut here) = variable(&what, entry, fields.as_ref(), findings);
         let mut output = Output {
             variable,
@@ -81,7 +100,9 @@ pub(super) fn outputs(
             if let Some(node) = fields.get("defuzzifier") {
                 let key = format!("the defuzzifier of {what}");
                 let word = node.choice(&key, &DEFUZZIFIERS, findings);
-                output.defuzzifier = word.unwrap_or(output.defuzzifier);
+                // Of a misspelt word the likely meaning is used, so that the terms that match it are not reported.
+                let likely = || likely_defuzzifier(node, &output.variable);
+                output.defuzzifier = word.or_else(likely).unwrap_or(output.defuzzifier);
             }
             if let Some(node) = fields.get("samples") {
                 output.samples = samples(node, &mut here.samples, findings);
@@ -117,7 +138,7 @@ fn samples(
         findings.push(finding.help(help));
         return None;
     };
-    let fields = node.fields("`samples`", &["midpoint", "trapezoid"], findings)?;
+    let fields = node.fields("`samples`", &["midpoint", "trapezoid"], help, findings)?;
     let (number, rule) = match (fields.get("midpoint"), fields.get("trapezoid")) {
         (Some(number), None) => (number, SamplingRule::Midpoint),
         (None, Some(number)) => (number, SamplingRule::Trapezoid),
@@ -135,6 +156,9 @@ fn samples(
     })
 }
 
+const NO_RULE_HELP: &str = "write `undefined`, `error`, a value as `{value: 50}`, or `previous` for the previous value: \
+     with `{previous: 50}` it is 50 before there is one";
+
 /// Reads `undefined`, `error`, `previous`, `{value: 50}` or `{previous: 50}`; `span` is set to the position of the
 /// value.
 fn no_rule_fires(
@@ -145,11 +169,12 @@ fn no_rule_fires(
 ) -> Option<NoRuleFires> {
     let key = format!("`when_no_rule_fires` of {what}");
     if let Value::Mapping(_) = &node.value {
-        let fields = node.fields(&key, &["value", "previous"], findings)?;
+        let fields = node.fields(&key, &["value", "previous"], NO_RULE_HELP, findings)?;
         let [entry] = fields.entries() else {
             let message = format!("{key} has one key");
-            let help = "write `{value: 50}`, or `{previous: 50}` for the previous value, and 50 before there is one";
-            findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
+            findings.push(
+                Diagnostic::error("wrong-type", node.span.clone(), message).help(NO_RULE_HELP),
+            );
             return None;
         };
         *span = entry.value.span.clone();
@@ -173,7 +198,22 @@ fn no_rule_fires(
         );
         return None;
     }
-    node.choice(&key, &words, findings)
+    let before = findings.len();
+    let found = node.choice(&key, &words, findings);
+    if let Some(finding) = findings.get_mut(before) {
+        finding.help = Some(match &node.value {
+            Value::Scalar(scalar) => match meant_by(&scalar.text) {
+                Some(help) => help,
+                None => finding
+                    .help
+                    .take()
+                    .filter(|help| help.starts_with("did you mean"))
+                    .unwrap_or_else(|| NO_RULE_HELP.into()),
+            },
+            _ => NO_RULE_HELP.into(),
+        });
+    }
+    found
 }
 
 /// Reads a variable as far as possible: its name and the names of its terms are included even if the rest is invalid.
@@ -211,7 +251,7 @@ fn variable(
                 second.key_span.clone(),
                 format!("{what} has both `{}` and `{}`", first.key, second.key),
             )
-            .help("keep one; all terms of a variable stand together"),
+            .help("keep one, with all terms of the variable"),
         ),
         (Some(entry), None) => {
             let read = match entry.key {
@@ -219,12 +259,40 @@ fn variable(
                 "steps" => steps::read,
                 _ => terms,
             };
-            read(what, entry.value, &mut variable, &mut spans, findings);
+            let is_weighted = fields.get("defuzzifier").is_some_and(|node| {
+                matches!(&node.value, Value::Scalar(word) if word.text.starts_with("weighted"))
+            });
+            if !bare_numbers(
+                what,
+                entry,
+                is_weighted,
+                &mut variable,
+                &mut spans,
+                findings,
+            ) {
+                read(what, entry.value, &mut variable, &mut spans, findings);
+            }
         }
         (None, _) if fields.misspells("partition") || fields.misspells("steps") => {}
         (None, _) => {
+            let forms = ["partition", "steps", "terms"];
+            let empty = fields
+                .entries()
+                .iter()
+                .find(|entry| forms.contains(&entry.key));
             let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each";
-            fields.require("terms", help, findings);
+            fields.require(empty.map_or("terms", |entry| entry.key), help, findings);
+            let stray: Vec<&str> = fields.unknown().map(|entry| entry.key).collect();
+            if let Some(empty) = empty
+                && !stray.is_empty()
+            {
+                // The terms are in the column of their key.
+                fields.withdraw(findings);
+                if let Some(finding) = findings.last_mut() {
+                    finding.help =
+                        Some(format!("indent {} under `{}:`", all_of(&stray), empty.key));
+                }
+            }
         }
     }
     (variable, spans)
@@ -248,6 +316,9 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
     Some((low?, high?))
 }
 
+const PARTITION_HELP: &str =
+    "write `[low, medium, high]` for even spacing, or peaks: `{low: 0, medium: 0.1, high: 1}`";
+
 /// Reads `{low: 0, high: 1}` (peaks) or `[low, high]` (evenly spaced over the range).
 fn partition(
     what: &str,
@@ -262,8 +333,15 @@ fn partition(
     let mut peaks: Option<Vec<f64>> = None;
     match &node.value {
         Value::List(items) => {
+            if let Some(help) = peaks_in_list(items) {
+                let finding =
+                    node.unexpected(&format!("peaks in braces for the partition of {what}"));
+                findings.push(finding.help(help));
+                return;
+            }
             for item in items {
-                let Some(name) = item.words(&format!("a term of {what}"), findings) else {
+                let Some(name) = item.words(&format!("a term of {what}"), PARTITION_HELP, findings)
+                else {
                     continue;
                 };
                 if let Some(first) = seen.insert(&name.text, item) {
@@ -279,7 +357,15 @@ fn partition(
             spans.terms = term_spans(names.iter().map(|(_, item)| &item.span));
         }
         Value::Mapping(_) => {
-            let mut entries = node.entries(what, "term", findings).unwrap_or_default();
+            let entries = node.entries(what, "term", PARTITION_HELP, findings);
+            let mut entries = entries.unwrap_or_default();
+            if let Some(help) = colons_without_space(&entries) {
+                let message =
+                    format!("a space is missing after the colons of the partition of {what}");
+                let span = node.span.clone();
+                findings.push(Diagnostic::error("yaml-syntax", span, message).help(help));
+                return;
+            }
             let mut found = Vec::new();
             for entry in &entries {
                 let peak = format!("the peak of `{}` of {what}", entry.key);
@@ -306,7 +392,17 @@ fn partition(
                     && entry.key.bytes().all(|c| c.is_ascii_digit())
                     && let Some(finding) = findings.get_mut(before)
                 {
-                    finding.help = Some("a decimal point is written as `.`: `20.5`".into());
+                    let whole = entries
+                        .iter()
+                        .take_while(|one| one.key_span != entry.key_span)
+                        .last();
+                    let whole = whole.map(|one| &one.value.value);
+                    finding.help = Some(match whole {
+                        Some(Value::Scalar(whole)) => {
+                            format!("write a decimal point: `{}.{}`", whole.text, entry.key)
+                        }
+                        _ => "a decimal point is written as `.`: `20.5`".into(),
+                    });
                 }
             }
             if found.len() == entries.len() {
@@ -329,9 +425,7 @@ fn partition(
         }
         Value::Scalar(_) => {
             let finding = node.unexpected(&format!("terms for the partition of {what}"));
-            findings.push(finding.help(
-                "write `[low, medium, high]` for even spacing, or peaks: `{low: 0, medium: 0.1, high: 1}`",
-            ));
+            findings.push(finding.help(PARTITION_HELP));
             return;
         }
     }
@@ -438,12 +532,9 @@ fn terms(
     spans: &mut VariableSpans,
     findings: &mut Vec<Diagnostic>,
 ) {
-    let before = findings.len();
-    let Some(entries) = node.entries(what, "term", findings) else {
-        if let Some(finding) = findings.get_mut(before) {
-            let help = "write `terms: {low: {triangle: [0, 1, 2]}}`, or `partition: [low, high]` for even spacing";
-            finding.help = Some(String::from(help));
-        }
+    let help =
+        "write `terms: {low: {triangle: [0, 1, 2]}}`, or `partition: [low, high]` for even spacing";
+    let Some(entries) = node.entries(what, "term", help, findings) else {
         return;
     };
     spans.terms_unread = false;
@@ -489,7 +580,7 @@ fn term(
             _ => None,
         })
         .collect();
-    let fields = entry.fields(&term, &keys, findings)?;
+    let fields = entry.fields(&term, &keys, "write one: `{triangle: [0, 1, 2]}`", findings)?;
     let height = fields.get("height").map_or(Some(1.0), |node| {
         spans.height = node.span.clone();
         node.finite(&format!("the height of {term}"), findings)

@@ -71,7 +71,8 @@ pub(super) fn operators(
     otherwise: Operators,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Operators> {
-    let fields = node.fields(what, keys, findings)?;
+    let help = "write `operators: {and: product, or: maximum}`, with the operators that differ from the defaults";
+    let fields = node.fields(what, keys, help, findings)?;
     let mut operators = otherwise;
     if let Some(node) = fields.get("and") {
         let word = node.choice("the operator `and`", &CONJUNCTIONS, findings);

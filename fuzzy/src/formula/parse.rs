@@ -26,7 +26,10 @@ use nom::{
 };
 
 use super::{DEEPEST_NESTING, Expression, Formula, LONGEST, Operation, Variable, code};
-use crate::diagnostic::{Diagnostic, suggest};
+use crate::{
+    diagnostic::{Diagnostic, suggest},
+    table::Hedge,
+};
 
 /// Functions of other programs, with the equivalent operations.
 const OTHER_NAMES: [(&str, Operation); 11] = [
@@ -371,6 +374,17 @@ fn quoted(rest: &str, quote: char) -> Step<'_, String> {
     wrong(rest, Wrong::Quote)
 }
 
+/// The suggestion for a choice between two values.
+const IF: &str =
+    "a comparison is 1 or 0: for a if c is true, else b, write `(c) * a + (1 - (c)) * b`";
+
+/// Returns whether a number with `%` is before this position, as in `50% * x`.
+fn percent(text: &str, start: usize) -> bool {
+    let before = text.get(..start).unwrap_or("").trim_end();
+    let number = before.strip_suffix('%').map(str::trim_end);
+    number.is_some_and(|number| number.ends_with(|c: char| c.is_ascii_digit()))
+}
+
 impl Mistake<'_> {
     /// Returns the diagnostic of the syntax error.
     fn explain(self, text: &str) -> Diagnostic {
@@ -405,8 +419,10 @@ impl Mistake<'_> {
                     "" => "add what is missing, or remove the operator",
                     "!" => "write `not`",
                     "+" => "a sign `+` has no effect; remove it",
-                    _ if is_keyword(found) => "as a name it stands in quotes",
-                    _ => "an operator stands between two numbers or names",
+                    "|" => "write `abs(x)` for the absolute value of x",
+                    _ if is_keyword(found) => "put it in quotes as a name",
+                    _ if percent(text, start) => "a number has no `%`: write `0.5` for 50 %",
+                    _ => "write an operator between two numbers or names",
                 };
                 error(found.len(), message).help(help)
             }
@@ -421,6 +437,13 @@ impl Mistake<'_> {
                     return error(found.len(), message).help(format!("write `{name}({found})`"));
                 }
                 let help = match found {
+                    "=" if is_plain_name(text.get(..start).unwrap_or("").trim()) => {
+                        "write the right side only, or `==` to compare"
+                    }
+                    "?" | ":" => IF,
+                    _ if Hedge::ALL.iter().any(|hedge| Some(hedge.word()) == before) => {
+                        "a formula has no hedges: write one in a rule, `IF input IS very term`"
+                    }
                     "=" | "===" => "write `==` to compare",
                     "**" => "write `^` for a power",
                     "²" => "write `^2`",
@@ -431,12 +454,12 @@ impl Mistake<'_> {
                     "=<" => "write `<=`",
                     "=>" => "write `>=`",
                     "," => {
-                        "a decimal point is written as `.`; operands stand in the brackets of a function"
+                        "a decimal point is written as `.`; a comma separates the operands of a function"
                     }
-                    ")" => "no `(` stands before it; remove it, or add one",
+                    ")" => "there is no `(` before it; remove it, or add one",
                     "(" => "write `*` to multiply",
                     _ if found.starts_with(|c: char| in_name(c)) => {
-                        "write `*` to multiply; a name of several words stands in quotes"
+                        "write `*` to multiply; put a name of several words in quotes"
                     }
                     _ => "operators are `+ - * / % ^`, `< <= > >= == !=`, `and` and `or`",
                 };
@@ -449,8 +472,12 @@ impl Mistake<'_> {
                 let functions = Operation::ALL.iter();
                 let functions = functions.filter(|(operation, ..)| operation.binds().is_none());
                 finding.help = match name.eq_ignore_ascii_case("if") {
-                    true => Some("a comparison is 1 or 0: for a where c holds and b elsewhere write `(c) * a + (1 - (c)) * b`".into()),
-                    false => suggest(name, functions.map(|(_, word, _)| *word)),
+                    true => Some(IF.into()),
+                    false => {
+                        // Functions of other languages have a prefix: `Math.exp`, `np.exp`.
+                        let bare = name.rsplit('.').next().unwrap_or(name);
+                        suggest(bare, functions.map(|(_, word, _)| *word))
+                    }
                 };
                 finding
             }

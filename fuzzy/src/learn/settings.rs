@@ -152,7 +152,7 @@ impl core::fmt::Display for LearnError {
                     "the outputs before the last one cannot be computed: {message}"
                 )
             }
-            LearnError::Blocks => f.write_str("learned rules stand in no rule block"),
+            LearnError::Blocks => f.write_str("learned rules have no rule blocks"),
             LearnError::ReadsInputs { term } => write!(
                 f,
                 "the term `{term}` of the output is a function of inputs; rules are learned for fuzzy sets and numbers"

@@ -63,11 +63,13 @@ const JOINTS: [&str; 3] = ["AND", "OR", "THEN"];
 
 impl Mistake<'_> {
     /// Returns the diagnostic of the syntax error.
-    pub(super) fn explain(self, text: &str) -> Diagnostic {
+    /// `owner` returns the input that has a term of that name.
+    pub(super) fn explain(self, text: &str, owner: Owner<'_>) -> Diagnostic {
         let rest = self.rest.trim_start();
         let start = text.len() - rest.len();
         let found = found_here(rest);
         let span = start..start + found.len();
+        let before = text.get(..start).unwrap_or("");
         let shown = match found {
             "" => String::from("the end of the rule"),
             found => format!("`{found}`"),
@@ -79,14 +81,14 @@ impl Mistake<'_> {
         match self.kind {
             Wrong::Keyword(words, after) => {
                 let diagnostic = match words {
-                    [] => syntax(format!("the rule ends {after}, but here stands {shown}")),
+                    [] => syntax(format!("expected the end of the rule {after}, found {shown}")),
                     _ => syntax(format!("expected {} {after}, found {shown}", either(words))),
                 };
                 let help = match nearest(found, words.iter().copied()) {
                     Some(word) => Some(format!("did you mean `{word}`?")),
                     None if words.contains(&"IF") => Some(at_start(rest)),
-                    None if words.contains(&")") => sign(rest).or_else(|| joint(rest)),
-                    None => sign(rest).or_else(|| behind_conclusion(rest, words.is_empty())),
+                    None if words.contains(&")") => sign(rest).or_else(|| joint(before, rest)),
+                    None => sign(rest).or_else(|| behind_conclusion(before, rest, words.is_empty())),
                 };
                 with_help(diagnostic, help)
             }
@@ -103,14 +105,15 @@ impl Mistake<'_> {
                         "a rule sees one moment: add an input that measures how long, and name a term of that".into(),
                     ),
                     Some(word) => Some(format!("did you mean `{word}`?")),
-                    None => sign(rest).or_else(|| joint(rest)),
+                    None => sign(rest).or_else(|| joint(before, rest)),
                 };
                 with_help(expected(&either(&JOINTS), "the condition"), help)
             }
             Wrong::NoIs(kind, from) => {
                 let from = from.trim_start();
                 let name = found_here(from);
-                let help = is_missing(kind, name, rest, text.len() - from.len(), text);
+                let start = text.len() - from.len();
+                let help = is_missing(kind, name, rest, text.get(..start).unwrap_or(""), owner);
                 with_help(expected("`IS`", &format!("the {kind}")), help)
             }
             Wrong::Name(what) => {
@@ -118,12 +121,12 @@ impl Mistake<'_> {
                 with_help(syntax(format!("expected {what}, found {shown}")), help)
             }
             Wrong::HedgeBeforeInput => {
-                let diagnostic = syntax(format!("the hedge {shown} stands before the input"));
+                let diagnostic = syntax(format!("the hedge {shown} is before the input"));
                 diagnostic.help(format!(
-                    "a hedge stands between `IS` and the term: `input IS {found} term`"
+                    "write a hedge between `IS` and the term: `input IS {found} term`"
                 ))
             }
-            Wrong::HedgeInConsequent => syntax(format!("`{found}` cannot stand after `THEN`"))
+            Wrong::HedgeInConsequent => syntax(format!("`{found}` is not allowed after `THEN`"))
                 .help("`NOT` and `any` belong in the condition; here name one term of the output, such as `IS low` or `IS very low`"),
             Wrong::TwoWords(second) => two_words(span, found, second),
             Wrong::OpenQuote => syntax(String::from("the quoted name is never closed"))
@@ -162,7 +165,9 @@ impl Mistake<'_> {
 /// one name.
 fn two_words(span: core::ops::Range<usize>, first: &str, second: &str) -> Diagnostic {
     let is = |word: &str, known: &[&str]| known.iter().any(|one| word.eq_ignore_ascii_case(one));
-    let phrase = if is(second, &["BUT", "PLUS", "WHILE"]) {
+    let phrase = if is(second, &["UNLESS", "EXCEPT"]) {
+        Some(format!("write `AND NOT` in place of `{second}`"))
+    } else if is(second, &["BUT", "PLUS", "WHILE"]) {
         Some(format!("write `AND` in place of `{second}`"))
     } else if is(first, &["EITHER"]) {
         Some("write `(x IS a OR x IS b)` with the input x".to_owned())
@@ -192,14 +197,35 @@ fn two_words(span: core::ops::Range<usize>, first: &str, second: &str) -> Diagno
     let message = format!("there is no hedge `{first}`");
     let mut help = suggest(first, hedges.iter().copied()).unwrap_or_default();
     if meant(first, &hedges).is_empty() {
-        help += &format!("; a name of two words stands in quotes: `\"{first} {second}\"`");
+        help += &format!("; put a name of two words in quotes: `\"{first} {second}\"`");
     }
     Diagnostic::error("rule-syntax", span, message).help(help)
 }
 
-/// Returns a suggestion if `IS` is missing after the name of an input or an output; `start` is the position of the
+/// Returns the input that has a term of this name, if the inputs are known.
+pub(crate) type Owner<'a> = &'a dyn Fn(&str) -> Option<String>;
+
+/// Returns the input of the last condition of a text: `x` of `IF x IS low OR`.
+fn last_input(before: &str) -> Option<&str> {
+    let words = before.split_whitespace().rev();
+    let mut owners = words.clone().zip(words.skip(1));
+    let after_then = |(word, _): &(&str, &str)| word.eq_ignore_ascii_case("THEN");
+    let (_, owner) = owners
+        .by_ref()
+        .take_while(|pair| !after_then(pair))
+        .find(|(word, _)| word.eq_ignore_ascii_case("IS"))?;
+    Some(owner.trim_start_matches('('))
+}
+
+/// Returns a suggestion if `IS` is missing after the name of an input or an output; `before` is the text before the
 /// name.
-fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> Option<String> {
+fn is_missing(
+    kind: &str,
+    name: &str,
+    rest: &str,
+    before: &str,
+    owner: Owner<'_>,
+) -> Option<String> {
     let found = found_here(rest);
     if found.is_empty()
         || JOINTS
@@ -213,31 +239,45 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
         {
             return Some("for a rule that always fires write `input IS any`".into());
         }
-        // In `x IS low OR high`, the name is a term, and the name of its variable precedes it.
-        let before = text.get(..start).unwrap_or("");
-        let mut words = before.split_whitespace().rev();
-        let joint = words.next().unwrap_or("");
-        let owner = words.clone().zip(words.clone().skip(1));
-        let owner = owner
-            .take_while(|(word, _)| !word.eq_ignore_ascii_case("THEN"))
-            .find(|(word, _)| word.eq_ignore_ascii_case("IS"))
-            .map(|(_, owner)| owner.trim_start_matches('('));
-        return Some(match owner {
+        // In `x IS low OR high`, the name is a term of the input before it, or of another one.
+        let joint = before.split_whitespace().next_back().unwrap_or("");
+        let of = owner(name);
+        return Some(match last_input(before) {
             Some(_) if kind == "output" => {
                 String::from("each conclusion names its output and one term: `output IS term`")
             }
-            Some(owner) => {
-                format!(
-                    "name the input again: `{} {owner} IS {name}`",
-                    joint.to_uppercase()
-                )
-            }
+            Some(last) => match of {
+                Some(other) if other != last => {
+                    format!(
+                        "name the input: `{} {other} IS {name}`",
+                        joint.to_uppercase()
+                    )
+                }
+                _ => {
+                    format!(
+                        "name the input again: `{} {last} IS {name}`",
+                        joint.to_uppercase()
+                    )
+                }
+            },
             None => format!("write `{name} IS` and a term"),
         });
     }
     let is = |word: &str| found.eq_ignore_ascii_case(word);
-    if let Some(help) = spoken(name, rest, text.get(..start).unwrap_or("")) {
+    if let Some(help) = spoken(name, rest, before) {
         return Some(help);
+    }
+    if name.eq_ignore_ascii_case("ELSE") {
+        return Some("there is no `ELSE`: remove it, or write a second rule".into());
+    }
+    if found.starts_with(['<', '>', '≤', '≥'])
+        && let next = found_here(rest.get(found.len()..).unwrap_or("").trim_start())
+        && is_plain_name(next)
+        && next.parse::<f64>().is_err()
+    {
+        return Some(format!(
+            "a condition names a term: write `{name} IS {next}`"
+        ));
     }
     if found.starts_with(['<', '>', '≤', '≥', '-', '+', '*', '/']) || is("BETWEEN") {
         return Some(format!(
@@ -266,6 +306,14 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
     }
     if is_plain_name(found) && keyword(behind, "IS").is_none() {
         let next = found_here(behind.trim_start());
+        let behind_next = behind.trim_start().get(next.len()..).unwrap_or("");
+        // For example `fan SHOULD BE fast`.
+        if next.eq_ignore_ascii_case("BE") {
+            return Some(format!(
+                "write `{name} IS {}`",
+                found_here(behind_next.trim_start())
+            ));
+        }
         // For example `fan BECOMES fast`, `temperature WAS hot`.
         let is_verb = is_plain_name(next) && !Rule::is_keyword(next);
         return Some(match nearest(found, ["IS"]) {
@@ -283,7 +331,7 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
     }
     if is_plain_name(found) {
         return Some(format!(
-            "a name of several words stands in quotes: `\"{name} {found}\"`"
+            "put a name of several words in quotes: `\"{name} {found}\"`"
         ));
     }
     sign(rest)
@@ -372,12 +420,18 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
             _ => "add a term".into(),
         });
     }
+    if what == "the name of an output" && is("IF") {
+        return Some("a rule has one `IF`: join the conditions by `AND` before `THEN`".into());
+    }
+    if what == "the name of an output" && is("THEN") {
+        return Some("remove the second `THEN`".into());
+    }
     if JOINTS.iter().any(|joint| is(joint)) {
         return Some(format!("add a term before `{found}`"));
     }
     Rule::is_keyword(found).then(|| {
         format!(
-            "`{found}` is a word of the rule language; as a name it stands in quotes: `\"{found}\"`"
+            "`{found}` is a word of the rule language; put it in quotes as a name: `\"{found}\"`"
         )
     })
 }
@@ -422,12 +476,33 @@ fn at_start(rest: &str) -> String {
 }
 
 /// Returns a suggestion for a condition that is not followed by AND, OR or THEN.
-fn joint(rest: &str) -> Option<String> {
+fn joint(before: &str, rest: &str) -> Option<String> {
     let found = found_here(rest);
+    let behind = rest.get(found.len()..).unwrap_or("").trim_start();
+    let last = before.split_whitespace().next_back().unwrap_or("");
+    // For example `temperature IS cold, mild`.
+    let next = found_here(behind);
+    if matches!(found, "," | "/")
+        && is_plain_name(next)
+        && keyword(behind.get(next.len()..).unwrap_or(""), "IS").is_none()
+        && let Some(input) = last_input(before)
+    {
+        return Some(format!("write `OR {input} IS {next}`"));
+    }
+    if found.eq_ignore_ascii_case("IS") {
+        return Some(match last_input(before) {
+            Some(input) if input == last => format!("remove one `{input} IS`"),
+            _ => format!("write `AND` or `OR` before `{last}`"),
+        });
+    }
+    if last.parse::<f64>().is_ok() {
+        let help = "a condition names a term of the input, not a number; give the input a term for these values";
+        return Some(help.into());
+    }
     match found {
         "," => return Some("write `AND` or `THEN`".into()),
         ";" => return Some("remove it".into()),
-        ")" => return Some("no `(` stands before it; remove it, or add one".into()),
+        ")" => return Some("there is no `(` before it; remove it, or add one".into()),
         "" => return Some("add a conclusion: `THEN output IS term`".into()),
         _ => {}
     }
@@ -435,7 +510,7 @@ fn joint(rest: &str) -> Option<String> {
         .iter()
         .any(|hedge| hedge.word().eq_ignore_ascii_case(found))
     {
-        return Some("a hedge stands before the term: `input IS very low`".into());
+        return Some("write a hedge before the term: `input IS very low`".into());
     }
     let (behind, _) = word(rest).ok()?;
     if !is_plain_name(found) || keyword(behind, "IS").is_none() {
@@ -449,8 +524,26 @@ fn joint(rest: &str) -> Option<String> {
 }
 
 /// Returns a suggestion for text after a conclusion or after its weight.
-fn behind_conclusion(rest: &str, weighted: bool) -> Option<String> {
+fn behind_conclusion(before: &str, rest: &str, weighted: bool) -> Option<String> {
     let found = found_here(rest);
+    let number_behind = |sign: &str| {
+        let number = rest.strip_prefix(sign)?.split_whitespace().next()?;
+        number.parse::<f64>().ok().map(|value| (number, value))
+    };
+    if let Some((number, value)) = number_behind("*")
+        && (0.0..=1.0).contains(&value)
+    {
+        return Some(format!("write a weight after `WITH`: `WITH {number}`"));
+    }
+    if let Some((_, divisor)) = number_behind("/")
+        && let Some(Ok(number)) = before.split_whitespace().next_back().map(str::parse::<f64>)
+        && (0.0..=1.0).contains(&(number / divisor))
+    {
+        return Some(format!(
+            "write a weight as a decimal number: `WITH {}`",
+            number / divisor
+        ));
+    }
     let is = |word: &str| found.eq_ignore_ascii_case(word);
     if is("else") {
         return Some("there is no `ELSE`: write a second rule with `NOT`".into());
@@ -472,7 +565,7 @@ fn behind_conclusion(rest: &str, weighted: bool) -> Option<String> {
         let number = words
             .find(|word| word.parse::<f64>().is_ok())
             .unwrap_or("0.5");
-        return Some(format!("a weight stands after `WITH`: `WITH {number}`"));
+        return Some(format!("write a weight after `WITH`: `WITH {number}`"));
     }
     if let Some(number) = rest.strip_prefix(',')
         && number.starts_with(|c: char| c.is_ascii_digit())
@@ -482,10 +575,10 @@ fn behind_conclusion(rest: &str, weighted: bool) -> Option<String> {
     match found {
         "," => Some("join conclusions by `AND`".into()),
         ";" => Some("remove it; each rule is an item of the list `rules`".into()),
-        "(" | "%" | "[" => Some("a weight stands behind `WITH`: `WITH 0.8`".into()),
+        "(" | "%" | "[" => Some("write a weight after `WITH`: `WITH 0.8`".into()),
         _ if weighted => Some("a weight ends its rule; remove what follows".into()),
         _ if is_plain_name(found) => {
-            Some("a name of several words stands in quotes: `\"very low\"`".into())
+            Some("put a name of several words in quotes: `\"very low\"`".into())
         }
         _ => None,
     }
@@ -498,12 +591,12 @@ fn sign(rest: &str) -> Option<String> {
         "&" | "&&" => "write `AND`",
         "|" | "||" => "write `OR`",
         "!" | "~" => "write `NOT`",
-        "=" | "==" | ":" => "write `IS`",
+        "=" | "==" | ":" | ":=" => "write `IS`",
         "!=" | "<>" => "write `IS NOT`",
         "=>" | "->" => "write `THEN`",
         _ if found.starts_with("//") => "a comment begins with `#`",
         _ if found.starts_with(is_curly_quote) => "write straight quotes: `\"`",
-        _ if found.starts_with('`') => "a name stands bare or in quotes: `\"`",
+        _ if found.starts_with('`') => "write a name without quotes, or in quotes: `\"`",
         _ => return None,
     };
     Some(text.into())

@@ -28,7 +28,7 @@ use nom::{
 
 use super::{
     Condition, Consequent, Hedge, Name, Proposition, Rule, is_plain_name,
-    mistake::{Mistake, Wrong},
+    mistake::{Mistake, Owner, Wrong},
 };
 use crate::diagnostic::{Diagnostic, nearest};
 
@@ -52,16 +52,21 @@ pub const DEEPEST_NESTING: usize = 64;
 /// # Ok::<(), Box<fuzzy::diagnostic::Diagnostic>>(())
 /// ```
 pub fn parse(text: &str) -> Result<Rule, Box<Diagnostic>> {
-    parse_with_weight(text).map(|(rule, _)| rule)
+    parse_with_weight(text, &|_| None).map(|(rule, _)| rule)
 }
 
 /// Parses a rule, and also returns the position of its weight: the number after WITH, or the empty range after the
-/// conclusion.
-pub(crate) fn parse_with_weight(text: &str) -> Result<(Rule, Range<usize>), Box<Diagnostic>> {
+/// conclusion. `owner` returns the input that has a term, for suggestions.
+pub(crate) fn parse_with_weight(
+    text: &str,
+    owner: Owner<'_>,
+) -> Result<(Rule, Range<usize>), Box<Diagnostic>> {
     let source = Source { text };
     match source.rule(text) {
         Ok((_, found)) => Ok(found),
-        Err(Err::Error(mistake) | Err::Failure(mistake)) => Err(Box::new(mistake.explain(text))),
+        Err(Err::Error(mistake) | Err::Failure(mistake)) => {
+            Err(Box::new(mistake.explain(text, owner)))
+        }
         // Only nom's streaming parsers report incomplete input, and they are not used here.
         Err(Err::Incomplete(_)) => Err(Box::new(Diagnostic::error(
             "rule-syntax",

@@ -9,7 +9,7 @@ use core::ops::Range;
 
 use super::{Node, Scalar, Value};
 use crate::{
-    diagnostic::{Diagnostic, duplicate, meant, suggest},
+    diagnostic::{Diagnostic, duplicate, either, meant, suggest},
     foreign,
 };
 
@@ -25,6 +25,9 @@ pub struct Fields<'a> {
     entries: Vec<Entry<'a>>,
     /// The known keys that unknown keys probably refer to; they are not reported as missing as well.
     meant: Vec<String>,
+    unknown: Vec<&'a str>,
+    /// The positions of the unknown keys that resemble no known one.
+    unlike: Vec<Range<usize>>,
 }
 
 /// A key with its value.
@@ -64,7 +67,22 @@ impl<'a> Fields<'a> {
         &self.entries
     }
 
-    /// Returns the value of a required key, and reports a finding if it is missing.
+    /// Returns the unknown keys with their values.
+    pub fn unknown(&self) -> impl Iterator<Item = &Entry<'a>> {
+        let entries = self.entries.iter();
+        entries.filter(|entry| self.unknown.contains(&entry.key))
+    }
+
+    /// Removes the findings about unknown keys, for a single finding in their place.
+    pub fn withdraw(&self, findings: &mut Vec<Diagnostic>) {
+        findings.retain(|finding| {
+            let is_here = |entry: &Entry<'_>| entry.key_span == finding.span;
+            finding.code != "unknown-key" || !self.unknown().any(is_here)
+        });
+    }
+
+    /// Returns the value of a required key, and reports a finding if it is missing. If the mapping has a single unknown
+    /// key that resembles no other, the missing one was probably meant, and the finding about the unknown key says so.
     pub fn require(
         &self,
         key: &str,
@@ -72,7 +90,23 @@ impl<'a> Fields<'a> {
         findings: &mut Vec<Diagnostic>,
     ) -> Option<&'a Node> {
         let found = self.get(key);
-        if found.is_none() && !self.misspells(key) {
+        if found.is_some() || self.misspells(key) {
+            return found;
+        }
+        let is_unlike = |finding: &&mut Diagnostic| {
+            // After the first missing key, the help is another one.
+            let is_open = finding
+                .help
+                .as_deref()
+                .is_some_and(|help| help.starts_with("there "));
+            finding.code == "unknown-key" && is_open && self.unlike.contains(&finding.span)
+        };
+        if self.unlike.len() == 1
+            && !self.entries.iter().any(|entry| entry.key == key)
+            && let Some(finding) = findings.iter_mut().find(is_unlike)
+        {
+            finding.help = Some(format!("did you mean `{key}`?"));
+        } else {
             let place = self.entries.iter().find(|entry| entry.key == key);
             let span = place.map_or(self.place.clone(), |entry| entry.key_span.clone());
             let message = match place {
@@ -91,9 +125,10 @@ impl<'a> Entry<'a> {
         &self,
         what: &str,
         known: &[&str],
+        help: &str,
         findings: &mut Vec<Diagnostic>,
     ) -> Option<Fields<'a>> {
-        let fields = self.value.fields(what, known, findings)?;
+        let fields = self.value.fields(what, known, help, findings)?;
         Some(Fields {
             place: self.key_span.clone(),
             ..fields
@@ -103,15 +138,17 @@ impl<'a> Entry<'a> {
 
 impl Node {
     /// Reads a mapping with known keys. `what` names it in messages, as in ``input `heat` ``. Unknown keys, repeated
-    /// keys and values other than a mapping are reported.
+    /// keys and values other than a mapping are reported; `help` is the suggestion for other values and has an example.
     pub fn fields<'a>(
         &'a self,
         what: &str,
         known: &[&str],
+        help: &str,
         findings: &mut Vec<Diagnostic>,
     ) -> Option<Fields<'a>> {
-        let entries = self.entries(what, "key", findings)?;
+        let entries = self.entries(what, "key", help, findings)?;
         let mut misspelt: Vec<String> = Vec::new();
+        let (mut unknown, mut unlike) = (Vec::new(), Vec::new());
         for entry in &entries {
             if !known.contains(&entry.key) {
                 let message = format!("{what} has no key `{}`", entry.key);
@@ -119,8 +156,14 @@ impl Node {
                 let meant = meant(entry.key, known);
                 finding.help = match foreign::elsewhere(entry.key) {
                     Some(help) if meant.is_empty() => Some(help.into()),
-                    _ => suggest(entry.key, known.iter().copied()),
+                    _ => {
+                        if meant.is_empty() {
+                            unlike.push(entry.key_span.clone());
+                        }
+                        suggest(entry.key, known.iter().copied())
+                    }
                 };
+                unknown.push(entry.key);
                 misspelt.extend(meant.into_iter().map(String::from));
                 findings.push(finding);
             }
@@ -130,20 +173,23 @@ impl Node {
             place: self.span.start..self.span.start,
             entries,
             meant: misspelt,
+            unknown,
+            unlike,
         })
     }
 
     /// Reads a mapping with names that the author chose. The second of two equal names is reported as
-    /// `duplicate-<kind>` and omitted.
+    /// `duplicate-<kind>` and omitted. `help` is the suggestion for a value that is not a mapping.
     pub fn entries<'a>(
         &'a self,
         what: &str,
         kind: &str,
+        help: &str,
         findings: &mut Vec<Diagnostic>,
     ) -> Option<Vec<Entry<'a>>> {
         let Value::Mapping(pairs) = &self.value else {
             let finding = self.unexpected(&format!("a mapping for {what}"));
-            findings.push(finding.help("write `key: value` lines below it, indented"));
+            findings.push(finding.help(help));
             return None;
         };
         let mut entries: Vec<Entry<'a>> = Vec::with_capacity(pairs.len());
@@ -167,13 +213,13 @@ impl Node {
         Some(entries)
     }
 
-    /// Reads a list.
-    pub fn items(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&[Node]> {
+    /// Reads a list; `help` is the suggestion for other values.
+    pub fn items(&self, what: &str, help: &str, findings: &mut Vec<Diagnostic>) -> Option<&[Node]> {
         match &self.value {
             Value::List(items) => Some(items),
             _ => {
                 let finding = self.unexpected(&format!("a list for {what}"));
-                findings.push(finding.help("write `- item` lines below it, or `[a, b]`"));
+                findings.push(finding.help(help));
                 None
             }
         }
@@ -215,24 +261,26 @@ impl Node {
         match found {
             Some(number) if number >= least => Some(number),
             _ => {
-                let expected = format!("a whole number from {least} on for {what}");
-                let help = "write a whole number without quotes";
-                findings.push(self.unexpected(&expected).help(match &self.value {
-                    Value::Scalar(scalar) if scalar.text.contains(" //") => COMMENT,
-                    _ => help,
-                }));
+                let bounds = match least {
+                    0 => String::new(),
+                    least => format!(", {least} or more,"),
+                };
+                let finding = self.unexpected(&format!("a whole number{bounds} for {what}"));
+                let advice = self.whole_advice(least);
+                findings.push(finding.help(advice));
                 None
             }
         }
     }
 
-    /// Reads text. Numbers and booleans are returned as written, because names may look like them.
-    pub fn words(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&Scalar> {
+    /// Reads text; `help` is the suggestion for other values. Numbers and booleans are returned as written, because
+    /// names may look like them.
+    pub fn words(&self, what: &str, help: &str, findings: &mut Vec<Diagnostic>) -> Option<&Scalar> {
         match &self.value {
             Value::Scalar(scalar) if !scalar.is_null() => Some(scalar),
             _ => {
                 let finding = self.unexpected(&format!("text for {what}"));
-                findings.push(finding.help("write a word or a sentence"));
+                findings.push(finding.help(help));
                 None
             }
         }
@@ -246,7 +294,11 @@ impl Node {
         };
         if found.is_none() {
             let finding = self.unexpected(&format!("`true` or `false` for {what}"));
-            findings.push(finding.help("write one of the two, without quotes"));
+            let is_quoted = matches!(&self.value, Value::Scalar(scalar) if scalar.quoted);
+            findings.push(finding.help(match is_quoted {
+                true => "write one of the two, without quotes",
+                false => "write one of the two",
+            }));
         }
         found
     }
@@ -258,12 +310,13 @@ impl Node {
         choices: &[(&str, T)],
         findings: &mut Vec<Diagnostic>,
     ) -> Option<T> {
-        let word = self.words(what, findings)?;
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        let word = self.words(what, &format!("write {}", either(&names)), findings)?;
         let found = choices.iter().find(|(name, _)| *name == word.text);
         if found.is_none() {
             let message = format!("{what} cannot be `{}`", word.text);
             let mut finding = Diagnostic::error("unknown-word", self.span.clone(), message);
-            finding.help = suggest(&word.text, choices.iter().map(|(name, _)| *name));
+            finding.help = suggest(&word.text, names);
             findings.push(finding);
         }
         found.map(|&(_, value)| value)
@@ -279,11 +332,12 @@ impl Node {
     /// Returns a finding for a document that is not a mapping. The text may be any file, and is not quoted.
     #[must_use]
     pub fn unexpected_document(&self, what: &str) -> Diagnostic {
-        let found = match &self.value {
-            Value::Scalar(scalar) if !scalar.is_null() => "a text".into(),
-            _ => self.shown(),
+        let message = match &self.value {
+            Value::Scalar(scalar) if !scalar.is_null() => {
+                format!("this is plain text, not a {what}")
+            }
+            _ => format!("expected a mapping for the {what}, found {}", self.shown()),
         };
-        let message = format!("expected a mapping for {what}, found {found}");
         Diagnostic::error("wrong-type", self.span.clone(), message)
     }
 
@@ -329,12 +383,50 @@ impl Node {
             [whole, part] if part.span.start == whole.span.end + 1 => {
                 let (whole, part) = (number(whole)?, number(part)?);
                 let is_part = part.bytes().all(|c| c.is_ascii_digit());
-                is_part.then(|| format!("write a decimal point: `{whole}.{part}`"))
+                // Three digits after a comma are thousands, rather than a fraction.
+                let is_thousands = part.len() == 3 && (1..=3).contains(&whole.len());
+                is_part.then(|| match is_thousands && whole != "0" {
+                    true => format!(
+                        "write the number without a comma: `{whole}{part}`, or with a decimal point: `{whole}.{part}`"
+                    ),
+                    false => format!("write a decimal point: `{whole}.{part}`"),
+                })
             }
             _ => None,
         });
         let first = adjoining.next()?;
         (items.len() == expected + 1 + adjoining.count()).then_some(first)
+    }
+
+    /// Returns a suggestion for a value that is not a whole number of at least `least`.
+    fn whole_advice(&self, least: u64) -> String {
+        let Value::Scalar(scalar) = &self.value else {
+            return format!("write a whole number such as `{}`", least.max(1));
+        };
+        let text = scalar.text.trim();
+        if text.contains(" //") {
+            return COMMENT.into();
+        }
+        let whole = |text: &str| text.parse::<u64>().ok().filter(|number| *number >= least);
+        if scalar.quoted && whole(text).is_some() {
+            return "remove the quotes".into();
+        }
+        let fraction = text.split_once('.');
+        match fraction.filter(|(_, part)| part.bytes().all(|c| c == b'0')) {
+            Some((number, _)) if whole(number).is_some() => format!("write `{number}`"),
+            _ => {
+                let letters = text.trim_start_matches(|c: char| c.is_ascii_alphabetic());
+                match whole(letters) {
+                    Some(number) => format!("write `{number}`"),
+                    None => {
+                        let near = text.parse::<f64>().map_or(0.0, libm::round);
+                        let near = if near < 1e6 { near } else { 0.0 };
+                        let example = (near as u64).max(least).max(1);
+                        format!("write a whole number such as `{example}`")
+                    }
+                }
+            }
+        }
     }
 
     fn number_advice(&self) -> Option<String> {
@@ -344,7 +436,7 @@ impl Node {
         let text = scalar.text.trim();
         let plain = |s: &str| s.parse::<f64>().ok().filter(|x| x.is_finite());
         if plain(text).is_some() {
-            return Some("a number stands without quotes".into());
+            return Some("remove the quotes".into());
         }
         if text.contains(" //") {
             return Some(COMMENT.into());
@@ -371,6 +463,17 @@ impl Node {
         {
             return Some(format!("write the number, not a calculation: `{value}`"));
         }
+        if let Some(number) = other_notation(text) {
+            return Some(format!("write decimal digits only: `{number}`"));
+        }
+        if let Some(positive) = text
+            .strip_prefix(DASHES)
+            .filter(|rest| plain(rest).is_some())
+        {
+            return Some(format!(
+                "this dash is not a minus sign: write `-{positive}`"
+            ));
+        }
         let digits = text.replace(['O', 'o'], "0").replace('l', "1");
         if plain(&digits).is_some() {
             return Some(format!(
@@ -393,6 +496,25 @@ impl Node {
         }
         plain(&number).map(|_| format!("write the number without its unit: `{number}`"))
     }
+}
+
+/// Characters that look like a minus sign: hyphens, dashes and the sign of typesetting.
+const DASHES: [char; 5] = ['\u{2010}', '\u{2011}', '\u{2012}', '\u{2013}', '\u{2212}'];
+
+/// Returns a number in hexadecimal, octal or binary notation, or with `_` between digits.
+fn other_notation(text: &str) -> Option<u64> {
+    let prefixed = [("0x", 16), ("0o", 8), ("0b", 2)].into_iter();
+    let mut numbers = prefixed.filter_map(|(prefix, radix)| {
+        let digits = text.to_ascii_lowercase();
+        u64::from_str_radix(digits.strip_prefix(prefix)?, radix).ok()
+    });
+    numbers.next().or_else(|| {
+        let starts_with_digit = text.starts_with(|c: char| c.is_ascii_digit());
+        text.replace('_', "")
+            .parse()
+            .ok()
+            .filter(|_| starts_with_digit)
+    })
 }
 
 /// Units that are easily confused, and the larger one.

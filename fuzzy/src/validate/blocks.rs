@@ -21,8 +21,14 @@ impl Validator<'_> {
         if !(LEAST_STRENGTH..=1.0).contains(least_strength) {
             let message =
                 format!("`least_strength` is {least_strength}, outside [{LEAST_STRENGTH:e}, 1]");
-            let help = "a strength below 1e-12 is what rounding leaves of 0; fuzzylite has 1e-6";
-            self.error("value-outside-range", &spans.least_strength, message, help);
+            let help = match *least_strength > 1.0 && *least_strength <= 100.0 {
+                true => format!(
+                    "a firing strength is from 0 to 1: for {least_strength} % write `{}`",
+                    least_strength / 100.0
+                ),
+                false => "a smaller strength is a rounding error of 0; fuzzylite uses 1e-6".into(),
+            };
+            self.error("value-outside-range", &spans.least_strength, message, &help);
         }
         self.activation("the rule set", *activation, &spans.activation);
         let mut seen: BTreeMap<&str, Range<usize>> = BTreeMap::new();
@@ -64,7 +70,7 @@ impl Validator<'_> {
                 latest = rule.block;
                 continue;
             };
-            let help = "the rules of a model stand in the order of their blocks";
+            let help = "order the rules of a model by their blocks";
             let here = spans.rules.get(i).map_or(0..0, |rule| rule.whole.clone());
             self.error("wrong-block", &here, message, help);
         }

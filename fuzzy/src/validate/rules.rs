@@ -30,7 +30,7 @@ impl<'m> Validator<'m> {
             }
             let mut hedges = consequent.hedges.iter();
             if let Some(hedge) = hedges.find(|hedge| !hedge.may_conclude()) {
-                let message = format!("`{}` cannot stand after `THEN`", hedge.word());
+                let message = format!("`{}` is not allowed after `THEN`", hedge.word());
                 let help = "it belongs in the condition";
                 self.error("rule-syntax", &spans.whole, message, help);
             }
@@ -104,7 +104,13 @@ impl<'m> Validator<'m> {
             (Some(input), _) => ("input", input),
             (None, Some(output)) => ("output", output),
             (None, None) => {
-                let finding = self.unknown_input(&name.text, &name.span);
+                let mut finding = self.unknown_input(&name.text, &name.span);
+                if let Some(other) = &proposition.term
+                    && let Some(input) = self.inputs.get(other.text.as_str())
+                    && input.terms.iter().any(|term| term.name == name.text)
+                {
+                    finding.help = Some(format!("write `{} IS {}`", other.text, name.text));
+                }
                 self.findings.push(finding);
                 return;
             }

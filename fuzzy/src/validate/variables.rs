@@ -6,6 +6,8 @@ use core::ops::Range;
 use super::{MOST_FINDINGS, Validator, or};
 use crate::{
     defuzzify::is_empty,
+    diagnostic::all_of,
+    foreign,
     model::{
         Defuzzifier, Formula, MembershipFunction, NoRuleFires, Output, Variable,
         document::{TermSpans, VariableSpans},
@@ -121,6 +123,8 @@ impl Validator<'_> {
                 let own = &variable.name;
                 let help = match name {
                     "e" => "write `exp(x)` for a power of e".into(),
+                    _ if name.strip_suffix('²') == Some(own) => format!("write `{own}^2`"),
+                    _ if name.strip_suffix('³') == Some(own) => format!("write `{own}^3`"),
                     _ => format!(
                         "write `{own}` for the value of the variable; formulas over several variables are for outputs with `weighted_average` or `weighted_sum`"
                     ),
@@ -193,8 +197,11 @@ impl Validator<'_> {
         if !output.defuzzifier.is_weighted() {
             self.terms_are_not_numbers(what, output, spans);
         }
+        // The terms that are reported in a single error: fuzzy sets of a weighted output, singletons of a bisector.
+        let mut misfits = Vec::new();
+        let spans_of_terms = &spans.terms;
         for (i, term) in output.variable.terms.iter().enumerate() {
-            let spans = spans.terms.get(i).unwrap_or(&no_spans);
+            let spans = spans_of_terms.get(i).unwrap_or(&no_spans);
             let here = &spans.name;
             let what = format!("term `{}` of {what}", term.name);
             match &term.membership_function {
@@ -229,25 +236,44 @@ impl Validator<'_> {
                 MembershipFunction::Singleton { .. }
                     if output.defuzzifier == Defuzzifier::Bisector =>
                 {
-                    let message = format!("{what} is a singleton, which has no area to halve");
-                    let help =
-                        "write `defuzzifier: centroid`, the mean of the places by their degrees";
-                    self.error("wrong-term", here, message, help);
+                    misfits.push(i);
                 }
                 MembershipFunction::Constant { .. } | MembershipFunction::Singleton { .. } => {}
-                shape if weighted => {
-                    let message =
-                        format!("{what} is a fuzzy set, but the output is a weighted one");
-                    let help = if shape.is_monotone() {
-                        "write `defuzzifier: tsukamoto`, or numbers: `{constant: 5}` or `{linear: {input: 2, constant: 1}}`"
-                    } else {
-                        "write `{constant: 5}` or `{linear: {input: 2, constant: 1}}`, or `defuzzifier: centroid`"
-                    };
-                    self.error("wrong-term", here, message, help);
-                }
+                _ if weighted => misfits.push(i),
                 _ => {}
             }
         }
+        if let Some(first) = misfits.first() {
+            let here = spans_of_terms.get(*first).unwrap_or(&no_spans).name.clone();
+            self.misfits(what, output, &misfits, &here);
+        }
+    }
+
+    /// Reports a single error for terms that their defuzzifier does not support.
+    fn misfits(&mut self, what: &str, output: &Output, misfits: &[usize], here: &Range<usize>) {
+        let terms = misfits.iter().filter_map(|i| output.variable.terms.get(*i));
+        let names: Vec<&str> = terms.clone().map(|term| term.name.as_str()).collect();
+        let (subject, are, kind) = match names.as_slice() {
+            [one] => (format!("term `{one}` of {what}"), "is a", ""),
+            all => (format!("the terms {} of {what}", all_of(all)), "are", "s"),
+        };
+        if output.defuzzifier == Defuzzifier::Bisector {
+            let message = format!("{subject} {are} singleton{kind}, without an area to halve");
+            let help =
+                "write `defuzzifier: centroid`, which weights the positions by their degrees";
+            self.error("wrong-term", here, message, help);
+            return;
+        }
+        let message = format!("{subject} {are} fuzzy set{kind}, but the output is a weighted one");
+        let is_monotone = terms
+            .clone()
+            .all(|term| term.membership_function.is_monotone());
+        let defuzzifier = if is_monotone { "tsukamoto" } else { "centroid" };
+        let help = format!(
+            "write `defuzzifier: {defuzzifier}`, or numbers as terms: `{{{}: {{constant: 5}}}}` or `{{linear: {{input: 2, constant: 1}}}}`",
+            names.first().unwrap_or(&"")
+        );
+        self.error("wrong-term", here, message, &help);
     }
 
     /// Reports a single error for all constants of a fuzzy output. As fuzzy sets they would be flat, and the output
@@ -300,6 +326,17 @@ impl Validator<'_> {
                 // In a rule set this key is the constant part.
                 let message = format!("{what} has a coefficient for an input called `constant`");
                 self.error("wrong-term", here, message, "rename the input");
+            } else if !self.inputs.contains_key(input.as_str())
+                && !foreign::meant(input, ["constant"]).is_empty()
+            {
+                let message =
+                    format!("{what} has a coefficient for `{input}`, which is not an input");
+                self.error(
+                    "unknown-variable",
+                    here,
+                    message,
+                    "did you mean `constant`?",
+                );
             } else {
                 self.is_read(input, here);
             }

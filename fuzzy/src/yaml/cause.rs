@@ -1,5 +1,5 @@
-//! Reasons why a text is not YAML: the format of another program, a Markdown fence, or comments of
-//! another language.
+//! Reasons why a text is not YAML: the format of another program, a Markdown fence, comments of another language, or spaces
+//! that YAML does not allow.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -8,16 +8,63 @@ use crate::diagnostic::Diagnostic;
 /// Returns a finding if a text is in another format, or is surrounded by or contains characters that YAML does not
 /// allow. Call this only for texts that could not be parsed.
 pub(super) fn cause(text: &str) -> Option<Diagnostic> {
+    let lines = lines(text);
+    let syntax = |at: usize, length: usize, message: &str, help: &str| {
+        Some(Diagnostic::error("yaml-syntax", at..at + length, message).help(help))
+    };
+    if let Some(&(start, line)) = lines.iter().find(|(_, line)| line.starts_with("<<<<<<< ")) {
+        let help =
+            "keep one of the two versions, and remove the lines `<<<<<<<`, `=======` and `>>>>>>>`";
+        return syntax(start, line.len(), "a merge conflict is not resolved", help);
+    }
+    if let Some(finding) = foreign(text) {
+        return Some(finding);
+    }
+    let is_blank = |c: char| c.is_whitespace() && c != ' ' && c != '\t' && c != '\r' && c != '\n';
     let mut at = 0;
-    let lines: Vec<(usize, &str)> = text
-        .split_inclusive('\n')
-        .map(|line| {
-            let blank = |c: char| c == '\u{feff}' || c.is_whitespace();
-            let start = at + line.len() - line.trim_start_matches(blank).len();
-            at += line.len();
-            (start, line.trim_matches(blank))
-        })
-        .collect();
+    for line in text.split_inclusive('\n') {
+        let indent = line.len() - line.trim_start().len();
+        let indented = line.get(..indent).unwrap_or("");
+        if let Some(found) = indented.find(is_blank)
+            && !line.trim().is_empty()
+        {
+            let blank = indented.get(found..).and_then(|rest| rest.chars().next());
+            let length = blank.map_or(0, char::len_utf8);
+            let help =
+                "indent with plain spaces; text that is copied from a web page may contain others";
+            return syntax(
+                at + found,
+                length,
+                "the line is indented with a no-break space",
+                help,
+            );
+        }
+        at += line.len();
+    }
+    let slashes = lines.iter().find(|(_, line)| line.starts_with("//"))?;
+    syntax(
+        slashes.0,
+        2,
+        "`//` does not begin a comment",
+        "a comment begins with `#`",
+    )
+}
+
+/// Returns the start of each line behind its indentation, and the line without white space around it.
+fn lines(text: &str) -> Vec<(usize, &str)> {
+    let mut at = 0;
+    let lines = text.split_inclusive('\n').map(|line| {
+        let blank = |c: char| c == '\u{feff}' || c.is_whitespace();
+        let start = at + line.len() - line.trim_start_matches(blank).len();
+        at += line.len();
+        (start, line.trim_matches(blank))
+    });
+    lines.collect()
+}
+
+/// Returns a finding if a text is recognised as another kind of file.
+pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
+    let lines = lines(text);
     let foreign = |(start, line): (usize, &str), message: String, help: &str| {
         Some(Diagnostic::error("foreign-format", start..start + line.len(), message).help(help))
     };
@@ -27,37 +74,136 @@ pub(super) fn cause(text: &str) -> Option<Diagnostic> {
                 .iter()
                 .any(|sign| line.starts_with(sign))
     };
-    let &first = lines.iter().find(|(_, line)| !comment(line))?;
+    let mut content = lines.iter().filter(|(_, line)| !comment(line));
+    let &first = content.next()?;
     if first.1.starts_with("```") {
-        let message = String::from("a Markdown fence stands around the rule set");
+        let message = String::from("a Markdown fence surrounds the rule set");
         let help = "remove the lines that begin with three backticks";
         return foreign(first, message, help);
+    }
+    if first.1.starts_with("version https://git-lfs.") {
+        let message = String::from("this is a pointer of Git LFS, not the file itself");
+        return foreign(first, message, "fetch the file: `git lfs pull`");
+    }
+    if let Some((format, section)) = headless(&lines) {
+        let message = format!("this looks like {format} without its first section `{section}`");
+        return foreign(
+            first,
+            message,
+            "look for the lines that are missing at its start",
+        );
     }
     if let Some(program) = program(first.1) {
         let message = format!("this is {program}, not a rule set in YAML");
         let help = "write inputs, outputs and rules as YAML; a rule set begins with `fuzzy: 1`";
         return foreign(first, message, help);
     }
-    let slashes = lines.iter().find(|(_, line)| line.starts_with("//"))?;
-    let span = slashes.0..slashes.0 + 2;
-    Some(
-        Diagnostic::error("yaml-syntax", span, "`//` does not begin a comment")
-            .help("a comment begins with `#`"),
-    )
+    if is_table(first.1, content.next().map(|(_, line)| *line)) {
+        let message = String::from("this is a table of values, not a rule set");
+        return foreign(
+            first,
+            message,
+            "name the rule set first, and then the table",
+        );
+    }
+    None
+}
+
+/// Returns the format and the first section of a FIS or FLL file that lacks this section.
+fn headless(lines: &[(usize, &str)]) -> Option<(&'static str, &'static str)> {
+    let folded: Vec<String> = lines.iter().map(|(_, line)| line.to_lowercase()).collect();
+    let begins = |start: &str| folded.iter().any(|line| line.starts_with(start));
+    if begins("[input1]") && begins("[output1]") && !begins("[system]") {
+        Some(("FIS", "[System]"))
+    } else if begins("inputvariable:") && begins("outputvariable:") && !begins("engine:") {
+        Some(("FLL", "Engine:"))
+    } else {
+        None
+    }
+}
+
+/// Returns whether the first two lines have the same number of cells, more than one.
+fn is_table(first: &str, second: Option<&str>) -> bool {
+    let cells = |line: &str, sign: char| line.split(sign).count();
+    let is_yaml = |line: &str| {
+        line.contains(": ") || line.ends_with(':') || line.starts_with(['{', '[', '-'])
+    };
+    second.is_some_and(|second| {
+        !is_yaml(first)
+            && !is_yaml(second)
+            && [',', ';', '\t']
+                .into_iter()
+                .any(|sign| cells(first, sign) > 1 && cells(first, sign) == cells(second, sign))
+    })
+}
+
+/// Explains a syntax error by the line before it, or by its own line: a key without a space after its colon, or
+/// without a colon.
+pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
+    let before = text.get(..finding.span.start)?;
+    let start = before.rfind('\n').map_or(0, |at| at + 1);
+    let is_key = |key: &str| {
+        !key.is_empty()
+            && key
+                .chars()
+                .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+    };
+    // For example `{triangle [30, 50, 70]}`.
+    let rest = text.get(finding.span.start..)?;
+    let key = before
+        .get(start..)?
+        .trim_end()
+        .rsplit([' ', '{', ','])
+        .next()?;
+    if rest.starts_with(['[', '{']) && is_key(key) && before.ends_with(' ') {
+        let at = before.trim_end().len() - key.len();
+        let end = rest.find([']', '}', '\n']).map_or(0, |end| end + 1);
+        let shown = rest.get(..end)?.trim_end();
+        let message = format!("a colon is missing after `{key}`");
+        let finding = Diagnostic::error("yaml-syntax", at..at + key.len(), message);
+        return Some(finding.help(format!("write `{key}: {}`", shown)));
+    }
+    // For example `unit:°C` in the line above.
+    let above = before.get(..start)?.trim_end();
+    let at = above.rfind('\n').map_or(0, |at| at + 1);
+    let line = above.get(at..)?;
+    let content = line.trim_start();
+    let (key, value) = content.split_once(':')?;
+    if !is_key(key) || value.is_empty() || value.starts_with([' ', '/']) || value.contains(": ") {
+        return None;
+    }
+    let at = at + line.len() - content.len();
+    let message = format!("a space is missing after the colon of `{key}`");
+    let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
+    Some(finding.help(format!("write `{key}: {value}`")))
+}
+
+/// Adds to the help of a rule that ends too early that the rest of its line is a comment.
+pub(super) fn comment(text: &str, finding: &mut Diagnostic) {
+    let rest = text.get(finding.span.end..).unwrap_or("");
+    let rest = rest.lines().next().unwrap_or("").trim_start();
+    if finding.code == "rule-syntax"
+        && rest.starts_with('#')
+        && let Some(help) = &mut finding.help
+    {
+        help.push_str("; `#` begins a comment");
+    }
 }
 
 /// Returns the format of a text that starts with this line.
 fn program(first: &str) -> Option<&'static str> {
     let folded = first.to_lowercase();
     let begins = |starts: &[&str]| starts.iter().any(|start| folded.starts_with(start));
-    if begins(&["[system]", "[input1]"]) {
+    if begins(&["[system]"]) {
         Some("a FIS file of MATLAB")
     } else if begins(&["function_block"]) {
         Some("a text in the Fuzzy Control Language (FCL)")
-    } else if begins(&["engine:", "inputvariable:"]) {
+    } else if begins(&["engine:"]) {
         Some("a text in the FuzzyLite Language (FLL)")
     } else if begins(&["<"]) {
         Some("XML")
+    } else if is_toml(first) {
+        Some("TOML")
     } else if begins(&["import ", "from "]) {
         Some("Python")
     } else if ["mamfis", "sugfis", "newfis", "readfis"]
@@ -68,4 +214,19 @@ fn program(first: &str) -> Option<&'static str> {
     } else {
         None
     }
+}
+
+/// Returns whether a line is `[section]` or `key = value` in TOML.
+fn is_toml(line: &str) -> bool {
+    let is_name = |name: &str| {
+        !name.is_empty()
+            && name
+                .chars()
+                .all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c))
+    };
+    let section = line
+        .strip_prefix('[')
+        .and_then(|line| line.strip_suffix(']'));
+    let key = line.split_once(" = ").map(|(key, _)| key);
+    section.or(key).is_some_and(is_name)
 }

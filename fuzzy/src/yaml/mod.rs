@@ -48,9 +48,18 @@ pub fn read(text: &str) -> Result<Node, Findings> {
         return Err(Findings::locate(alloc::vec![finding], ""));
     }
     build(text).map_err(|finding| {
-        let finding = cause::cause(text).unwrap_or(*finding);
+        let finding = cause::cause(text)
+            .or_else(|| cause::line(text, &finding))
+            .unwrap_or(*finding);
         Findings::locate(alloc::vec![finding], text)
     })
+}
+
+/// Returns a finding if a text is recognised as a file of another program, or as another kind of file.
+#[doc(hidden)] // For the programs of this repository.
+#[must_use]
+pub fn foreign(text: &str) -> Option<Diagnostic> {
+    cause::foreign(text)
 }
 
 /// Parses a rule set in YAML.
@@ -92,7 +101,10 @@ pub(crate) fn document(tree: &Node, text: &str) -> Result<Document, Findings> {
             ..document
         }),
         Err(findings) => {
-            let findings = cause::cause(text).map_or(findings, |cause| alloc::vec![cause]);
+            let mut findings = cause::cause(text).map_or(findings, |cause| alloc::vec![cause]);
+            findings
+                .iter_mut()
+                .for_each(|finding| cause::comment(text, finding));
             Err(Findings::locate(findings, text))
         }
     }
@@ -151,8 +163,9 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
         let bytes = span.byte_range().unwrap_or(0..0);
         if document.is_some() && matches!(event, Event::DocumentStart(..)) {
             return Err(Box::new(
-                Diagnostic::error("yaml-syntax", bytes, "a second document begins here")
-                    .help("one file holds one document; remove the line `---` and what follows it"),
+                Diagnostic::error("yaml-syntax", bytes, "a second document begins here").help(
+                    "a file contains one document; remove the line `---` and what follows it",
+                ),
             ));
         }
         let (done, anchor) = match event {
@@ -195,7 +208,7 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
                         Diagnostic::error(
                             "yaml-syntax",
                             bytes,
-                            "the alias stands inside what it names",
+                            "the alias is inside the value that it names",
                         )
                         .help("write the value out here"),
                     ));
@@ -294,11 +307,20 @@ fn syntax(text: &str, error: &ScanError) -> Box<Diagnostic> {
         | ErrorKind::DocumentIndicatorInQuotedScalar
         | ErrorKind::InvalidQuotedScalarIndent => "add the closing quote",
         ErrorKind::MappingValueNotAllowed => {
-            "text that holds `: ` stands in quotes; keys of one mapping begin in the same column"
+            "put text that contains `: ` in quotes; begin the keys of one mapping in the same column"
+        }
+        ErrorKind::InvalidTrailingSingleQuotedScalar => {
+            "the text ends at the quote before this point: write `''` for an apostrophe in single quotes, or use double quotes"
+        }
+        ErrorKind::InvalidTrailingDoubleQuotedScalar => {
+            "the text ends at the quote before this point: write `\\\"` for a quote in double quotes"
+        }
+        ErrorKind::ExpectedBlockSequenceEntry => {
+            "all entries of a list begin with `-`; inputs and outputs have names, and no `-`"
         }
         ErrorKind::UnknownAnchor => "define it with `&name` before it is used",
         ErrorKind::UnexpectedCharacter { .. } => {
-            "text that begins with a special character stands in quotes"
+            "put text that begins with a special character in quotes"
         }
         ErrorKind::RecursionLimitExceeded => "a rule set needs only a few levels",
         ErrorKind::UnknownQuotedScalarEscape => {

@@ -26,6 +26,8 @@ pub(crate) fn read(
         is_fuzzylite: is_fuzzylite(&words),
         computes: false,
         blocks: vec![],
+        section: String::new(),
+        is_cut_off: false,
     };
     if reader.choose(name) {
         reader.file();
@@ -51,6 +53,10 @@ pub(super) struct Reader<'r, 't> {
     /// Whether the terms that are read compute values, which depends on the `METHOD` after them.
     pub(super) computes: bool,
     pub(super) blocks: Vec<Block>,
+    /// The section that is read, for messages.
+    section: String,
+    /// Whether the end of the text was reported; what is missing follows from it.
+    is_cut_off: bool,
 }
 
 impl<'r, 't> Reader<'r, 't> {
@@ -96,6 +102,15 @@ impl<'r, 't> Reader<'r, 't> {
         rest.get(..length).unwrap_or_default()
     }
 
+    /// Whether the last word was `;`.
+    pub(super) fn ended(&self) -> bool {
+        let last = self
+            .next
+            .checked_sub(1)
+            .and_then(|last| self.words.get(last));
+        last.is_some_and(|word| *word == ";")
+    }
+
     /// The location of something missing: the next word, or the end of the text.
     pub(super) fn here(&self) -> &'t str {
         let text = self.draft.text;
@@ -104,18 +119,28 @@ impl<'r, 't> Reader<'r, 't> {
     }
 
     pub(super) fn unexpected(&mut self, expected: &str) {
+        if self.is_cut_off {
+            return;
+        }
         let part = self.here();
-        let found = match part {
-            "" => "the text ends".to_owned(),
-            word => format!("found `{word}`"),
+        if self.next + 1 >= self.words.len() {
+            self.is_cut_off = true;
+            let inside = match self.section.as_str() {
+                "" => "before its first section",
+                section => &format!("inside `{section}`"),
+            };
+            let message = format!("the file ends {inside}: expected {expected}");
+            let help = "it may be cut off: look for the complete file";
+            self.draft.error("fcl-syntax", part, message, help);
+            return;
+        }
+        let message = format!("expected {expected}, found `{part}`");
+        let end = expected.split('`').find(|word| word.starts_with("END_"));
+        let help = match end.filter(|_| is_section(part)) {
+            Some(end) => format!("write `{end}` before `{part}`"),
+            None => "see IEC 61131-7 for the form of a file".into(),
         };
-        let message = format!("expected {expected}, {found}");
-        self.draft.error(
-            "fcl-syntax",
-            part,
-            message,
-            "see IEC 61131-7 for the form of a file",
-        );
+        self.draft.error("fcl-syntax", part, message, &help);
     }
 
     /// Moves to the function block with a name. Without a name and with several blocks it is the first, with a loss.
@@ -162,6 +187,13 @@ impl<'r, 't> Reader<'r, 't> {
             let Some(word) = self.word() else {
                 return self.unexpected("`END_FUNCTION_BLOCK`");
             };
+            let name = self
+                .peek()
+                .filter(|_| word.to_ascii_uppercase().ends_with("FUZZIFY"));
+            self.section = [word, name.unwrap_or_default()]
+                .join(" ")
+                .trim_end()
+                .to_owned();
             match word.to_ascii_uppercase().as_str() {
                 "VAR_INPUT" => self.variables(false),
                 "VAR_OUTPUT" => self.variables(true),
@@ -201,7 +233,7 @@ impl<'r, 't> Reader<'r, 't> {
                 .outputs
                 .iter()
                 .any(|output| output.variable.name == *name);
-            if !has_terms {
+            if !has_terms && !self.is_cut_off {
                 let message = format!("the output `{name}` has no `DEFUZZIFY`");
                 self.draft
                     .warning("no-terms", name, message, "it is left out");

@@ -79,8 +79,24 @@ impl Reader<'_, '_> {
 
     /// Reads `1 : IF ... THEN ...;`.
     pub(super) fn rule(&mut self) {
+        let start = self.next;
         while self.peek().is_some() && !self.is("IF") && !self.is(";") {
             self.next += 1;
+        }
+        if self.is(";") {
+            // The condition begins after `1 :`.
+            let words = self.words.get(start..self.next).unwrap_or_default();
+            let colon = words
+                .iter()
+                .position(|word| *word == ":")
+                .map_or(0, |at| at + 1);
+            self.next = start + colon;
+            let part = self.here();
+            let message = format!("expected `IF`, found `{part}`");
+            let help = "write `RULE 1 : IF ... THEN ...;`";
+            self.draft.error("fcl-syntax", part, message, help);
+            self.statement(&["RULE", "END_RULEBLOCK"]);
+            return;
         }
         let words = self.statement(&["RULE", "END_RULEBLOCK"]);
         let (Some(first), Some(last)) = (words.first(), words.last()) else {

@@ -90,7 +90,8 @@ fn shape<'t>(
     }
     if numbers.len() != count {
         let message = format!("`{shape}` has {count} parameters, found {}", numbers.len());
-        draft.error("parameter-count", shape, message, "count the numbers");
+        let help = format!("write `{shape} {}`", shapes::parameters(format, known));
+        draft.error("parameter-count", shape, message, &help);
         return None;
     }
     if !draft.is_finite(known, &numbers, words) {

@@ -176,6 +176,12 @@ impl<'t> Reader<'_, 't> {
                 "RANGE",
                 "DEFAULT",
             ]);
+            if let [name, sign @ ("=" | ":"), ..] = statement {
+                let message = format!("expected `:=` after `{name}`, found `{sign}`");
+                let help = format!("write `TERM {name} := ...;`");
+                self.draft.error("fcl-syntax", sign, message, &help);
+                return true;
+            }
             let [name, ":=", shape @ ..] = statement else {
                 self.unexpected("`NAME := SHAPE;` before this");
                 return true;
@@ -197,13 +203,34 @@ impl<'t> Reader<'_, 't> {
             return true;
         }
         if self.take("RANGE") {
-            let (first, statement) = (self.here(), self.statement(&[]));
+            const NEXT: [&str; 6] = [
+                "TERM",
+                "END_FUZZIFY",
+                "END_DEFUZZIFY",
+                "METHOD",
+                "ACCU",
+                "DEFAULT",
+            ];
+            let (first, statement) = (self.here(), self.statement(&NEXT));
             let [":=", "(", low, "..", high, ")"] = *statement else {
                 let message = "expected `RANGE := (LOW .. HIGH);`".into();
-                self.draft
-                    .error("no-range", first, message, "write both ends as numbers");
+                let help = match *statement {
+                    [":=", "(", low, ".", high, ")"] => {
+                        format!("write two points: `({low} .. {high})`")
+                    }
+                    _ => "write both ends as numbers: `(0 .. 10)`".into(),
+                };
+                self.draft.error("no-range", first, message, &help);
+                // The range is not also reported as missing.
+                (variable.low, variable.high) = (0.0, 1.0);
                 return true;
             };
+            if NEXT.iter().any(|word| self.is(word)) && !self.ended() {
+                let message = "expected `;` after the range".into();
+                let part = statement.last().copied().unwrap_or(first);
+                let help = format!("write `RANGE := ({low} .. {high});`");
+                self.draft.error("fcl-syntax", part, message, &help);
+            }
             spans.range = self.draft.span(low).start..self.draft.span(high).end;
             let ends = (self.draft.number(low), self.draft.number(high));
             if let (Some(low), Some(high)) = ends {
@@ -253,7 +280,7 @@ impl<'t> Reader<'_, 't> {
         let (found, (low, high)) = match low <= high {
             true if low < high => ("its terms lie between", (low, high)),
             true => ("its terms lie within", (low - 0.5, low + 0.5)),
-            false => ("its terms tell none, and it is from", (0.0, 1.0)),
+            false => ("its terms have no limits, and it is between", (0.0, 1.0)),
         };
         (variable.low, variable.high) = (low, high);
         spans.range = spans.name.clone();

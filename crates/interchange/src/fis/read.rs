@@ -147,7 +147,7 @@ fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
             continue;
         }
         let Some(section) = sections.last_mut() else {
-            let message = format!("`{line}` stands in no section");
+            let message = format!("`{line}` is before the first section");
             draft.error("fis-syntax", line, message, "a FIS begins with `[System]`");
             continue;
         };

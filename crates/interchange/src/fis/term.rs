@@ -11,6 +11,29 @@ use crate::{Format, draft::Draft, shapes};
 
 const OTHERS: [&str; 3] = ["discretemf", "constant", "linear"];
 
+/// A quote of a word processor.
+fn is_curly(c: char) -> bool {
+    matches!(c, '\u{2018}'..='\u{201f}')
+}
+
+/// The first number with a comma inside, if others are separated by blanks: `1,5` of `[1,5 0]`.
+fn decimal_comma(parameters: &str) -> Option<&str> {
+    let inner = parameters
+        .trim()
+        .trim_start_matches('[')
+        .trim_end_matches(']');
+    let mut words = inner.split_whitespace();
+    let has_blanks = words.clone().count() > 1;
+    words.find(|word| {
+        let parts = word.split_once(',');
+        let is_digits = |part: &str| !part.is_empty() && part.bytes().all(|c| c.is_ascii_digit());
+        has_blanks
+            && parts.is_some_and(|(whole, part)| {
+                is_digits(whole.trim_start_matches('-')) && is_digits(part)
+            })
+    })
+}
+
 pub(super) fn read(
     draft: &mut Draft<'_>,
     written: &str,
@@ -28,12 +51,19 @@ pub(super) fn read(
     let (name, shape) = (unquoted(name), unquoted(shape));
     let mut spans = TermSpans::default();
     spans.name = draft.span(name);
+    if name.starts_with(is_curly) || name.ends_with(is_curly) {
+        let message = format!("the typographic quotes belong to the name `{name}`");
+        let bare = name.trim_matches(is_curly);
+        let help = format!("write straight quotes: `'{bare}'`");
+        draft.warning("typographic-quotes", name, message, &help);
+    }
     let mut numbers = vec![];
     let words = bracketed(parameters);
     for word in &words {
         numbers.push(number(draft, word)?);
         spans.parameters.push(draft.span(word));
     }
+    let mut form = String::new();
     let (function, count) = match shape.to_ascii_lowercase().as_str() {
         "constant" => {
             let value = numbers.first().copied().unwrap_or(f64::NAN);
@@ -59,6 +89,7 @@ pub(super) fn read(
                 draft.error("unknown-shape", shape, message, &help);
                 return None;
             };
+            form = shapes::parameters(Format::Fis, known);
             let own = numbers.get(..count).unwrap_or(&numbers);
             if !draft.is_finite(known, own, &words) {
                 return None;
@@ -68,7 +99,20 @@ pub(super) fn read(
     };
     if numbers.len() < count {
         let message = format!("`{shape}` has {count} parameters, found {}", numbers.len());
-        draft.error("parameter-count", shape, message, "count the numbers");
+        let help = match form.is_empty() {
+            true => "write a number for each input, and the constant".into(),
+            false => format!("write `[{form}]`"),
+        };
+        draft.error("parameter-count", shape, message, &help);
+        return None;
+    }
+    if numbers.len() > count
+        && let Some(number) = decimal_comma(parameters)
+    {
+        let message = format!("`{shape}` has {count} parameters, found {}", numbers.len());
+        let point = number.replacen(',', ".", 1);
+        let help = format!("is `{number}` a decimal comma? write `{point}`");
+        draft.error("parameter-count", number, message, &help);
         return None;
     }
     // Old files pad the parameters of every shape to four numbers.
@@ -82,7 +126,7 @@ pub(super) fn read(
             "parameter-count",
             shape,
             message,
-            "the numbers behind them are left out",
+            "the numbers after them are left out",
         );
     }
     spans.parameters.truncate(count);

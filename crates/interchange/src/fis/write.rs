@@ -56,12 +56,12 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
             paper.note(
                 "sampled",
                 message,
-                "MATLAB samples 101 places unless told otherwise",
+                "MATLAB samples 101 positions by default",
             );
         }
     }
     if !model.blocks.is_empty() || model.activation != Activation::General {
-        let message = "the rules stand in blocks, or do not all fire".into();
+        let message = "the rules are in blocks, or do not all fire".into();
         paper.loss(
             "blocks",
             message,

@@ -146,8 +146,20 @@ fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
         }
         let Some((key, value)) = line.split_once(':') else {
             let message = format!("`{line}` is not a line of FLL");
-            let help = "each line reads `key: value`, and a comment begins with `#`";
-            draft.error("fll-syntax", line, message, help);
+            let keys = sections
+                .last()
+                .map_or(&[][..], |section| section.kind.keys());
+            let split = line.split_once(char::is_whitespace);
+            let known = split.filter(|(key, _)| keys.contains(key));
+            let help = match known {
+                Some((key, value)) => format!("write `{key}: {value}`"),
+                None => "write each line as `key: value`; a comment begins with `#`".into(),
+            };
+            draft.error("fll-syntax", line, message, &help);
+            // The meaning is clear, so that nothing is reported as missing.
+            if let (Some((key, value)), Some(section)) = (known, sections.last_mut()) {
+                section.entries.push(Entry { key, value });
+            }
             continue;
         };
         let (key, value) = (key.trim(), value.trim());
@@ -160,7 +172,7 @@ fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
             continue;
         }
         let Some(section) = sections.last_mut() else {
-            let message = format!("`{key}` stands in no section");
+            let message = format!("`{key}` is before the first section");
             let help = "a file begins with `Engine: NAME`";
             draft.error("fll-syntax", key, message, help);
             continue;

@@ -89,7 +89,13 @@ pub(crate) fn of_shape(
             "`{shape}` has {used} parameters and a height, found {} numbers",
             numbers.len()
         );
-        draft.error("parameter-count", shape, message, "count the numbers");
+        let help = match shapes::named(Format::Fll, shape) {
+            Some((known, _)) => {
+                format!("write `{shape} {}`", shapes::parameters(Format::Fll, known))
+            }
+            None => "write the numbers of the shape, and no others".into(),
+        };
+        draft.error("parameter-count", shape, message, &help);
         return None;
     }
     let height = numbers.get(used).copied().unwrap_or(1.0);

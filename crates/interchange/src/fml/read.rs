@@ -43,8 +43,15 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
                 .lines()
                 .nth(at.row.saturating_sub(1) as usize)
                 .unwrap_or_default();
-            let message = format!("this is not XML: {error}").to_lowercase();
-            draft.error("xml-syntax", line, message, "mend the XML first");
+            let (message, help) = xml_mistake(&error);
+            // A text that ends too early has no position.
+            let part = match error {
+                roxmltree::Error::UnclosedRootNode => {
+                    text.trim_end().lines().last().unwrap_or(line)
+                }
+                _ => line,
+            };
+            draft.error("xml-syntax", part.trim(), message, &help);
             return draft.finish();
         }
     };
@@ -67,6 +74,33 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     blocks::aggregate(&mut reader.draft.model, &reader.aggregations);
     blocks::settle(&mut reader.draft.model, reader.blocks);
     reader.draft.finish()
+}
+
+/// The message and the help for text that is not XML.
+fn xml_mistake(error: &roxmltree::Error) -> (String, String) {
+    use roxmltree::Error;
+    match error {
+        Error::UnexpectedCloseTag(expected, found, _) => (
+            format!("`<{expected}>` is not closed before `</{found}>`"),
+            format!("write `</{expected}>` before it, or correct the spelling of the tag"),
+        ),
+        Error::UnclosedRootNode => (
+            "the file ends before its first element is closed".into(),
+            "it is cut off: look for the complete file".into(),
+        ),
+        Error::MalformedEntityReference(_) | Error::UnknownEntityReference(..) => (
+            "`&` begins no reference here".into(),
+            "write `&amp;` for the sign `&`".into(),
+        ),
+        Error::InvalidChar2("a quote", ..) | Error::InvalidAttributeValue(_) => (
+            "the value of an attribute is not in quotes".into(),
+            "write `name=\"value\"`".into(),
+        ),
+        other => (
+            format!("this is not valid XML: {other}"),
+            "correct the XML at this line".into(),
+        ),
+    }
 }
 
 /// The maximum number of attributes of an element, because each is compared with the others.
@@ -426,7 +460,7 @@ impl Reader<'_> {
                     term,
                 } = self.clause(clause)?;
                 if let Some(hedge) = hedges.first() {
-                    let message = format!("a hedge, `{}`, stands in a conclusion", hedge.word());
+                    let message = format!("the hedge `{}` is in a conclusion", hedge.word());
                     let part = tag(self.draft.text, clause);
                     self.draft.loss(
                         "hedge-in-conclusion",

@@ -78,7 +78,10 @@ pub(super) fn read(
                 "not-a-number",
                 tag(draft.text, shape),
                 message,
-                "write it in digits",
+                &match attribute(shape, &key) {
+                    None => format!("add the attribute: `{key}=\"1\"`"),
+                    Some(word) => format!("`{word}` is not a number: write it in digits"),
+                },
             );
             return None;
         };

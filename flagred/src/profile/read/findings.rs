@@ -22,9 +22,11 @@ pub(super) fn findings(
     inputs: &[ProfileInput],
     found: &mut Found,
 ) -> Vec<CauseWords> {
-    let entries = fields
-        .get("findings")
-        .and_then(|node| node.entries("`findings`", "input", found));
+    let entries = fields.get("findings").and_then(|node| {
+        let help =
+            format!("write the words for each input by its name: `findings: {{spread: {WORDS}}}`");
+        node.entries("`findings`", "input", &help, found)
+    });
     let mut all = Vec::new();
     for entry in entries.unwrap_or_default() {
         // If the inputs have errors, an input may be missing only because of them.
@@ -41,14 +43,18 @@ pub(super) fn findings(
     all
 }
 
+const WORDS: &str = "{code: fighting_gusts, brief: fighting gusts, text: ..., advice: ...}";
+
 fn words(entry: &Entry, found: &mut Found) -> Option<CauseWords> {
     let what = format!("finding `{}`", entry.key);
     let keys = ["code", "brief", "text", "advice"];
-    let fields = entry.value.fields(&what, &keys, found)?;
+    let help = format!("write `{}: {WORDS}`", entry.key);
+    let fields = entry.value.fields(&what, &keys, &help, found)?;
     let mut read = |key, check: fn(&Node, &str, &mut Found)| {
         let help = format!("write `{key}`; docs/findings.md has examples");
         let node = fields.require(key, &help, found)?;
-        let words = node.words(&format!("`{key}`"), found)?.text.clone();
+        let words = node.words(&format!("`{key}`"), &help, found)?;
+        let words = words.text.clone();
         check(node, &words, found);
         Some(words)
     };
@@ -75,7 +81,11 @@ fn check_code(node: &Node, code: &str, found: &mut Found) {
 }
 
 fn check_brief(node: &Node, brief: &str, found: &mut Found) {
-    if brief.len() > LONGEST_BRIEF || !brief.is_ascii() {
+    if let Some(letter) = brief.chars().find(|c| !c.is_ascii()) {
+        let message = format!("`{letter}` in `brief` is not an ASCII character");
+        let help = "it is shown by programs that know only ASCII: write letters without accents";
+        refuse(node, message, help.into(), found);
+    } else if brief.len() > LONGEST_BRIEF {
         let message = format!("`brief` takes at most {LONGEST_BRIEF} ASCII characters");
         let help = "it is part of texts of 50 characters: write two or three short words";
         refuse(node, message, help.into(), found);

@@ -47,13 +47,43 @@ const MOTORS: [(&str, Motors); 4] = [
 
 pub(super) fn inputs(fields: &Fields, window_s: f64, found: &mut Found) -> Vec<ProfileInput> {
     let help =
-        "say where each input of the rule set comes from: `inputs: {margin: {mean: motor_margin}}`";
+        "write the source of each input of the rule set: `inputs: {margin: {mean: motor_margin}}`";
     let Some(node) = fields.require("inputs", help, found) else {
         return Vec::new();
     };
-    let entries = node.entries("`inputs`", "input", found).unwrap_or_default();
+    let help =
+        "write each input by its name, without `-`: `inputs: {margin: {mean: motor_margin}}`";
+    let entries = node.entries("`inputs`", "input", help, found);
+    let entries = entries.unwrap_or_default();
     let read = |entry| input(entry, &entries, window_s, found);
     entries.iter().filter_map(read).collect()
+}
+
+/// The suggestion for the source of an input that is not a mapping, such as `motor_margin` or `mean(motor_margin)`.
+fn source_help(entry: &Entry) -> String {
+    let (statistic, signal) = match &entry.value.value {
+        Value::Scalar(scalar) => match scalar.text.trim_end_matches(')').split_once('(') {
+            Some((statistic, signal)) => (statistic, signal),
+            None => ("mean", scalar.text.as_str()),
+        },
+        _ => ("mean", ""),
+    };
+    let is_word = |text: &str| {
+        let mut letters = text.chars();
+        letters.next().is_some_and(|c| c.is_ascii_alphabetic())
+            && letters.all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    let signal = if is_word(signal) {
+        signal
+    } else {
+        "motor_margin"
+    };
+    let is_known = STATISTICS.iter().any(|(name, _)| *name == statistic);
+    let statistic = if is_known { statistic } else { "mean" };
+    format!(
+        "write a statistic of a signal: `{}: {{{statistic}: {signal}}}`",
+        entry.key
+    )
 }
 
 fn input(
@@ -72,7 +102,18 @@ fn input(
         .chain(RATIO)
         .collect();
     let before = found.len();
-    let fields = entry.value.fields(&what, &keys, found)?;
+    let fields = entry
+        .value
+        .fields(&what, &keys, &source_help(entry), found)?;
+    // For example `{motor_margin: mean}`.
+    for entry in fields.unknown() {
+        if let Value::Scalar(word) = &entry.value.value
+            && keys.contains(&word.text.as_str())
+            && let Some(finding) = found.iter_mut().find(|one| one.span == entry.key_span)
+        {
+            finding.help = Some(format!("exchange them: `{{{}: {}}}`", word.text, entry.key));
+        }
+    }
     let given: Vec<&str> = statistics
         .chain(with_number)
         .filter(|k| fields.get(k).is_some())
@@ -99,7 +140,7 @@ fn input(
                 );
                 found.push(
                     Diagnostic::error("statistic", stray.key_span.clone(), message)
-                        .help(format!("write the signal behind `{key}` alone")),
+                        .help(format!("write the signal alone: `{{{key}: motor_margin}}`")),
                 );
             }
             (*statistic, behind)
@@ -109,7 +150,13 @@ fn input(
                 && word.as_number().is_none()
             {
                 let message = format!("`{key}` takes a number, and `of` the signal");
-                let help = format!("write `{{{key}: 95, of: {}}}`", word.text);
+                let number = fields.get("of").and_then(|node| match &node.value {
+                    Value::Scalar(number) => number.as_number().map(|_| number.text.as_str()),
+                    _ => None,
+                });
+                let example = if *key == "percentile" { "95" } else { "0.1" };
+                let number = number.unwrap_or(example);
+                let help = format!("write `{{{key}: {number}, of: {}}}`", word.text);
                 found
                     .push(Diagnostic::error("wrong-type", behind.span.clone(), message).help(help));
                 return None;
@@ -134,15 +181,20 @@ fn input(
     let exponential = fields.entry("time_constant_s");
     if let Some(entry) = exponential {
         let mistake = if fields.get("window_s").is_some() {
-            Some("either `window_s` or `time_constant_s`, not both".into())
+            let help = "remove one: all values in `window_s` have equal weights; with `time_constant_s` older values have less weight";
+            Some((
+                format!("{what} has both `window_s` and `time_constant_s`"),
+                help.into(),
+            ))
         } else if !statistic.is_of_weights() {
-            Some(format!("`time_constant_s` does not go with `{key}`"))
+            let help = format!(
+                "`time_constant_s` is for `mean`, `std`, `rms` and shares of time; write `window_s` for `{key}`"
+            );
+            Some((format!("`{key}` has no `time_constant_s`"), help))
         } else {
             None
         };
-        if let Some(mistake) = mistake {
-            let help = "all values count in `mean`, `std`, `rms` and shares of time, with weights that fall by their age: \
-                        `{mean: motor_command, time_constant_s: 5}`";
+        if let Some((mistake, help)) = mistake {
             found.push(Diagnostic::error("window", entry.key_span.clone(), mistake).help(help));
             return None;
         }
@@ -205,7 +257,13 @@ fn ratio(fields: &Fields, entry: &Entry, entries: &[Entry], found: &mut Found) -
 
 /// The name of the input that a ratio divides by.
 fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Option<String> {
-    let name = &node.words("an input of a ratio", found)?.text;
+    let name = &node
+        .words(
+            "an input of a ratio",
+            "write the name of another input",
+            found,
+        )?
+        .text;
     let is_ratio = |other: &Entry| match &other.value.value {
         Value::Mapping(pairs) => pairs
             .iter()
@@ -215,7 +273,7 @@ fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Op
     let message = match entries.iter().find(|other| other.key == *name) {
         Some(other) if other.key != entry.key && !is_ratio(other) => return Some(name.clone()),
         Some(_) => format!("`{name}` is a ratio itself"),
-        None => format!("`{name}` is no input of this profile"),
+        None => format!("`{name}` is not an input of this profile"),
     };
     let help = "name another input, which is a statistic alone; the rule set need not have it. Of two signals, write `{mean: {ratio: [A, B]}}`";
     found.push(Diagnostic::error("ratio", node.span.clone(), message).help(help));
@@ -224,7 +282,14 @@ fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Op
 
 /// Reads the name of a signal, which is neither a number nor a computation.
 fn signal_name<'n>(node: &'n Node, what: &str, found: &mut Found) -> Option<&'n str> {
-    let name = node.words(what, found)?.text.as_str();
+    let name = node
+        .words(
+            what,
+            "write the name of a signal, such as `motor_margin`",
+            found,
+        )?
+        .text
+        .as_str();
     let message = if name.parse::<f64>().is_ok() {
         format!("{what} is a name, not the number {name}")
     } else if [" / ", " * ", " - ", " + "]
@@ -257,7 +322,23 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         .collect();
     let over = format!("the statistic over motors of {what}");
     let before = found.len();
-    let fields = node.fields(&over, &keys, found)?;
+    let fields = node.fields(&over, &keys, "write the name of a signal", found)?;
+    for entry in fields.unknown() {
+        if STATISTICS.iter().any(|(name, _)| *name == entry.key)
+            && let Some(finding) = found.iter_mut().find(|one| one.span == entry.key_span)
+        {
+            finding.help =
+                Some("the statistics over motors are `mean`, `std`, `min` and `max`".into());
+        }
+    }
+    if fields.get("motor").is_some() {
+        let number = match fields.get("motor").map(|node| &node.value) {
+            Some(Value::Scalar(number)) => number.text.as_str(),
+            _ => "1",
+        };
+        let help = format!("name a signal of motors: `{{motor: {number}, of: motor_command}}`");
+        fields.require("of", &help, found)?;
+    }
     let given: Vec<&str> = keys
         .into_iter()
         .filter(|key| fields.get(key).is_some())
@@ -324,17 +405,26 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
 
 /// Reads `[yaw_des_deg, yaw_deg]`.
 fn pair(key: &str, node: &Node, found: &mut Found) -> Option<[String; 2]> {
-    let [a, b] = node.items(&format!("`{key}`"), found)? else {
-        let (what, example) = match key {
-            "difference" => ("the second from the first", "yaw_des_deg, yaw_deg"),
-            "ratio" => ("the first divided by the second", "battery_a, battery_v"),
-            _ => ("which are multiplied", "battery_a, battery_v"),
-        };
-        let message = format!("`{key}` takes two signals, {what}");
-        found.push(
-            Diagnostic::error("signal", node.span.clone(), message)
-                .help(format!("write for example `{{{key}: [{example}]}}`")),
-        );
+    let (what, example) = match key {
+        "difference" => (
+            "which is the first minus the second",
+            "yaw_des_deg, yaw_deg",
+        ),
+        "ratio" => (
+            "which is the first divided by the second",
+            "battery_a, battery_v",
+        ),
+        _ => (
+            "which is the first times the second",
+            "battery_a, battery_v",
+        ),
+    };
+    let help = format!("write for example `{{{key}: [{example}]}}`");
+    let items = node.items(&format!("`{key}`"), &help, found)?;
+    let [a, b] = items else {
+        let message = format!("`{key}` takes two signals, not {}", items.len());
+        let help = format!("{help}, {what}");
+        found.push(Diagnostic::error("signal", node.span.clone(), message).help(help));
         return None;
     };
     let mut name = |node: &Node| {

@@ -11,9 +11,10 @@ use super::Found;
 use crate::profile::{Followed, Reliability};
 
 pub(super) fn reliability(fields: &Fields, found: &mut Found) -> Vec<Reliability> {
-    let items = fields
-        .get("reliability")
-        .and_then(|node| node.items("`reliability`", found));
+    let items = fields.get("reliability").and_then(|node| {
+        let help = format!("write `reliability: [{ROW}]`, with a row for each range of risks");
+        node.items("`reliability`", &help, found)
+    });
     let mut rows: Vec<Reliability> = Vec::new();
     for node in items.unwrap_or_default() {
         let Some(row) = row(node, found) else {
@@ -31,11 +32,13 @@ pub(super) fn reliability(fields: &Fields, found: &mut Found) -> Vec<Reliability
     rows
 }
 
+const ROW: &str = "{risk: [60, 80], real: {moments: 889, followed: 759}}";
+
 fn row(node: &Node, found: &mut Found) -> Option<Reliability> {
     let what = "a row of `reliability`";
-    let fields = node.fields(what, &["risk", "real", "simulated"], found)?;
-    let help = "write `{risk: [60, 80], real: {moments: 889, followed: 759}}`";
-    let risk = fields.require("risk", help, found)?;
+    let help = format!("write `{ROW}`");
+    let fields = node.fields(what, &["risk", "real", "simulated"], &help, found)?;
+    let risk = fields.require("risk", &help, found)?;
     let [from_pct, to_pct] = pair(risk, found)?;
     if !(0.0 <= from_pct && from_pct < to_pct && to_pct <= 100.0) {
         let message = format!("`risk` is [{from_pct}, {to_pct}]");
@@ -54,11 +57,12 @@ fn row(node: &Node, found: &mut Found) -> Option<Reliability> {
 }
 
 fn pair(node: &Node, found: &mut Found) -> Option<[f64; 2]> {
-    let items = node.items("`risk`", found)?;
+    let help = "write `risk: [60, 80]`";
+    let items = node.items("`risk`", help, found)?;
     let [from, to] = items else {
         found.push(
             Diagnostic::error("wrong-type", node.span.clone(), "`risk` takes two numbers")
-                .help("write `risk: [60, 80]`"),
+                .help(help),
         );
         return None;
     };
@@ -67,7 +71,8 @@ fn pair(node: &Node, found: &mut Found) -> Option<[f64; 2]> {
 
 fn followed(fields: &Fields, key: &str, found: &mut Found) -> Option<Followed> {
     let node = fields.get(key)?;
-    let fields = node.fields(&format!("`{key}`"), &["moments", "followed"], found)?;
+    let help = format!("write `{key}: {{moments: 889, followed: 759}}`");
+    let fields = node.fields(&format!("`{key}`"), &["moments", "followed"], &help, found)?;
     let mut count = |key: &str| {
         let help = format!("write `{key}`, a number of moments");
         let node = fields.require(key, &help, found)?;

@@ -324,9 +324,23 @@ inputs:
   divided: {last: battery_a / battery_v}
   doubled: {mean: {product: [battery_v, 2]}}
   whole: {percentile: battery_v}
+  average: {average: battery_v}
+  reversed: {battery_v: mean}
+  spread: {mean: {median: motor_margin}}
+  share: {share_below: battery_v, of: 12}
+  bare: motor_margin
+  called: std(motor_command)
+  default: {last: battery_v, default: 12}
 verdict:
   idle_below: 10
   reserve: {below: 15}
+  noise: 0.08
+  imbalance: {below: 0.1}
+  warn: {risk: 0.6, until: {risk: 25}}
+  fail: 70
+gap: nearest
+reliability: {risk: [60, 80]}
+min_samples: 2.5
 other_risks:
   risk: {}
   other: {verdict: {}, warn: {risk: 120}}

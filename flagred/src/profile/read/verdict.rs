@@ -2,7 +2,10 @@
 
 use alloc::format;
 
-use fuzzy::{diagnostic::Diagnostic, tree::Fields};
+use fuzzy::{
+    diagnostic::Diagnostic,
+    tree::{Fields, Node, Value},
+};
 
 use super::{Bounds, Found, number};
 use crate::verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings};
@@ -20,10 +23,10 @@ pub(super) fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
         "reserve",
         "imbalance",
     ];
-    let Some(fields) = fields
-        .get("verdict")
-        .and_then(|node| node.fields("`verdict`", &keys, found))
-    else {
+    let Some(fields) = fields.get("verdict").and_then(|node| {
+        let help = "write `verdict: {warn: {risk: 60}, fail: {risk: 70}}`";
+        node.fields("`verdict`", &keys, help, found)
+    }) else {
         return default;
     };
     let mut seconds = |key, default| number(&fields, key, default, Bounds::From0, found);
@@ -63,7 +66,8 @@ pub(super) fn level(
     let Some(node) = fields.get(key) else {
         return default;
     };
-    let Some(fields) = node.fields(&what, &keys, found) else {
+    let help = format!("write `{key}: {{risk: {}}}`", number_or(node, "60"));
+    let Some(fields) = node.fields(&what, &keys, &help, found) else {
         return default;
     };
     let raise = threshold(&fields, &what, found);
@@ -77,7 +81,8 @@ pub(super) fn level(
     let after_s = number(&fields, "after_s", default.after_s, Bounds::From0, found);
     let mut until = raise;
     if let Some(node) = fields.get("until")
-        && let Some(fields) = node.fields("`until`", &["risk", "elevated_risk"], found)
+        && let help = format!("write `until: {{risk: {}}}`", number_or(node, "30"))
+        && let Some(fields) = node.fields("`until`", &["risk", "elevated_risk"], &help, found)
     {
         until = threshold(&fields, "`until`", found);
         for (lower, upper) in [
@@ -88,10 +93,17 @@ pub(super) fn level(
                 && lower > upper
             {
                 let message = format!("{what} is held until {lower}, which is above {upper}");
-                found.push(
-                    Diagnostic::error("order", node.span.clone(), message)
-                        .help("a level is held down to a lower value than it is raised at"),
-                );
+                let help = match upper <= 1.0 && lower > 1.0 {
+                    true => format!(
+                        "risks are in percent: did you mean {} in place of {upper}?",
+                        upper * 100.0
+                    ),
+                    false => {
+                        "write a lower value in `until` than the one at which the level is raised"
+                            .into()
+                    }
+                };
+                found.push(Diagnostic::error("order", node.span.clone(), message).help(help));
             }
         }
     }
@@ -99,6 +111,14 @@ pub(super) fn level(
         raise,
         after_s,
         until,
+    }
+}
+
+/// The number that an author wrote in place of a mapping, for its example; else another number.
+fn number_or<'n>(node: &'n Node, other: &'n str) -> &'n str {
+    match &node.value {
+        Value::Scalar(scalar) if scalar.as_number().is_some() => &scalar.text,
+        _ => other,
     }
 }
 
@@ -124,8 +144,10 @@ fn threshold(fields: &Fields, what: &str, found: &mut Found) -> Threshold {
 /// Reads the limit of a notice: `{above: 0.04, after_s: 10}`.
 fn limit(fields: &Fields, key: &str, side: &str, found: &mut Found) -> Option<Limit> {
     let what = format!("`{key}`");
-    let fields = fields.get(key)?.fields(&what, &[side, "after_s"], found)?;
-    let help = format!("write `{key}: {{{side}: 0.1, after_s: 3}}`");
+    let node = fields.get(key)?;
+    let written = number_or(node, "0.1");
+    let help = format!("write `{key}: {{{side}: {written}, after_s: 5}}`");
+    let fields = node.fields(&what, &[side, "after_s"], &help, found)?;
     fields.require(side, &help, found)?;
     let value = number(&fields, side, 0.0, Bounds::Below1, found);
     let after_s = number(&fields, "after_s", 0.0, Bounds::From0, found);

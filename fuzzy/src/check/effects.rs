@@ -1,0 +1,189 @@
+//! Parts of a rule set that have no effect or no value: terms that are nearly constant, `clamp` of a centroid, a term
+//! after `any`, formulas without a finite value.
+
+use alloc::{format, string::String, vec::Vec};
+
+use super::{findings::At, shown};
+use crate::{
+    diagnostic::Diagnostic,
+    model::{Formula, MembershipFunction, Model, Term, Variable},
+    rule::Hedge,
+};
+
+/// The largest difference between degrees that count as equal.
+const EQUAL: f64 = 0.05;
+
+/// The least share of a range on which a constant degree is suspicious.
+const MOST: f64 = 0.98;
+
+/// The number of steps over a range.
+const STEPS: u32 = 200;
+
+/// Adds the findings, in the order of the model's parts.
+pub(super) fn of(model: &Model, at: &At<'_>, found: &mut Vec<Diagnostic>) {
+    for input in &model.inputs {
+        constants(input, at, found);
+    }
+    for output in &model.outputs {
+        let name = &output.variable.name;
+        if output.clamp && !output.defuzzifier.is_weighted() {
+            let message = format!("`clamp` of output `{name}` has no effect");
+            let help = "its values are always in the range; remove `clamp`";
+            found.push(Diagnostic::warning("no-effect", at.name(name), message).help(help));
+        }
+        for term in &output.variable.terms {
+            if let MembershipFunction::Function { formula } = &term.membership_function
+                && output.defuzzifier.takes_numbers()
+                && !has_a_value(model, formula)
+            {
+                let term = &term.name;
+                let message = format!(
+                    "the formula of term `{term}` of output `{name}` has no finite value at any of the inputs tried"
+                );
+                let help =
+                    "division by 0, and roots and logarithms of negative numbers, have no value";
+                let span = at.term_of(name, term);
+                found.push(Diagnostic::warning("no-value", span, message).help(help));
+            }
+        }
+    }
+    for (index, rule) in model.rules.iter().enumerate() {
+        rule.rule.condition.visit(&mut |proposition| {
+            let Some(term) = &proposition.term else {
+                return;
+            };
+            if proposition.hedges.contains(&Hedge::Any) {
+                let (input, term) = (&proposition.variable.text, &term.text);
+                let message = format!(
+                    "the term `{term}` after `any` has no effect in rule {}",
+                    index + 1
+                );
+                let help = format!(
+                    "write `{input} IS any` for every value of `{input}`, or `{input} IS {term}`"
+                );
+                let span = at.rule(index);
+                found.push(Diagnostic::warning("no-effect", span, message).help(help));
+            }
+        });
+    }
+}
+
+/// The degrees of a term at evenly spaced values of its variable.
+struct Degrees<'m> {
+    term: &'m Term,
+    at: Vec<f64>,
+    least: f64,
+    most: f64,
+}
+
+impl Degrees<'_> {
+    fn of<'m>(variable: &Variable, term: &'m Term) -> Degrees<'m> {
+        let width = variable.high - variable.low;
+        let x = |step: u32| variable.low + width * (f64::from(step) / f64::from(STEPS));
+        let at: Vec<f64> = (0..=STEPS).map(|step| term.membership(x(step))).collect();
+        Degrees {
+            term,
+            least: at.iter().copied().fold(f64::INFINITY, f64::min),
+            most: at.iter().copied().fold(0.0, f64::max),
+            at,
+        }
+    }
+
+    /// Whether the degree at each value is nearly the largest one.
+    fn is_top(&self) -> impl Iterator<Item = bool> {
+        self.at.iter().map(|degree| *degree > self.most - EQUAL)
+    }
+}
+
+/// Adds the terms of an input whose degree is nearly the same on the whole range, or on nearly the whole range,
+/// including values at which another term is true as well. Degrees below [`EQUAL`] on the whole range are reported by
+/// the analysis of terms outside the range, and a `constant` is intended.
+fn constants(input: &Variable, at: &At<'_>, found: &mut Vec<Diagnostic>) {
+    let degrees: Vec<Degrees<'_>> = input
+        .terms
+        .iter()
+        .map(|term| Degrees::of(input, term))
+        .collect();
+    for one in &degrees {
+        let is_constant = matches!(
+            one.term.membership_function,
+            MembershipFunction::Constant { .. }
+        );
+        if is_constant || one.most <= EQUAL {
+            continue;
+        }
+        if let Some((message, help)) = constant(input, one, &degrees) {
+            let span = at.term_of(&input.name, &one.term.name);
+            found.push(Diagnostic::warning("constant-term", span, message).help(help));
+        }
+    }
+}
+
+/// Returns the message and the help for a term that is nearly constant.
+fn constant(input: &Variable, one: &Degrees<'_>, all: &[Degrees<'_>]) -> Option<(String, String)> {
+    let (name, of) = (&one.term.name, &input.name);
+    if let MembershipFunction::Sigmoid { slope: 0.0, .. } = one.term.membership_function {
+        let message =
+            format!("`slope` of term `{name}` of input `{of}` is 0: its degree is 0.5 everywhere");
+        let help = "write a slope above 0 for a rising term, below 0 for a falling one";
+        return Some((message, help.into()));
+    }
+    let help = format!(
+        "check its numbers against the unit and the range [{}, {}] of `{of}`",
+        shown(input.low),
+        shown(input.high)
+    );
+    let (least, most) = (shown(rounded(one.least)), shown(rounded(one.most)));
+    if one.most - one.least < EQUAL {
+        let degrees = match least == most {
+            true => most,
+            false => format!("{least} to {most}"),
+        };
+        let message = format!(
+            "term `{name}` of input `{of}` is nearly constant: {degrees} on the whole range"
+        );
+        return Some((message, help));
+    }
+    let share = one.is_top().filter(|is_top| *is_top).count() as f64 / one.at.len() as f64;
+    if share < MOST {
+        return None;
+    }
+    let is_beside = |other: &&Degrees<'_>| {
+        let height = other.term.height;
+        other.term.name != *name
+            && (one.is_top().zip(&other.at))
+                .any(|(is_top, degree)| is_top && *degree > height - EQUAL)
+    };
+    let other = all.iter().find(is_beside)?.term;
+    let message = format!(
+        "term `{name}` of input `{of}` is {most} on {} % of the range, also where `{}` is {}",
+        libm::floor(100.0 * share),
+        other.name,
+        shown(rounded(other.height))
+    );
+    Some((message, help))
+}
+
+/// Rounds a degree to two decimal places.
+fn rounded(degree: f64) -> f64 {
+    libm::round(100.0 * degree) / 100.0
+}
+
+/// Returns whether a formula has a finite value at any of many points that are spread over the ranges of the variables.
+fn has_a_value(model: &Model, formula: &Formula) -> bool {
+    const POINTS: u32 = 500;
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    let variables: Vec<&Variable> = model.inputs.iter().chain(outputs).collect();
+    (0..=POINTS).any(|point| {
+        // The additive recurrence with the golden ratio; each variable has another multiple of it.
+        let value = |name: &str| {
+            let index = variables.iter().position(|variable| variable.name == name);
+            let Some((index, variable)) = index.and_then(|i| Some((i, variables.get(i)?))) else {
+                return f64::NAN;
+            };
+            let turns = f64::from(point) * (0.618_033_988_749_895 + 0.37 * index as f64);
+            variable.low + (variable.high - variable.low) * (turns - libm::floor(turns))
+        };
+        formula.evaluate(value).is_finite()
+    })
+}

@@ -1,0 +1,128 @@
+//! Suggestions for the terms and keys of a variable that are written in another notation.
+
+use alloc::{format, string::String, vec::Vec};
+
+use super::{TermSpans, VariableSpans, variables::unread, words::DEFUZZIFIERS};
+use crate::{
+    diagnostic::{Diagnostic, meant},
+    model::{Defuzzifier, Term, Variable},
+    tree::{Entry, Node, Value},
+};
+
+/// Reports a single error for terms that are numbers, `terms: {low: 0, high: 10}`; returns whether they are.
+pub(super) fn bare_numbers(
+    what: &str,
+    entry: &Entry<'_>,
+    is_weighted: bool,
+    variable: &mut Variable,
+    spans: &mut VariableSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> bool {
+    let Value::Mapping(pairs) = &entry.value.value else {
+        return false;
+    };
+    let numbers = pairs
+        .iter()
+        .filter_map(|(key, value)| match (&key.value, &value.value) {
+            (Value::Scalar(name), Value::Scalar(number)) => number
+                .as_number()
+                .map(|_| (key, name.text.as_str(), number.text.as_str())),
+            _ => None,
+        });
+    let numbers: Vec<(&Node, &str, &str)> = numbers.collect();
+    if entry.key != "terms" || numbers.is_empty() || numbers.len() != pairs.len() {
+        return false;
+    }
+    let list = |part: fn(&str, &str) -> String| {
+        let parts: Vec<String> = numbers
+            .iter()
+            .map(|(_, name, number)| part(name, number))
+            .collect();
+        parts.join(", ")
+    };
+    let peaks = list(|name, number| format!("{name}: {number}"));
+    let help = match is_weighted {
+        true => format!(
+            "write `terms: {{{}}}`",
+            list(|name, number| format!("{name}: {{constant: {number}}}"))
+        ),
+        false => format!(
+            "for peaks write `partition: {{{peaks}}}`; a term is a membership function: `{{triangle: [0, 1, 2]}}`"
+        ),
+    };
+    let message = format!("the terms of {what} are numbers, not membership functions");
+    let span = entry.value.span.clone();
+    findings.push(Diagnostic::error("wrong-type", span, message).help(help));
+    for (key, name, _) in numbers {
+        variable.terms.push(unread(name));
+        spans.terms.push(TermSpans {
+            name: key.span.clone(),
+            unread: true,
+            ..TermSpans::default()
+        });
+    }
+    spans.terms_unread = false;
+    true
+}
+
+/// Returns a suggestion for peaks in a list, `[cold: 10, hot: 35]`.
+pub(super) fn peaks_in_list(items: &[Node]) -> Option<String> {
+    let peaks = items.iter().map(|item| match &item.value {
+        Value::Mapping(pairs) => match pairs.as_slice() {
+            [(key, value)] => match (&key.value, &value.value) {
+                (Value::Scalar(name), Value::Scalar(peak)) => {
+                    Some(format!("{}: {}", name.text, peak.text))
+                }
+                _ => None,
+            },
+            _ => None,
+        },
+        _ => None,
+    });
+    let peaks: Vec<String> = peaks.collect::<Option<_>>()?;
+    (!peaks.is_empty()).then(|| format!("write braces: `{{{}}}`", peaks.join(", ")))
+}
+
+/// Returns a suggestion for peaks such as `{cold:10, hot:35}`, which YAML reads as names.
+pub(super) fn colons_without_space(entries: &[Entry<'_>]) -> Option<String> {
+    let peaks = entries.iter().map(|entry| {
+        let (name, peak) = entry.key.split_once(':')?;
+        peak.parse::<f64>().ok()?;
+        entry.value.is_null().then(|| format!("{name}: {peak}"))
+    });
+    let peaks: Vec<String> = peaks.collect::<Option<_>>()?;
+    (!peaks.is_empty()).then(|| format!("write `{{{}}}`", peaks.join(", ")))
+}
+
+/// Returns the defuzzifier that a misspelt word probably means.
+pub(super) fn likely_defuzzifier(node: &Node, variable: &Variable) -> Option<Defuzzifier> {
+    let Value::Scalar(scalar) = &node.value else {
+        return None;
+    };
+    let words = DEFUZZIFIERS.map(|(word, _)| word);
+    let meant = meant(&scalar.text, &words);
+    let mut likely = DEFUZZIFIERS.iter().filter(|(word, _)| meant.contains(word));
+    let is_number = |term: &Term| term.membership_function.number().is_some();
+    match likely.next() {
+        Some((_, defuzzifier)) => Some(*defuzzifier),
+        None => variable
+            .terms
+            .iter()
+            .any(is_number)
+            .then_some(Defuzzifier::WeightedAverage),
+    }
+}
+
+/// Returns a suggestion for a word of other programs in place of what happens if no rule fires.
+pub(super) fn meant_by(word: &str) -> Option<String> {
+    let is = |words: &[&str]| words.iter().any(|known| word.eq_ignore_ascii_case(known));
+    if is(&["keep", "hold", "last", "nc", "no_change"]) {
+        return Some("did you mean `previous`?".into());
+    }
+    if is(&["none", "nan", "na", "unknown"]) {
+        return Some("did you mean `undefined`? A value is written as `{value: 50}`".into());
+    }
+    let number = word.strip_prefix("value")?.trim();
+    number.parse::<f64>().ok()?;
+    Some(format!("write `{{value: {number}}}`"))
+}
