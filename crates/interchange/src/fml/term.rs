@@ -92,6 +92,7 @@ pub(super) fn read(
         name: name.to_owned(),
         membership_function: function,
         height: 1.0,
+        lower: None,
     };
     Some((term, spans))
 }
@@ -215,6 +216,7 @@ pub(super) fn tsk(
         name: name.to_owned(),
         membership_function,
         height: 1.0,
+        lower: None,
     };
     Some((term, spans))
 }

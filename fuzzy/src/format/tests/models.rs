@@ -95,6 +95,7 @@ fn any_variable() -> impl Strategy<Value = Variable> {
                             name,
                             membership_function,
                             height,
+                            lower: None,
                         });
                     variable.terms = terms.collect();
                 }
