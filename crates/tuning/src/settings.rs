@@ -107,6 +107,9 @@ pub enum TuneError {
         /// The number of such outputs.
         outputs: usize,
     },
+    /// The rule set has interval type-2 terms.
+    #[error("the rule set has type-2 terms, which cannot be tuned")]
+    Type2,
     /// A name that the model does not have.
     #[error("the model has no variable and no term `{name}`")]
     Unknown {
