@@ -52,7 +52,9 @@ impl NoPlan {
             NoPlan::KeepsPrevious { .. } => {
                 "give the output a value for where no rule fires, as `when_no_rule_fires: 0`, or leave that key out"
             }
-            NoPlan::Type2 => "remove the lower membership functions: the export has the upper ones then",
+            NoPlan::Type2 => {
+                "remove the lower membership functions: the export has the upper ones then"
+            }
             NoPlan::SeveralRisks { .. } => {
                 "write a profile for each risk, and run a monitor of each: the findings are the same"
             }

@@ -303,7 +303,9 @@ mod tests {
     use super::*;
 
     fn points(all: &[(f64, f64, f64)]) -> Vec<Weighted> {
-        let points = all.iter().map(|&(at, lower, upper)| Weighted { at, lower, upper });
+        let points = all
+            .iter()
+            .map(|&(at, lower, upper)| Weighted { at, lower, upper });
         points.collect()
     }
 

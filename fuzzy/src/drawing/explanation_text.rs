@@ -128,7 +128,11 @@ fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, 
         let _ = writeln!(
             text,
             "\n  aggregated set{}: degree over {}",
-            if output.low.is_some() { ", upper bound" } else { "" },
+            if output.low.is_some() {
+                ", upper bound"
+            } else {
+                ""
+            },
             visible(&output.name)
         );
         add_set(text, output, Scale::new(variable.low, variable.high));

@@ -209,9 +209,8 @@ impl Engine {
     pub(crate) fn memory(&self, rows: usize) -> Memory {
         let stage = &self.first;
         // Models with chains, rule blocks or interval type-2 terms are evaluated row by row.
-        let is_plain = self.chain.is_none()
-            && stage.arrays.blocks.is_empty()
-            && stage.bounds().is_none();
+        let is_plain =
+            self.chain.is_none() && stage.arrays.blocks.is_empty() && stage.bounds().is_none();
         Memory {
             rows: (is_plain && rows >= FEWEST_ROWS).then(|| {
                 let arrays = stage.batch.as_ref().unwrap_or(&stage.arrays);

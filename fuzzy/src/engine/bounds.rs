@@ -45,7 +45,11 @@ impl Clone for BoundsScratch {
 impl Stage {
     /// Compiles a valid model in which no output reads another output.
     pub(super) fn new(model: &Model) -> Self {
-        if !model.outputs.iter().any(|output| model.has_interval(output)) {
+        if !model
+            .outputs
+            .iter()
+            .any(|output| model.has_interval(output))
+        {
             return Stage::plain(model);
         }
         let reduction = |output: &Output| {
@@ -198,8 +202,7 @@ impl Bounds {
             };
             let number = |term: usize| number(&stage.arrays, index, term, upper);
             let strengths = (strengths(of_lower, lower), strengths(of_upper, upper));
-            let interval =
-                reduction.interval(strengths.0, strengths.1, number, workspace, points);
+            let interval = reduction.interval(strengths.0, strengths.1, number, workspace, points);
             outcome.state = match interval {
                 None => State::NoRuleFired,
                 Some((low, high)) => {

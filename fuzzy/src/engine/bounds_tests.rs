@@ -67,16 +67,25 @@ fn a_centroid_is_that_of_many_samples() {
         let engine = Engine::new(&model).unwrap();
         for food in [0.0, 1.5, 3.0, 4.5, 5.0, 7.0, 10.0] {
             let degree = |x: f64, bound: Bound| {
-                let [small, large] = [0, 1].map(|i| model.outputs[0].variable.terms[i].bound(bound, x));
+                let [small, large] =
+                    [0, 1].map(|i| model.outputs[0].variable.terms[i].bound(bound, x));
                 let bad = |bound| model.inputs[0].terms[0].bound(bound, food);
                 let first = implication.of(bad(bound), small);
                 let second = implication.of(1.0 - bad(bound.opposite()), large);
                 first.max(second)
             };
-            let expected = sampled((0.0, 30.0), |x| (degree(x, Bound::Lower), degree(x, Bound::Upper)));
+            let expected = sampled((0.0, 30.0), |x| {
+                (degree(x, Bound::Lower), degree(x, Bound::Upper))
+            });
             let (low, high) = interval(&engine, &[food]);
-            assert!((low - expected.0).abs() < 1e-6, "{food}: {low} {expected:?}");
-            assert!((high - expected.1).abs() < 1e-6, "{food}: {high} {expected:?}");
+            assert!(
+                (low - expected.0).abs() < 1e-6,
+                "{food}: {low} {expected:?}"
+            );
+            assert!(
+                (high - expected.1).abs() < 1e-6,
+                "{food}: {high} {expected:?}"
+            );
             let value = engine.evaluate(&[food]).unwrap()[0].value().unwrap();
             assert_eq!(value, low + 0.5 * (high - low));
         }
@@ -87,22 +96,41 @@ fn a_centroid_is_that_of_many_samples() {
 fn equal_bounds_give_the_ordinary_value() {
     let mut model: Model = TIPPER.parse().unwrap();
     let outputs = model.outputs.iter_mut().map(|output| &mut output.variable);
-    for term in model.inputs.iter_mut().chain(outputs).flat_map(|v| &mut v.terms) {
+    for term in model
+        .inputs
+        .iter_mut()
+        .chain(outputs)
+        .flat_map(|v| &mut v.terms)
+    {
         let lower = term.lower.as_mut().unwrap();
         lower.membership_function = term.membership_function.clone();
         lower.height = term.height;
     }
     let mut ordinary = model.clone();
-    let outputs = ordinary.outputs.iter_mut().map(|output| &mut output.variable);
-    for term in ordinary.inputs.iter_mut().chain(outputs).flat_map(|v| &mut v.terms) {
+    let outputs = ordinary
+        .outputs
+        .iter_mut()
+        .map(|output| &mut output.variable);
+    for term in ordinary
+        .inputs
+        .iter_mut()
+        .chain(outputs)
+        .flat_map(|v| &mut v.terms)
+    {
         term.lower = None;
     }
-    let (engine, ordinary) = (Engine::new(&model).unwrap(), Engine::new(&ordinary).unwrap());
+    let (engine, ordinary) = (
+        Engine::new(&model).unwrap(),
+        Engine::new(&ordinary).unwrap(),
+    );
     for i in 0..=100 {
         let food = f64::from(i) / 10.0;
         let value = ordinary.evaluate(&[food]).unwrap()[0].value().unwrap();
         let (low, high) = interval(&engine, &[food]);
-        assert!((low - value).abs() < 1e-13 && (high - value).abs() < 1e-13, "{food}");
+        assert!(
+            (low - value).abs() < 1e-13 && (high - value).abs() < 1e-13,
+            "{food}"
+        );
     }
 }
 
@@ -131,13 +159,18 @@ rules:
     let engine = Engine::new(&text.parse().unwrap()).unwrap();
     let outcomes = engine.evaluate(&[10.0]).unwrap();
     // The weights are in [0.25, 0.75] and [0.125, 0.375].
-    let State::Interval { low, high } = outcomes[0].state else { panic!() };
+    let State::Interval { low, high } = outcomes[0].state else {
+        panic!()
+    };
     assert!((low - 12.5 / 0.875).abs() < 1e-13 && (high - 37.5 / 0.625).abs() < 1e-13);
     let (low, high) = (-8.0 * 0.75 + 4.0 * 0.25, -8.0 * 0.25 + 4.0 * 0.75);
     assert_eq!(outcomes[1].state, State::Interval { low, high });
     // An output that no type-2 term affects has an ordinary value.
     assert_eq!(outcomes[2].state, State::Defined(8.0));
-    assert_eq!((outcomes[0].coverage, outcomes[0].dominant_rule), (0.75, Some(0)));
+    assert_eq!(
+        (outcomes[0].coverage, outcomes[0].dominant_rule),
+        (0.75, Some(0))
+    );
 }
 
 #[test]
@@ -147,7 +180,10 @@ fn an_empty_lower_set_gives_the_support() {
     let engine = Engine::new(&model).unwrap();
     // Between 4 and 6, only the upper degree of `bad` is above 0.
     assert_eq!(interval(&engine, &[5.0]), (0.0, 18.0));
-    assert_eq!(engine.evaluate(&[6.0]).unwrap()[0].state, State::NoRuleFired);
+    assert_eq!(
+        engine.evaluate(&[6.0]).unwrap()[0].state,
+        State::NoRuleFired
+    );
 }
 
 #[test]
@@ -156,7 +192,9 @@ fn batches_sequences_and_clones_give_the_outcomes_of_single_calls() {
     let foods: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.07 - 2.0).collect();
     let outcomes = engine.evaluate_batch(&[&foods]).unwrap();
     let mut values = alloc::vec![0.0; foods.len()];
-    engine.evaluate_columns(&[&foods], &mut [&mut values]).unwrap();
+    engine
+        .evaluate_columns(&[&foods], &mut [&mut values])
+        .unwrap();
     let mut scratch = engine.scratch();
     let mut sequence = crate::engine::Sequence::new(&engine);
     for ((food, outcome), value) in foods.iter().zip(&outcomes).zip(&values) {
@@ -164,7 +202,9 @@ fn batches_sequences_and_clones_give_the_outcomes_of_single_calls() {
         assert_eq!(Some(*value), outcome.value());
         let mut again = [Outcome::default()];
         scratch = scratch.clone();
-        engine.evaluate_with(&mut scratch, &[*food], &mut again).unwrap();
+        engine
+            .evaluate_with(&mut scratch, &[*food], &mut again)
+            .unwrap();
         assert_eq!(again[0], *outcome);
         assert_eq!(sequence.evaluate(&[*food]).unwrap()[0], *outcome);
     }
@@ -183,8 +223,11 @@ fn a_name_that_looks_like_a_lower_term_is_not_confused() {
                 .term("lower a", MembershipFunction::Constant { value: 0.1 }),
         )
         .output(
-            Output::new(Variable::new("y", 0.0, 9.0).term("one", MembershipFunction::Constant { value: 1.0 }))
-                .defuzzifier(Defuzzifier::WeightedSum),
+            Output::new(
+                Variable::new("y", 0.0, 9.0)
+                    .term("one", MembershipFunction::Constant { value: 1.0 }),
+            )
+            .defuzzifier(Defuzzifier::WeightedSum),
         )
         .operators(Operators::default())
         .rule(rule::parse("IF x IS a THEN y IS one").unwrap())

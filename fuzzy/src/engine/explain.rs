@@ -158,7 +158,11 @@ fn fired(known: &Known<'_>) -> Vec<FiredRule> {
         let operators = known.model.operators_of(rule);
         let degree = holds(&rule.rule.condition, operators, known, Bound::Lower);
         let strength = rule.rule.weight * degree;
-        if strength >= known.model.least_strength { strength } else { 0.0 }
+        if strength >= known.model.least_strength {
+            strength
+        } else {
+            0.0
+        }
     };
     let mut blocks: BTreeMap<usize, (Activation, Vec<Partial>)> = BTreeMap::new();
     for ((rule, degree), index) in known.model.rules.iter().zip(&mut degrees).zip(0..) {

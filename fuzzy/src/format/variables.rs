@@ -529,8 +529,7 @@ fn interval(
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Term> {
-    const HELP: &str =
-        "write both membership functions: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3]}}`";
+    const HELP: &str = "write both membership functions: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3]}}`";
     let mut others = fields.entries().iter();
     let other = others.find(|entry| !["upper", "lower"].contains(&entry.key));
     if let Some(other) = other {

@@ -8,7 +8,8 @@ use super::{
 };
 use crate::{
     model::{
-        Activation, LEAST_STRENGTH, MembershipFunction, Model, NoRuleFires, Output, SamplingRule, Variable, even_peaks,
+        Activation, LEAST_STRENGTH, MembershipFunction, Model, NoRuleFires, Output, SamplingRule,
+        Variable, even_peaks,
     },
     tree::Node,
 };

@@ -177,7 +177,9 @@ impl LearnError {
         match self {
             LearnError::Outputs { .. } => "learn with one of these outputs and those that it reads",
             LearnError::Chain { .. } => "mend the rules of the outputs that the last one reads",
-            LearnError::Type2 => "remove the lower membership functions for learning, and add them again afterwards",
+            LearnError::Type2 => {
+                "remove the lower membership functions for learning, and add them again afterwards"
+            }
             LearnError::Blocks => "remove `blocks` and its rules; add blocks again after learning",
             LearnError::ReadsInputs { .. } => {
                 "replace it by a number, such as `{constant: 5}`; `tune` fits functions of inputs to rows, for rules that you write"

@@ -99,8 +99,8 @@ pub use set::{FuzzySet, OfMaxima, Section, SetDefuzzifier, SetTerm, Strand};
 pub use crate::shape::Kind;
 
 use crate::rows::{each, set};
-pub(crate) use closed::{number, value_in_row};
 use closed::{closed, closed_apart, partition};
+pub(crate) use closed::{number, value_in_row};
 pub(crate) use firing::{fire, fire_row, has_cells_alone};
 use operators::{larger, smaller};
 pub(crate) use raising::{concluded_by, raised_by};

@@ -76,7 +76,12 @@ impl Validator<'_> {
             } else if lower.number().is_some() || matches!(lower, MembershipFunction::Linear { .. })
             {
                 let message = format!("the lower membership function of {what} is not a fuzzy set");
-                self.error("wrong-term", here, message, "write a set such as `triangle`");
+                self.error(
+                    "wrong-term",
+                    here,
+                    message,
+                    "write a set such as `triangle`",
+                );
             }
         }
     }
@@ -114,7 +119,12 @@ impl Validator<'_> {
             if output.samples.is_some() {
                 let message = format!("output `{name}` depends on type-2 terms and has `samples`");
                 let help = "remove `samples`: the interval is exact";
-                self.error("unsupported-type-2", or(&spans.samples, &spans.name), message, help);
+                self.error(
+                    "unsupported-type-2",
+                    or(&spans.samples, &spans.name),
+                    message,
+                    help,
+                );
             }
         }
         if let Some(index) = model.selected_type2_rule() {
@@ -181,5 +191,9 @@ fn highest(mut left: f64, mut right: f64, f: impl Fn(f64) -> f64) -> f64 {
 /// Rounds a number for a message.
 fn rounded(x: f64) -> f64 {
     let digits = libm::round(x * 1e6) / 1e6;
-    if digits == 0.0 || !digits.is_finite() { x } else { digits }
+    if digits == 0.0 || !digits.is_finite() {
+        x
+    } else {
+        digits
+    }
 }
