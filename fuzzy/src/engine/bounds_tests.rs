@@ -236,3 +236,95 @@ fn a_name_that_looks_like_a_lower_term_is_not_confused() {
     let (low, high) = interval(&Engine::new(&model).unwrap(), &[0.5]);
     assert!((low - 0.5).abs() < 1e-15 && (high - 0.9).abs() < 1e-15);
 }
+
+#[test]
+fn the_middle_is_passed_on_in_a_chain() {
+    let rules = |first: &str, second: &str| {
+        format!(
+            "
+fuzzy: 1
+name: chain
+inputs:
+  food: {{range: [0, 10], terms: {{bad: {{upper: {{left_shoulder: [2, 6]}}, lower: {{left_shoulder: [0, 4]}}}}, good: {{right_shoulder: [4, 8]}}}}}}{first}
+outputs:
+{second}
+"
+        )
+    };
+    let mood = "{range: [0, 1], terms: {low: {upper: {left_shoulder: [0.2, 0.8]}, lower: {left_shoulder: [0.1, 0.6]}}, high: {right_shoulder: [0.3, 0.9]}}}";
+    let tip = "  tip: {range: [0, 30], terms: {small: {triangle: [0, 6, 18]}, large: {triangle: [12, 24, 30]}}}\n";
+    let of_mood = "  - IF food IS bad THEN mood IS low\n  - IF food IS NOT bad THEN mood IS high\n";
+    let of_tip = "  - IF mood IS low THEN tip IS small\n  - IF mood IS NOT low AND food IS good THEN tip IS large\n";
+    let chain = rules(
+        "",
+        &format!("  mood: {mood}\n{tip}rules:\n{of_mood}{of_tip}"),
+    );
+    let first = rules("", &format!("  mood: {mood}\nrules:\n{of_mood}"));
+    let second = rules(
+        &format!("\n  mood: {mood}"),
+        &format!("{tip}rules:\n{of_tip}"),
+    );
+    let [chain, first, second] =
+        [chain, first, second].map(|text| Engine::new(&text.parse().unwrap()).unwrap());
+    assert!(chain.table().is_none() && chain.chain().is_none());
+    for food in [0.0, 2.5, 4.5, 5.5, 7.0, 10.0] {
+        let outcomes = chain.evaluate(&[food]).unwrap();
+        let mood = first.evaluate(&[food]).unwrap()[0];
+        assert_eq!(outcomes[0], mood);
+        let tip = second.evaluate(&[food, mood.value().unwrap()]).unwrap()[0];
+        assert_eq!(outcomes[1].state, tip.state, "{food}");
+        assert!(matches!(tip.state, State::Interval { .. }));
+        // An explanation has the same ends, and the bounds of the strengths.
+        let explanation = chain.explain(&[food]).unwrap();
+        assert_eq!(explanation.outputs[1].low, outcomes[1].low());
+        for rule in &explanation.rules {
+            assert!(
+                rule.lower.is_some_and(|lower| lower <= rule.strength),
+                "{rule:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn blocks_have_their_own_operators() {
+    let text = |blocks: &str| {
+        format!(
+            "
+fuzzy: 1
+name: blocks
+inputs:
+  x: {{range: [0, 1], terms: {{a: {{upper: {{constant: 0.8}}, lower: {{constant: 0.5}}}}}}}}
+  y: {{range: [0, 1], terms: {{b: {{upper: {{constant: 0.5}}, lower: {{constant: 0.4}}}}}}}}
+outputs: {{z: {{range: [0, 9], terms: {{one: {{constant: 1}}, two: {{constant: 10}}}}, defuzzifier: weighted_sum}}}}
+{blocks}"
+        )
+    };
+    let engine = |blocks: &str| Engine::new(&text(blocks).parse().unwrap()).unwrap();
+    let both = engine(
+        "blocks:
+  product: {operators: {and: product}, rules: [IF x IS a AND y IS b THEN z IS one]}
+  minimum: {rules: [IF x IS NOT a AND y IS b THEN z IS two WITH 0.5]}
+  off: {enabled: false, rules: [IF x IS a THEN z IS two]}",
+    );
+    let (low, high) = interval(&both, &[0.5, 0.5]);
+    // The weights are 0.5 * 0.4 to 0.8 * 0.5, and half of min(0.2, 0.4) to min(0.5, 0.5).
+    assert!((low - (0.2 + 1.0)).abs() < 1e-14, "{low}");
+    assert!((high - (0.4 + 2.5)).abs() < 1e-14, "{high}");
+}
+
+#[test]
+fn a_written_rule_set_reads_back_as_the_same() {
+    let model: Model = TIPPER.parse().unwrap();
+    let text = crate::yaml::to_string(&model);
+    assert_eq!(text.parse::<Model>().unwrap(), model);
+    let json = serde_json::to_string(&model).unwrap();
+    assert_eq!(serde_json::from_str::<Model>(&json).unwrap(), model);
+    let engine = Engine::new(&model).unwrap();
+    let outcome = serde_json::to_value(engine.evaluate(&[5.0]).unwrap()[0]).unwrap();
+    let (low, high) = interval(&engine, &[5.0]);
+    assert_eq!(
+        (&outcome["low"], &outcome["high"]),
+        (&low.into(), &high.into())
+    );
+}
