@@ -167,7 +167,8 @@ fn variable(rng: &mut Rng, name: &str, terms: usize, curved: bool) -> Variable {
     let high = low + between(rng, 0.5, 4.0) * scale;
     let mut variable = Variable::new(name, low, high);
     for i in 0..terms {
-        let (upper, lower) = functions(rng, low, high, curved && rng.bool());
+        let is_curved = curved && rng.bool();
+        let (upper, lower) = functions(rng, low, high, is_curved);
         let height = if rng.bool() {
             1.0
         } else {
@@ -216,7 +217,10 @@ pub fn model(seed: u64, kind: Kind) -> Option<(Model, Vec<Vec<f64>>)> {
     let rng = &mut Rng::with_seed(seed);
     let curved = kind == Kind::Curved;
     let inputs: Vec<Variable> = (0..rng.usize(1..3))
-        .map(|i| variable(rng, ["x", "y"][i], 3, rng.bool()))
+        .map(|i| {
+            let is_curved = rng.bool();
+            variable(rng, ["x", "y"][i], 3, is_curved)
+        })
         .collect();
     let terms = rng.usize(1..4);
     let mut output = Output::new(variable(rng, "out", terms, curved));
