@@ -1,4 +1,4 @@
-//! Profiles: where the inputs of a rule set come from, and when it warns.
+//! Profiles: the sources of the inputs of a rule set, and the thresholds of warnings.
 
 use std::{fs, io, path::Path, sync::Arc};
 
@@ -9,14 +9,17 @@ use flagred::{
 use fuzzy::Source;
 use pyo3::prelude::*;
 
-use crate::errors::{data_error, diagnostics, os_error, rule_set_error};
+use crate::{
+    errors::{data_error, diagnostics, os_error, rule_set_error},
+    rule_set,
+};
 
 /// A profile with its rule set: which signals of a flight are the inputs, and at which risk it warns.
 ///
 /// Parameters
 /// ----------
 /// name
-///     A shipped profile, ``flagred`` or ``flagred-paper``, or a file. The rule set of a file is looked for beside it.
+///     A shipped profile, ``flagred`` or ``flagred-paper``, or a file. The rule set of a file must be in the same folder.
 ///
 /// Raises
 /// ------
@@ -33,7 +36,7 @@ use crate::errors::{data_error, diagnostics, os_error, rule_set_error};
 #[pyclass(frozen, module = "flagred")]
 pub(crate) struct Profile {
     pub(crate) loaded: Arc<Loaded>,
-    /// What it was asked for by.
+    /// The name or path that it was loaded by.
     pub(crate) file: String,
 }
 
@@ -55,7 +58,7 @@ pub(crate) fn _built_in(name: &str) -> Option<&'static str> {
         .map(|known| known.text)
 }
 
-/// A profile that was loaded from a file or by its name, or why it was not.
+/// A loaded profile, or the error of loading it.
 fn usable(
     py: Python<'_>,
     file: &str,
@@ -86,7 +89,7 @@ impl Profile {
         usable(py, name, loaded)
     }
 
-    /// A profile of its text and that of its rule set, as a pickle has them.
+    /// Creates a profile from its text and that of its rule set, as they are pickled.
     #[staticmethod]
     fn _of_texts(py: Python<'_>, file: &str, profile: String, rules: String) -> PyResult<Self> {
         let [profile, rules] = [profile, rules].map(Source::new);
@@ -115,26 +118,49 @@ impl Profile {
         inputs.map(|input| input.name.clone()).collect()
     }
 
-    /// The signals that it needs beside the commands of the motors.
+    /// The signals that it requires besides the commands of the motors.
     #[getter]
     fn signals(&self) -> Vec<String> {
         let signals = self.loaded.estimator.profile().signals();
         signals.into_iter().map(str::to_owned).collect()
     }
 
-    /// The profile as it is written.
+    /// The text of the profile.
     #[getter]
     fn text(&self) -> &str {
         self.loaded.profile.text()
     }
 
-    /// Its rule set as it is written.
+    /// The text of its rule set.
     #[getter]
     fn rules_text(&self) -> &str {
         self.loaded.rules.text()
     }
 
-    /// What is doubtful about it.
+    /// The profile and its rule set as code for firmware, as ``flagred export`` writes it.
+    ///
+    /// Parameters
+    /// ----------
+    /// language
+    ///     ``rust``, ``c``, or ``lua`` for a script that ArduPilot runs.
+    ///
+    /// Raises
+    /// ------
+    /// DataError
+    ///     The language cannot express the profile.
+    fn to_code(&self, language: &str) -> PyResult<String> {
+        let Some(chosen) = rule_set::language(language) else {
+            let message = format!("`{language}` is not a language of exported code");
+            return Err(data_error(
+                message,
+                Some("write `rust`, `c` or `lua`".into()),
+            ));
+        };
+        let code = flagred_cli::export_profile(&self.loaded.estimator, chosen);
+        code.map_err(|error| data_error(error, None))
+    }
+
+    /// The warnings about it.
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         diagnostics(

@@ -55,7 +55,7 @@ pub struct Record {
     pub(crate) upsets: Vec<Upset>,
     pub(crate) steps: Vec<Step>,
     /// The results of each profile.
-    pub(crate) said: Vec<Said>,
+    pub(crate) said: Vec<ProfileResult>,
 }
 
 /// The first upset in a time in the air.
@@ -76,7 +76,7 @@ pub(crate) struct Step {
 
 /// The results of a profile for a flight.
 #[derive(Default)]
-pub(crate) struct Said {
+pub(crate) struct ProfileResult {
     /// The verdict; `None` is NA.
     pub(crate) verdict: Option<Level>,
     /// The periods of WARN or FAIL, from raised until last reached. A WARN that is raised to FAIL counts as one.
@@ -89,7 +89,7 @@ pub(crate) struct Said {
 /// The reason why a flight cannot be evaluated.
 #[derive(Debug, thiserror::Error)]
 pub enum Unusable {
-    /// It cannot be read, or is not a flight log.
+    /// The file cannot be read, or is not a flight log.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// Motors, attitude or times in the air are missing.
@@ -100,7 +100,7 @@ pub enum Unusable {
         /// The missing information.
         lacks: Incomplete,
     },
-    /// The baselines cannot be computed for it.
+    /// The baselines cannot be computed for the flight.
     #[error("`{name}` cannot be evaluated: {problem}")]
     Baselines {
         /// The name of the flight for the user.
@@ -134,7 +134,7 @@ impl Record {
     /// Evaluates a flight; the risk should predict critical errors within `horizon_s` seconds.
     ///
     /// # Errors
-    /// If motors, attitude or times in the air are missing, or if the flight was not kept completely.
+    /// If motors, attitude or times in the air are missing, or if the reader left part of the flight out.
     pub fn new(
         name: &str,
         flight: &Flight,
@@ -272,7 +272,7 @@ fn follow(
     flight: &Flight,
     estimators: &Estimators,
     steps: &mut [Step],
-) -> Result<Vec<(Said, Vec<Span>)>, String> {
+) -> Result<Vec<(ProfileResult, Vec<Span>)>, String> {
     let names = log::carried(flight, &estimators.signals());
     let mut running: Vec<Running> = estimators
         .profiles
@@ -328,7 +328,7 @@ fn follow(
             }
             assessor.finish()
         });
-        let said = assessment.map_or_else(Said::default, |assessment| Said {
+        let said = assessment.map_or_else(ProfileResult::default, |assessment| ProfileResult {
             verdict: match assessment.verdict {
                 Verdict::Known(level) => Some(level),
                 Verdict::NotAvailable(_) => None,

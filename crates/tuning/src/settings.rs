@@ -111,7 +111,7 @@ pub enum TuneError {
     #[error("the rule set has type-2 terms, which cannot be tuned")]
     Type2,
     /// A name that the model does not have.
-    #[error("the model has no variable and no term `{name}`")]
+    #[error("the rule set has no variable and no term `{name}`")]
     Unknown {
         /// The name.
         name: String,
@@ -120,7 +120,7 @@ pub enum TuneError {
     #[error("nothing may move")]
     NothingMoves,
     /// No input reduces the cross-validation error.
-    #[error("no input tells more about the output than its mean")]
+    #[error("no input predicts the output better than its mean")]
     NoInputHelps,
     /// There are no rows.
     #[error("there are no rows")]

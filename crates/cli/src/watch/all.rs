@@ -1,4 +1,4 @@
-//! `flagred watch --all`: every vehicle on one or several links, a line each. It only listens.
+//! `flagred watch --all`: every vehicle on one or several links, one line each. It only receives.
 
 use std::{
     io::{self, IsTerminal},
@@ -32,10 +32,10 @@ use crate::{
     failure::{Exit, Failure},
 };
 
-/// How often time passes for all vehicles, and how often the screen is drawn.
+/// Intervals at which all vehicles are updated, and at which the screen is drawn.
 const TICK: Duration = Duration::from_millis(50);
 const FRAME: Duration = Duration::from_millis(500);
-/// Packets that wait to be evaluated; then the links wait, too.
+/// Maximum number of packets queued for evaluation. When the queue is full, the links wait.
 const PACKETS: usize = 20_000;
 
 /// A packet or a message from a link.
@@ -44,7 +44,7 @@ enum LinkItem {
     Note(String),
 }
 
-/// How it is shown.
+/// The form of the output.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Face {
     Json,
@@ -52,7 +52,7 @@ enum Face {
     Screen,
 }
 
-/// Watches until it is interrupted.
+/// Watches until interrupted.
 pub(super) fn run(
     endpoints: &[Endpoint],
     (jsonl, waits): (bool, bool),
@@ -84,7 +84,7 @@ pub(super) fn run(
     }
     drop(sender);
     let printer = Printer::new(if face == Face::Screen { FRAMES } else { LINES });
-    let mut shown = Shown {
+    let mut shown = LiveOutput {
         face,
         printer,
         endpoints,
@@ -103,7 +103,7 @@ pub(super) fn run(
     Ok(exit_of(&worst(&all), FailOn::Warn))
 }
 
-/// A link, in a thread of its own.
+/// Receives from a link, in its own thread.
 fn listen(
     link: usize,
     name: &str,
@@ -138,7 +138,7 @@ fn listen(
         let mut is_heard =
             note.is_none_or(|note| sender.send((link, LinkItem::Note(note))).is_ok());
         while let Some(packet) = stream.packet() {
-            // Nothing rests on messages that cannot be verified.
+            // Messages that cannot be verified are not used.
             if packet.sound == Some(true) {
                 let heard = LinkItem::Packet(source, packet.bytes.to_vec());
                 is_heard &= sender.send((link, heard)).is_ok();
@@ -153,7 +153,7 @@ fn listen(
 fn follow<'e>(
     receiver: &Receiver<(usize, LinkItem)>,
     fleet: &mut Fleet<'e>,
-    shown: &mut Shown<'e>,
+    shown: &mut LiveOutput<'e>,
     start: Instant,
     stop: &AtomicBool,
 ) {
@@ -187,15 +187,15 @@ fn follow<'e>(
     }
 }
 
-/// Where it is told.
-struct Shown<'e> {
+/// Prints events in the chosen form.
+struct LiveOutput<'e> {
     face: Face,
     printer: Printer,
     endpoints: &'e [Endpoint],
     estimator: &'e Estimator,
 }
 
-impl<'e> Shown<'e> {
+impl<'e> LiveOutput<'e> {
     fn start(&mut self, names: &[String]) {
         let profile = &self.estimator.profile().name;
         let text = match self.face {
@@ -208,7 +208,7 @@ impl<'e> Shown<'e> {
         self.printer.print(text);
     }
 
-    /// A vehicle by its system and where it is heard.
+    /// The name of a vehicle: its system and its address.
     fn name(&self, id: Id) -> String {
         let from = match id.source {
             Some(address) => address.to_string(),
@@ -253,7 +253,7 @@ impl<'e> Shown<'e> {
         }
     }
 
-    /// The text of a screen of so many columns and rows.
+    /// The text of a screen of this size, in columns and rows.
     fn frame(&self, fleet: &Fleet<'e>, (columns, rows): (usize, usize)) -> String {
         let views = fleet.views();
         let in_air = views.iter().filter(|(_, view)| view.is_in_air).count();
@@ -357,8 +357,8 @@ impl<'e> Shown<'e> {
     }
 }
 
-/// The terminal is as it was before, however the watch ends.
-impl Drop for Shown<'_> {
+/// Restores the terminal, however the watch ends.
+impl Drop for LiveOutput<'_> {
     fn drop(&mut self) {
         if self.face == Face::Screen {
             self.printer.print(screen::LEAVE.to_owned());
@@ -366,7 +366,7 @@ impl Drop for Shown<'_> {
     }
 }
 
-/// What fits in a row: a full one would wrap.
+/// Truncates a line to a row, less one character: a full row would wrap.
 fn cut(line: &str, columns: usize) -> String {
     line.chars().take(columns.saturating_sub(1)).collect()
 }
@@ -380,7 +380,7 @@ mod tests {
     };
 
     #[test]
-    fn the_gravest_vehicle_is_on_the_smallest_screen() {
+    fn the_vehicle_in_most_danger_is_on_the_smallest_screen() {
         let estimator = estimator();
         let mut air = Air::new(&estimator);
         let calm: Vec<(u8, bool, [u16; 4])> =
@@ -399,7 +399,7 @@ mod tests {
             &[&calm[..], &[(2, true, AT_LIMITS), on_the_ground]].concat(),
         );
         let endpoints = ["udpin:0.0.0.0:14550".parse().unwrap()];
-        let shown = Shown {
+        let shown = LiveOutput {
             face: Face::Screen,
             printer: Printer::new(1),
             endpoints: &endpoints,

@@ -1,4 +1,4 @@
-//! What a watch tells.
+//! Events of a watch.
 
 use flagred::{
     flight::{Cause, Finding, Verdict},
@@ -130,7 +130,7 @@ pub(crate) enum Event {
     Ended { finding: Finding },
     /// A flight is over, or what was seen of it. Its line is called after its end.
     #[serde(skip)]
-    Over { end: End, flown: Flown },
+    Over { end: End, flown: FlightSummary },
 }
 
 /// A vehicle in an event.
@@ -153,15 +153,15 @@ fn about<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result<S::Ok, S::Er
     about.serialize(serializer)
 }
 
-/// How a flight, or what was seen of it, ended.
+/// How a flight ended, or the part of it that was received.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum End {
     /// The vehicle landed.
     Landed,
-    /// It was in the air when it was last known.
+    /// The vehicle was in the air when contact was lost.
     Lost(Lost),
-    /// It is still in the air, and is heard.
-    Left(Left),
+    /// The vehicle is still in the air and is received.
+    LeftInAir(StopReason),
 }
 
 /// What was lost in the air.
@@ -177,20 +177,20 @@ pub(crate) enum Lost {
 /// Why a flight is not followed to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Left {
+pub(crate) enum StopReason {
     /// The watch ended.
     WatchEnded,
     /// Motors or limits became known too late to assess the flight so far anew: the rest is a flight of its own.
     SetUpAnew,
 }
 
-/// What was seen of a flight.
+/// A flight, or the part of it that was received.
 #[derive(Debug, Clone)]
-pub(crate) struct Flown {
+pub(crate) struct FlightSummary {
     /// The latest time of the vehicle's clock.
     pub(crate) t_s: Option<f64>,
     pub(crate) verdict: Verdict,
-    /// The level of what was seen; `None` where too little was.
+    /// The level of the received part; `None` if it was too short.
     pub(crate) level_seen: Option<Level>,
     pub(crate) risk_max: Option<f64>,
 }
