@@ -39,7 +39,7 @@ const HEDGES: [Hedge; 5] = [
 
 /// The kinds of terms of the outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "each says what it is")]
+#[expect(missing_docs, reason = "named by its variants")]
 pub enum Kind {
     Straight,
     Curved,
@@ -212,7 +212,7 @@ fn condition(rng: &mut Rng, inputs: &[Variable]) -> Condition {
     }
 }
 
-/// The model of a seed, and three points; `None` where the terms that it draws are refused.
+/// Returns the random model of a seed with three points; `None` if the model is not valid.
 pub fn model(seed: u64, kind: Kind) -> Option<(Model, Vec<Vec<f64>>)> {
     let rng = &mut Rng::with_seed(seed);
     let curved = kind == Kind::Curved;

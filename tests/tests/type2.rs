@@ -1,10 +1,10 @@
-//! Interval type-2 rule sets, held against sums over many samples with every switch point, and against published figures.
+//! Interval type-2 rule sets, compared with sums over many samples for all switch points, and with published figures.
 
 use flagred_tests::random_type2::{Kind, model};
 use flagred_tests::reference::type2;
 use fuzzy::{Engine, Model};
 
-/// Compares so many random models, each at three points. Returns the number of values.
+/// Compares `count` random models, each at three points. Returns the number of intervals.
 fn compare(kind: Kind, count: usize, samples: usize, tolerance: f64) -> usize {
     let models = (0..).filter_map(|seed| Some((seed, model(seed, kind)?)));
     let (mut values, mut worst) = (0, 0.0_f64);
@@ -78,7 +78,7 @@ fn thousands_of_intervals() {
     assert!(compare(Kind::Numbers, 20_000, 0, 1e-12) > 40_000);
 }
 
-/// The centroid of a word of the code book of Wu and Mendel (A comparative study of ranking methods, similarity measures and
+/// Returns the centroid of a word of the code book of Wu and Mendel (A comparative study of ranking methods, similarity measures and
 /// uncertainty measures for interval type-2 fuzzy sets, Information Sciences 179, 2009), whose parameters and centroids are
 /// printed with two decimals.
 fn centroid(upper: &str, lower: &str) -> (f64, f64) {

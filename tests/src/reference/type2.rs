@@ -1,5 +1,5 @@
-//! What an interval type-2 rule set means, by definition: intervals of degrees through every operator, and the centroid for
-//! each of many switch points. Slow, and nothing else.
+//! The definition of interval type-2 rule sets, apart from the engine: intervals of degrees through every operator, and the
+//! centroid for each of many switch points. Slow.
 
 use fuzzy::model::{Defuzzifier, Model, Output, Term};
 use fuzzy::rule::{Condition, Proposition};
@@ -12,7 +12,7 @@ type Bounds = [f64; 2];
 
 /// The interval of an output.
 #[derive(Debug, Clone, Copy)]
-#[expect(missing_docs, reason = "each says what it is")]
+#[expect(missing_docs, reason = "named by its fields")]
 pub struct Interval {
     pub low: f64,
     pub high: f64,
@@ -20,8 +20,8 @@ pub struct Interval {
     pub lower_share: f64,
 }
 
-/// The interval of an output at a point; `None` where no rule fires. The range is divided at all parameters of the terms, and
-/// each part into so many samples.
+/// Returns the interval of an output at a point; `None` if no rule fires. The range is divided at all parameters of the terms,
+/// and each part has `samples` samples.
 pub fn interval(model: &Model, output: &Output, point: &[f64], samples: usize) -> Option<Interval> {
     let fired: Vec<(Bounds, &Term)> = model
         .rules
