@@ -134,17 +134,26 @@ fn interval_rule_set(seed: u64) -> String {
     system.to_string()
 }
 
-#[test]
-#[ignore = "needs Python with pyit2fls: tests/peer/pyit2fls.sh"]
-fn the_samples_of_pyit2fls_approach_our_intervals() {
+/// Writes random interval type-2 rule sets with their intervals.
+fn interval_rule_sets() -> Folder {
     let folder = Folder::new();
     for seed in 0..10 {
         folder.file(&format!("random-{seed}.json"), interval_rule_set(seed));
     }
-    ask(
-        python(),
-        "pyit2fls_type2_peer.py",
-        &folder,
-        "10 rule sets, 0 numbers of samples with other intervals",
-    );
+    folder
+}
+
+#[test]
+#[ignore = "needs Python with pyit2fls: tests/peer/pyit2fls.sh"]
+fn the_samples_of_pyit2fls_approach_our_intervals() {
+    let expected = "10 rule sets, 0 numbers of samples with other intervals";
+    let folder = interval_rule_sets();
+    ask(python(), "pyit2fls_type2_peer.py", &folder, expected);
+}
+
+#[test]
+#[ignore = "needs Python, and takes a minute: tests/peer/pyit2fls.sh"]
+fn intervals_computed_with_fractions_equal_ours() {
+    let expected = "100 ends of intervals";
+    ask(python(), "type2_peer.py", &interval_rule_sets(), expected);
 }
