@@ -185,6 +185,11 @@ fn compile(
             at.of(&["inputs", input, "if_missing"]),
             format!("write a number from {low} to {high}"),
         ),
+        EstimatorError::Type2 => (
+            "type-2-terms",
+            at.of(&["rules"]),
+            "name a rule set whose terms have one membership function each".into(),
+        ),
         EstimatorError::Rules(_) | EstimatorError::Evaluate(_) => (
             "rule-set",
             at.of(&["rules"]),

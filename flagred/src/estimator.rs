@@ -110,6 +110,9 @@ pub enum EstimatorError {
         /// The output.
         output: String,
     },
+    /// The rule set has interval type-2 terms.
+    #[error("the rule set has type-2 terms, with which a risk is not supported")]
+    Type2,
 }
 
 impl Estimator {
@@ -117,8 +120,8 @@ impl Estimator {
     ///
     /// # Errors
     ///
-    /// If the rule set does not compile, if the inputs of both differ, if the range of an output is not a percentage,
-    /// or if an output keeps its previous value.
+    /// If the rule set does not compile or has type-2 terms, if the inputs of both differ, if the range of an output is
+    /// not a percentage, or if an output keeps its previous value.
     pub fn new(profile: &Profile, model: &Model) -> Result<Estimator, EstimatorError> {
         Estimator::with_engine(profile, &Engine::new(model)?)
     }
@@ -129,6 +132,9 @@ impl Estimator {
         engine: &Engine,
     ) -> Result<Estimator, EstimatorError> {
         let model = engine.model();
+        if model.has_type2_terms() {
+            return Err(EstimatorError::Type2);
+        }
         let others = profile.other_risks.iter().map(|risk| {
             let profile = profile.of_risk(risk);
             Estimator::with_engine(&profile, engine)

@@ -27,6 +27,9 @@ pub enum NoPlan {
         /// The output.
         output: String,
     },
+    /// The rule set has interval type-2 terms.
+    #[error("the rule set has type-2 terms, which cannot be written as a table")]
+    Type2,
     /// The profile has several risks.
     #[error(
         "the profile has the risks `{output}` and `{other}`, but exported code supports only one"
@@ -51,6 +54,9 @@ impl NoPlan {
             NoPlan::KeepsPrevious { .. } => {
                 "set `when_no_rule_fires` to a number, such as 0, or leave that key out"
             }
+            NoPlan::Type2 => {
+                "remove the lower membership functions: the export has the upper ones then"
+            }
             NoPlan::SeveralRisks { .. } => {
                 "write a profile for each risk, and run a monitor of each: the findings are the same"
             }
@@ -62,7 +68,7 @@ impl NoPlan {
 ///
 /// # Errors
 ///
-/// If an output has no closed form, or keeps its previous value.
+/// If an output has no closed form, or keeps its previous value, or the rule set has type-2 terms.
 pub fn rules(engine: &Engine) -> Result<Rules<'_>, NoPlan> {
     let mut outputs = engine.model().outputs.iter();
     if let Some(output) = outputs.find(|output| output.keeps_previous()) {
@@ -75,6 +81,9 @@ pub fn rules(engine: &Engine) -> Result<Rules<'_>, NoPlan> {
 
 /// The rule set with the values of these outputs only.
 pub(crate) fn rules_for(engine: &Engine, mut outputs: Range<usize>) -> Result<Rules<'_>, NoPlan> {
+    if engine.model().has_type2_terms() {
+        return Err(NoPlan::Type2);
+    }
     let (chain, table) = (engine.chain(), engine.table());
     let open = match (chain, table) {
         (Some(chain), _) => outputs.find_map(|output| chain.open(output).next()),

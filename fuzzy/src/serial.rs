@@ -27,18 +27,24 @@ pub(crate) fn rule_numbers<S: Serializer>(
 }
 
 /// Serializes as `{value, state, coverage, dominant_rule, clamped}`. `value` and `dominant_rule` are null if there is
-/// no value or no rule fired.
+/// no value or no rule fired. The outcome of interval type-2 terms also has `low` and `high`.
 impl Serialize for Outcome {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let state = match self.state {
-            State::Defined(_) => "defined",
+            State::Defined(_) | State::Interval { .. } => "defined",
             State::Default(_) => "default",
             State::Previous(_) => "previous",
             State::NoRuleFired => "no_rule_fired",
             State::InputNotFinite => "input_not_finite",
         };
-        let mut fields = serializer.serialize_struct("Outcome", 5)?;
+        let is_interval = matches!(self.state, State::Interval { .. });
+        let count = if is_interval { 7 } else { 5 };
+        let mut fields = serializer.serialize_struct("Outcome", count)?;
         fields.serialize_field("value", &self.value())?;
+        if is_interval {
+            fields.serialize_field("low", &self.low())?;
+            fields.serialize_field("high", &self.high())?;
+        }
         fields.serialize_field("state", state)?;
         fields.serialize_field("coverage", &self.coverage)?;
         fields.serialize_field("dominant_rule", &self.dominant_rule.map(|index| index + 1))?;

@@ -17,6 +17,7 @@ use crate::{
 
 mod blocks;
 mod rules;
+mod type2;
 mod variables;
 
 /// The maximum number of inputs and outputs of a model.
@@ -100,8 +101,12 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let no_spans = VariableSpans::default();
     for (i, input) in model.inputs.iter().enumerate() {
         let spans = spans.inputs.get(i).unwrap_or(&no_spans);
+        let first = validator.findings.len();
         validator.variable(&format!("input `{}`", input.name), input, spans);
         validator.terms_are_sets(input, spans);
+        if validator.findings.len() == first {
+            validator.bounds(&format!("input `{}`", input.name), input, spans);
+        }
     }
     if model.outputs.is_empty() {
         validator.findings.push(
@@ -149,6 +154,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         }
     }
     validator.blocks(spans);
+    validator.interval_outputs(spans);
     validator.findings.extend(circles(model, spans));
     validator.findings
 }
@@ -170,9 +176,13 @@ fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
     let most = variables().enumerate().max_by_key(|(_, v)| v.terms.len());
     let (widest, terms, of) = most.map_or((0, 0, ""), |(i, v)| (i, v.terms.len(), &*v.name));
     let in_all = variables().map(|v| v.terms.len()).sum();
-    let points = |term: &Term| match &term.membership_function {
+    let points_of = |function: &MembershipFunction| match function {
         MembershipFunction::Piecewise { points } => points.len(),
         _ => 0,
+    };
+    let points = |term: &Term| {
+        let lower = term.lower.as_ref().map(|lower| &lower.membership_function);
+        points_of(&term.membership_function).max(lower.map_or(0, points_of))
     };
     let of_term = variables().enumerate().flat_map(|(i, v)| {
         let terms = v.terms.iter();

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Compares the values of exported FCL in PyIT2FLS. Exits with 3 without Python.
+# Compares the values of exported FCL in PyIT2FLS, and its intervals of type-2 rule sets. Exits with 3 without Python.
 set -eu
 cd "$(dirname "$0")/../.."
 venv=target/pyit2fls

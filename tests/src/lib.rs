@@ -5,6 +5,7 @@ mod folder;
 pub mod fuzzing;
 pub mod log_writer;
 pub mod random_models;
+pub mod random_type2;
 pub mod reference;
 pub mod schema;
 pub mod simulated;

@@ -1,5 +1,6 @@
 //! Evaluation does not allocate, according to an allocator that counts.
 
+use flagred_tests::random_type2::{Kind, model};
 use fuzzy::Engine;
 use fuzzy::engine::Outcome;
 use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Implication, MembershipFunction, Model};
@@ -41,6 +42,19 @@ fn assert_no_allocation(model: &Model) {
 fn the_allocation_counter_counts() {
     let counted = allocation_counter::measure(|| drop(std::hint::black_box(vec![0u8; 10])));
     assert_eq!(counted.count_total, 1);
+}
+
+#[test]
+fn no_interval_of_type2_terms_allocates() {
+    for kind in [Kind::Straight, Kind::Curved, Kind::Numbers] {
+        let models = (0..100).filter_map(|seed| model(seed, kind));
+        assert!(
+            models
+                .inspect(|(model, _)| assert_no_allocation(model))
+                .count()
+                > 50
+        );
+    }
 }
 
 #[test]

@@ -29,7 +29,8 @@ impl Outcome {
             value: outcome.value().unwrap_or(f64::NAN),
             coverage: outcome.coverage,
             state: match outcome.state {
-                State::Defined(_) => 0,
+                // Tables have no intervals.
+                State::Defined(_) | State::Interval { .. } => 0,
                 // `Previous` occurs only in sequences of evaluations.
                 State::Default(_) | State::Previous(_) => 1,
                 State::NoRuleFired => 2,

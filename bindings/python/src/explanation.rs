@@ -51,6 +51,8 @@ pub(crate) struct FiredRule {
     degree: f64,
     /// The degree times the weight, after the activation method.
     strength: f64,
+    /// The lower bound of the strength, if the condition reads an interval type-2 term.
+    lower: Option<f64>,
 }
 
 /// An output, and the rules that contribute to it.
@@ -60,6 +62,10 @@ pub(crate) struct ExplainedOutput {
     name: String,
     /// The value; None if it is unknown.
     value: Option<f64>,
+    /// The lower end of the interval whose middle is the value, if interval type-2 terms determine it.
+    low: Option<f64>,
+    /// The upper end of that interval.
+    high: Option<f64>,
     /// Whether no rule fires and the value is the model's default.
     is_default: bool,
     /// The largest firing strength of a rule of this output.
@@ -83,6 +89,8 @@ pub(crate) struct Share {
     term: String,
     /// The firing strength of the rule.
     strength: f64,
+    /// The lower bound of the strength, if the condition reads an interval type-2 term.
+    lower: Option<f64>,
     /// The share of the rule in the result, in [0, 1].
     share: f64,
     /// In a Takagi-Sugeno or Tsukamoto output, the value of the rule.
@@ -103,6 +111,7 @@ fn output(py: Python<'_>, output: &engine::ExplainedOutput) -> PyResult<Py<Expla
             rule: share.rule + 1,
             term: share.term.clone(),
             strength: share.strength,
+            lower: share.lower,
             share: share.share,
             value: share.value,
         };
@@ -114,6 +123,8 @@ fn output(py: Python<'_>, output: &engine::ExplainedOutput) -> PyResult<Py<Expla
         ExplainedOutput {
             name: output.name.clone(),
             value: output.value,
+            low: output.low,
+            high: output.high,
             is_default: output.is_default,
             coverage: output.coverage,
             rules: output.rules.iter().map(share).collect::<PyResult<_>>()?,
@@ -144,7 +155,7 @@ impl Explanation {
             )
         };
         let rule = |rule: &engine::FiredRule| {
-            let (degree, strength) = (rule.degree, rule.strength);
+            let (degree, strength, lower) = (rule.degree, rule.strength, rule.lower);
             let (rule, text) = (rule.rule + 1, rule.text.clone());
             Py::new(
                 py,
@@ -153,6 +164,7 @@ impl Explanation {
                     text,
                     degree,
                     strength,
+                    lower,
                 },
             )
         };

@@ -95,7 +95,7 @@ impl From<engine::Outcome> for Outcome {
             dominant_rule: outcome.dominant_rule.map(|rule| rule + 1),
             clamped: outcome.clamped,
             state: match outcome.state {
-                State::Defined(_) => STATES[0],
+                State::Defined(_) | State::Interval { .. } => STATES[0],
                 State::Default(_) => STATES[1],
                 State::Previous(_) => STATES[2],
                 State::NoRuleFired => STATES[3],

@@ -53,8 +53,10 @@ export type Change = {
 export interface Degree {
   /** The name of the term. */
   term: string;
-  /** The degree, in [0, 1]. */
+  /** The degree, in [0, 1]; of an interval type-2 term the upper one. */
   degree: number;
+  /** The lower degree of an interval type-2 term; absent for any other term. */
+  lower?: number | null;
 }
 
 /** An input with the degrees of its terms. */
@@ -75,6 +77,10 @@ export interface ExplainedOutput {
   name: string;
   /** The value; null if no rule fires and the output has no default. */
   value: number | null;
+  /** The lower end of the interval whose middle is the value, if interval type-2 terms determine it; otherwise absent. */
+  low?: number | null;
+  /** The upper end of that interval. */
+  high?: number | null;
   /** Whether no rule fires and the value is the default of the output. */
   is_default: boolean;
   /** Whether the output keeps its previous value where no rule fires. An explanation covers a single point, which has no previous value. */
@@ -87,7 +93,7 @@ export interface ExplainedOutput {
   rules: Share[];
   /** The degree of the value in each term; empty for Takagi-Sugeno outputs. */
   terms: Degree[];
-  /** The aggregated set: `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for Takagi-Sugeno and Tsukamoto outputs. */
+  /** The aggregated set, with interval type-2 terms the upper one: `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for Takagi-Sugeno and Tsukamoto outputs. */
   set: [number, number][];
 }
 
@@ -116,8 +122,10 @@ export interface FiredRule {
   text: string;
   /** The degree of its condition. */
   degree: number;
-  /** The degree of the condition times the weight of the rule, adjusted by the activation method. Hedges of its consequents are applied in `Share::strength`. */
+  /** The degree of the condition times the weight of the rule, adjusted by the activation method. Hedges of its consequents are applied in `Share::strength`. If the condition reads an interval type-2 term, this is the upper bound, and so is `degree`. */
   strength: number;
+  /** The lower bound of the strength, if the condition reads an interval type-2 term; otherwise absent. */
+  lower?: number | null;
 }
 
 /** The assessment of a flight: `flagred assess --json`. `docs/json.md` describes it. */
@@ -370,9 +378,11 @@ export interface Share {
   rule: number;
   /** The term that the rule concludes. */
   term: string;
-  /** The firing strength. */
+  /** The firing strength; if the condition reads an interval type-2 term, its upper bound. */
   strength: number;
-  /** The share of the result, in [0, 1]. With maximum as aggregation, it is the fraction of the aggregated set's area in which this rule is the highest; with sums, the rule's fraction of the area of all sets; in a Takagi-Sugeno or Tsukamoto output, its fraction of the weights. */
+  /** The lower bound of the firing strength, if the condition reads an interval type-2 term; otherwise absent. */
+  lower?: number | null;
+  /** The share of the result, in [0, 1]. With maximum as aggregation, it is the fraction of the aggregated set's area in which this rule is the highest; with sums, the rule's fraction of the area of all sets; in a Takagi-Sugeno or Tsukamoto output, its fraction of the weights. With interval type-2 terms, upper bounds determine it. */
   share: number;
   /** The number that the consequent yields at these inputs; only for Takagi-Sugeno and Tsukamoto outputs and for singletons. */
   value: number | null;

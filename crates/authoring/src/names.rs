@@ -148,7 +148,14 @@ fn variable(variable: &Variable) -> String {
 }
 
 fn term(term: &Term, of: &Variable) -> String {
-    let shape = fuzzy::format::shape_text(&term.membership_function);
+    let upper = fuzzy::format::shape_text(&term.membership_function);
+    let shape = match &term.lower {
+        None => upper,
+        Some(lower) => {
+            let lower = fuzzy::format::shape_text(&lower.membership_function);
+            format!("upper {upper}, lower {lower}")
+        }
+    };
     let range = format!("[{}, {}]{}", of.low, of.high, unit(of));
     format!("**{}** of `{}` {range}\n\n`{shape}`", term.name, of.name)
 }

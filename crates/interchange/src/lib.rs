@@ -195,6 +195,12 @@ pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, F
     if !invalid.is_empty() {
         return Err(Findings(invalid));
     }
+    if model.has_type2_terms() {
+        let message = format!("type-2 terms cannot be written as {} yet", format.name());
+        let help = "remove the lower membership functions, or keep the rule set in YAML";
+        let finding = Diagnostic::error("type-2-terms", 0..0, message).help(help);
+        return Err(Findings(vec![finding]));
+    }
     let mut written = match format {
         Format::Fis => fis::write(model, losses),
         Format::Fll => fll::write(model, losses),

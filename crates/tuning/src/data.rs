@@ -99,6 +99,9 @@ impl Data {
 
     /// Checks that a model can be tuned on the rows.
     pub(crate) fn check(&self, model: &Model, loss: Loss) -> Result<(), TuneError> {
+        if model.has_type2_terms() {
+            return Err(TuneError::Type2);
+        }
         let output = &model.outputs[target(model)?];
         self.check_columns(model.inputs.len(), loss)?;
         let (low, high) = (output.variable.low, output.variable.high);

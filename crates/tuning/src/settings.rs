@@ -107,6 +107,9 @@ pub enum TuneError {
         /// The number of outputs that no other output reads.
         outputs: usize,
     },
+    /// The rule set has interval type-2 terms.
+    #[error("the rule set has type-2 terms, which cannot be tuned")]
+    Type2,
     /// The model has no variable or term with this name.
     #[error("the rule set has no variable and no term `{name}`")]
     Unknown {

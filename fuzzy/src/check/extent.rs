@@ -37,6 +37,9 @@ const STRENGTHS: [f64; 7] = [1.0, 0.9, 0.75, 0.5, 0.25, 0.1, 0.01];
 #[must_use]
 pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
     let found = model.outputs.iter().find(|o| o.variable.name == output)?;
+    if model.has_interval(found) {
+        return None;
+    }
     match found.defuzzifier {
         Defuzzifier::WeightedSum | Defuzzifier::Tsukamoto => return None,
         Defuzzifier::Centroid

@@ -40,6 +40,12 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
         && more > 0
     {
         found.push(at.more_uncovered(more, report.uncovered_complete));
+    } else if model.negates_type2() {
+        let message =
+            "regions without a rule were not searched for, because NOT is applied to a type-2 term";
+        let help = "write the rules without NOT, with a term for the opposite, to examine them";
+        let place = spans.rules_key.clone();
+        found.push(Diagnostic::note("examined-in-part", place, message).help(help));
     } else if !report.uncovered_complete {
         let message = "regions without a rule were searched for in a part of the input space only";
         found.push(

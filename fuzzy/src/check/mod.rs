@@ -85,7 +85,8 @@ impl Default for Options {
 pub struct Report {
     /// Boxes of the input space without a rule.
     pub uncovered: Vec<Uncovered>,
-    /// Whether the list is complete. In large rule sets the search stops early.
+    /// Whether the list is complete. In large rule sets the search stops early. It is not possible if NOT is applied to
+    /// an interval type-2 term.
     pub uncovered_complete: bool,
     /// Rules with equal conditions and different conclusions, and rules that conclude two terms of the same output.
     pub contradictions: Vec<Contradiction>,
@@ -126,7 +127,8 @@ pub struct Report {
 ///
 /// In the analyses of conditions and terms (uncovered boxes, rules that never fire, holes, trends), an output that
 /// rules read counts as an input that can take any value of its range. Reach, claims and jumps are computed for the
-/// whole model over its inputs.
+/// whole model over its inputs. The degree of an interval type-2 term is its upper degree, and the value of an output
+/// the middle of its interval.
 ///
 /// # Errors
 /// A claim of `options` names an input or output that the model does not have.
@@ -157,8 +159,15 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
     let (counterexamples, counterexamples_complete) = claims(engine, &options.monotone)?;
     let (first, later) = stages(model);
     let stages: Vec<Stage<'_>> = core::iter::once(first).chain(later).collect();
-    let never_firing = never_firing(&stages);
-    let (uncovered, uncovered_complete) = all_uncovered(&stages, options.coverage);
+    // Regions and rules that never fire are searched for with the upper degrees. That is exact, unless NOT reads a
+    // lower degree.
+    let (never_firing, (uncovered, uncovered_complete)) = match model.negates_type2() {
+        true => (Vec::new(), (Vec::new(), false)),
+        false => (
+            never_firing(&stages),
+            all_uncovered(&stages, options.coverage),
+        ),
+    };
     let read = model.outputs.iter().map(|output| &output.variable);
     let read = read.filter(|variable| {
         let mut inputs = stages.iter().flat_map(|stage| &stage.model.inputs);

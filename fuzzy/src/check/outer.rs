@@ -38,7 +38,8 @@ pub struct Unreached {
 /// because its author chose its shape.
 pub(super) fn unreached(model: &Model, output: &Output, (low, high): (f64, f64)) -> Vec<Unreached> {
     let variable = &output.variable;
-    if output.defuzzifier.is_weighted() {
+    // The proposed numbers do not apply to two membership functions.
+    if output.defuzzifier.is_weighted() || model.has_interval(output) {
         return Vec::new();
     }
     let near = NEAR * (variable.high - variable.low);

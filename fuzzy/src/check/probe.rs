@@ -89,7 +89,7 @@ impl<'m> Probe<'m> {
             .iter()
             .map(move |outcome| match outcome.state {
                 // After an error, the outcomes belong to an earlier point.
-                State::Defined(value) if !failed => Some(value),
+                State::Defined(_) | State::Interval { .. } if !failed => outcome.value(),
                 _ => None,
             })
     }

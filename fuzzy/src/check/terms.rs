@@ -55,8 +55,9 @@ pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
     let hashes: Vec<Option<u64>> = hashes.collect();
     let same = |(a, a_hash): (&Term, &Option<u64>), (b, b_hash): (&Term, &Option<u64>)| {
         let equal = || values.iter().all(|&x| a.membership(x) == b.membership(x));
-        (a.membership_function == b.membership_function && a.height == b.height)
-            || (a_hash.is_some() && a_hash == b_hash && equal())
+        a.lower == b.lower
+            && ((a.membership_function == b.membership_function && a.height == b.height)
+                || (a_hash.is_some() && a_hash == b_hash && equal()))
     };
     let mut found = Vec::new();
     let terms = || variable.terms.iter().zip(&hashes);

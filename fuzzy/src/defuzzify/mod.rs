@@ -15,6 +15,7 @@
 //!   strength.
 //! - [`Integrated`]: only the terms and their corners, 0, 5 and 10. The aggregated set is split into pieces in each
 //!   evaluation.
+//! - [`Reduction`]: the same for the lower and the upper membership functions of an interval type-2 output.
 
 use alloc::vec::Vec;
 
@@ -26,6 +27,7 @@ pub(crate) use layers::Layered;
 pub(crate) use partition::Partition;
 pub(crate) use piece::unit;
 pub(crate) use prepared::{Prepared, corners, straight};
+pub(crate) use reduction::{Reduction, Weighted};
 pub(crate) use weighted::Consequents;
 
 mod calculus;
@@ -36,6 +38,7 @@ mod maxima;
 mod partition;
 mod piece;
 mod prepared;
+mod reduction;
 mod sampled;
 mod singletons;
 mod weighted;

@@ -3,7 +3,7 @@
 use crate::table::{
     centroid,
     numeric::{gauss, root},
-    operators::larger,
+    operators::{larger, smaller},
 };
 
 /// An interval on which the aggregated set is a straight line or a smooth curve.
@@ -84,6 +84,40 @@ impl Integrals {
         self.area += units * mean;
         self.moment +=
             units * ((piece.from - self.origin) * mean + width * (left + 2.0 * right) / 6.0);
+    }
+
+    /// Adds the part of a piece between two values.
+    pub(crate) fn add_between(&mut self, piece: &Piece<'_>, (from, to): (f64, f64)) {
+        let (from, to) = (larger(from, piece.from), smaller(to, piece.to));
+        if from >= to {
+            return;
+        }
+        let width = piece.to - piece.from;
+        let (start, length) = ((from - piece.from) / width, (to - from) / width);
+        // The end that is nearer keeps its digits.
+        let line = |x: f64| {
+            let slope = (piece.right - piece.left) / width;
+            if x - piece.from <= piece.to - x {
+                piece.left + slope * (x - piece.from)
+            } else {
+                piece.right - slope * (piece.to - x)
+            }
+        };
+        let degree = |part: f64| {
+            piece
+                .curve
+                .map_or(0.0, |curve| (curve.degree)(start + length * part))
+        };
+        self.add(&Piece {
+            from,
+            to,
+            left: line(from),
+            right: line(to),
+            curve: piece.curve.map(|curve| Curve {
+                degree: &degree,
+                slope: curve.slope,
+            }),
+        });
     }
 
     /// Returns the centroid; `None` if the area is 0.

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     engine::{ExplainedOutput, Explanation, Share},
-    model::{Model, Variable},
+    model::{Model, Variable, type2::Bound},
 };
 
 const WIDTH: f64 = 640.0;
@@ -197,7 +197,13 @@ pub(super) fn answer(output: &ExplainedOutput, variable: &Variable, all: &Explan
                 digits(value)
             )
         }
-        Some(value) => format!("{} = {}{unit}", output.name, digits(value)),
+        Some(value) => {
+            let mut text = format!("{} = {}{unit}", output.name, digits(value));
+            if let (Some(low), Some(high)) = (output.low, output.high) {
+                text += &format!(", the middle of {} to {}", digits(low), digits(high));
+            }
+            text
+        }
     }
 }
 
@@ -236,7 +242,7 @@ pub(super) fn sticks(sheet: &mut Sheet, frame: &Frame, variable: &Variable, numb
 }
 
 /// Draws the terms of a variable: membership functions, implied sets of rules, a value, and the degrees at it. The
-/// previous shapes of terms that differ in `before` are dashed.
+/// previous shapes of terms that differ in `before` are dashed, the lower membership functions of type-2 terms dotted.
 pub(super) fn terms(
     sheet: &mut Sheet,
     frame: &Frame,
@@ -272,16 +278,33 @@ pub(super) fn terms(
         dash: "none",
         ..Series::new(i, term.name.as_str(), membership(variable, i))
     });
+    let lower = Variable {
+        terms: (variable.terms.iter())
+            .map(|term| term.only(Bound::Lower))
+            .collect(),
+        ..variable.clone()
+    };
+    let type2 = (variable.terms.iter().enumerate()).filter(|(_, term)| term.lower.is_some());
+    let dotted = type2.map(|(i, _)| Series {
+        dash: "1 3",
+        ..Series::new(i, "", membership(&lower, i))
+    });
     let plot = Plot {
         title: String::new(),
         x: (x, String::new()),
         y: (y, "degree".into()),
-        series: old.chain(series).collect(),
+        series: old.chain(series).chain(dotted).collect(),
     };
     draw(sheet, frame, &plot);
     marker(sheet, frame, x, at);
     let keys = variable.terms.iter().enumerate().map(|(i, term)| {
-        let degree = at.map(|at| format!(" {}", number(term.membership(at), 3)));
+        let degree = at.map(|at| {
+            let upper = number(term.membership(at), 3);
+            match term.lower {
+                None => format!(" {upper}"),
+                Some(_) => format!(" {} to {upper}", number(term.lower_membership(at), 3)),
+            }
+        });
         let degree = degree.unwrap_or_default();
         (distinct_line(i), format!("{}{degree}", term.name))
     });

@@ -55,10 +55,15 @@ fn add_input(text: &mut String, variable: &Variable, input: &ExplainedInput) {
 
 /// Adds a line per term: the degree of a value in it, as a number and as a bar.
 fn add_degrees(text: &mut String, terms: &[Degree], value: f64) {
-    let terms = terms.iter().map(|term| (visible(&term.term), term.degree));
+    let terms = terms.iter().map(|term| {
+        let degree = bounds(term.lower, term.degree);
+        (visible(&term.term), degree, term.degree)
+    });
     let terms: Vec<_> = terms.collect();
-    let names = terms.iter().map(|(term, _)| term.chars().count());
+    let names = terms.iter().map(|(term, ..)| term.chars().count());
     let width = names.max().unwrap_or(0).max(4);
+    let degrees = terms.iter().map(|(_, degree, _)| degree.len());
+    let wide = degrees.max().unwrap_or(0).max(8);
     if !terms.is_empty() {
         let _ = writeln!(
             text,
@@ -67,14 +72,23 @@ fn add_degrees(text: &mut String, terms: &[Degree], value: f64) {
         );
         let _ = writeln!(
             text,
-            "  {:width$}   degree  0{:>scale$}",
+            "  {:width$} {:>wide$}  0{:>scale$}",
             "term",
+            "degree",
             1,
             scale = BAR - 1
         );
     }
-    for (term, degree) in terms {
-        let _ = writeln!(text, "  {term:width$} {degree:>8.5}  {}", bar(degree, BAR));
+    for (term, shown, degree) in terms {
+        let _ = writeln!(text, "  {term:width$} {shown:>wide$}  {}", bar(degree, BAR));
+    }
+}
+
+/// Formats a degree or a strength; of a type-2 term both bounds.
+fn bounds(lower: Option<f64>, upper: f64) -> String {
+    match lower {
+        None => format!("{upper:.5}"),
+        Some(lower) => format!("{lower:.5} to {upper:.5}"),
     }
 }
 
@@ -91,11 +105,14 @@ fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, 
     );
     add_degrees(text, &output.terms, output.value.unwrap_or(f64::NAN));
     let weighted = output.rules.iter().any(|rule| rule.value.is_some());
+    let strengths = (output.rules.iter()).map(|share| bounds(share.lower, share.strength));
+    let strengths: Vec<String> = strengths.collect();
+    let wide = strengths.iter().map(String::len).max().unwrap_or(0).max(8);
     if !output.rules.is_empty() {
         let value = if weighted { "       value" } else { "" };
-        let _ = writeln!(text, "\n  strength  share{value}  rule");
+        let _ = writeln!(text, "\n  {:>wide$}  share{value}  rule", "strength");
     }
-    for share in &output.rules {
+    for (share, strength) in output.rules.iter().zip(strengths) {
         let fired = all.rules.iter().find(|rule| rule.rule == share.rule);
         let rule = fired.map_or("".into(), |rule| visible(&rule.text));
         let (number, percent) = (share.rule + 1, 100.0 * share.share);
@@ -104,14 +121,18 @@ fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, 
             .map_or_else(String::new, |value| format!("{:>12}", digits(value)));
         let _ = writeln!(
             text,
-            "  {:>8.5} {percent:>4.0} %{value}  {number}: {rule}",
-            share.strength
+            "  {strength:>wide$} {percent:>4.0} %{value}  {number}: {rule}"
         );
     }
     if !output.set.is_empty() && !output.rules.is_empty() {
         let _ = writeln!(
             text,
-            "\n  aggregated set: degree over {}",
+            "\n  aggregated set{}: degree over {}",
+            if output.low.is_some() {
+                ", upper bound"
+            } else {
+                ""
+            },
             visible(&output.name)
         );
         add_set(text, output, Scale::new(variable.low, variable.high));

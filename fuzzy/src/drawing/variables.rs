@@ -9,7 +9,7 @@ use super::{
     slice::Slice,
     text::{number, short, titled, visible},
 };
-use crate::model::{MembershipFunction, Model, Output, Term, Variable};
+use crate::model::{MembershipFunction, Model, Output, Term, Variable, type2::Bound};
 
 const WIDTH: f64 = 640.0;
 /// The height of a frame, and the height including its labels.
@@ -149,7 +149,15 @@ pub fn variables_text(
             .terms
             .iter()
             .filter(|term| formula(term, variable).is_none());
-        let sets: Vec<&Term> = sets.collect();
+        // A type-2 term has two lines.
+        let sets = sets.flat_map(|term| {
+            let lower = term.lower.is_some().then(|| Term {
+                name: format!("{}, lower", term.name),
+                ..term.only(Bound::Lower)
+            });
+            core::iter::once(term.only(Bound::Upper)).chain(lower)
+        });
+        let sets: Vec<Term> = sets.collect();
         if !sets.is_empty() {
             let degree = |i: usize, column: usize| {
                 let at = x.value(column as f64 / (COLUMNS - 1) as f64);

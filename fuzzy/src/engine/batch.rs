@@ -65,6 +65,14 @@ impl Engine {
         let outputs = self.outputs.len();
         let task = |memory: &mut Memory, first: usize, outcomes: &mut [Outcome]| {
             let range = first..first + outcomes.len() / outputs;
+            if memory.rows.is_none() {
+                // Results for several rows have no intervals.
+                for (row, outcomes) in range.zip(outcomes.chunks_exact_mut(outputs)) {
+                    memory.take_row(columns, row);
+                    self.outcomes(&mut memory.row, &memory.values, outcomes);
+                }
+                return;
+            }
             self.evaluate_rows(memory, columns, range, |rows, output, results| {
                 let place = (rows.start - first) * outputs + output;
                 let places = outcomes[place..].iter_mut().step_by(outputs);
@@ -200,8 +208,9 @@ impl Engine {
     /// Allocates the working memory of [`Engine::evaluate_rows`] for a number of rows.
     pub(crate) fn memory(&self, rows: usize) -> Memory {
         let stage = &self.first;
-        // Models with chains and models with rule blocks are evaluated row by row.
-        let is_plain = self.chain.is_none() && stage.arrays.blocks.is_empty();
+        // Models with chains, rule blocks or interval type-2 terms are evaluated row by row.
+        let is_plain =
+            self.chain.is_none() && stage.arrays.blocks.is_empty() && stage.bounds().is_none();
         Memory {
             rows: (is_plain && rows >= FEWEST_ROWS).then(|| {
                 let arrays = stage.batch.as_ref().unwrap_or(&stage.arrays);
@@ -270,6 +279,15 @@ pub(crate) struct Memory {
     results: Vec<Results<ROWS>>,
 }
 
+impl Memory {
+    /// Copies the values of a row.
+    fn take_row(&mut self, columns: &[&[f64]], row: usize) {
+        for (value, column) in self.values.iter_mut().zip(columns) {
+            *value = column[row];
+        }
+    }
+}
+
 struct RowsScratch {
     stage: StageScratch<ROWS>,
     /// The firing strengths of one of the rows.
@@ -331,7 +349,9 @@ impl Stage {
         results: &mut [Results<ROWS>],
     ) {
         let RowsScratch { stage, of_row } = memory;
-        let StageScratch { table, workspace } = stage;
+        let StageScratch {
+            table, workspace, ..
+        } = stage;
         table::evaluate_rows::<_, _, _, _, ROWS, CELLS>(
             arrays,
             table,

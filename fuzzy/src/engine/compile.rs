@@ -68,7 +68,7 @@ impl Engine {
             chain,
             model: Arc::new(model.clone()),
         };
-        if is_chain {
+        if is_chain && !model.has_type2_terms() {
             let said = engine.propositions();
             if let Some(chain) = &mut engine.chain {
                 chain.conclusions(&said);
@@ -90,8 +90,9 @@ impl Document {
 }
 
 impl Stage {
-    /// Compiles a valid model in which no output reads another output.
-    pub(super) fn new(model: &Model) -> Self {
+    /// Compiles a valid model in which no output reads another output. Of type-2 terms, only the upper membership
+    /// functions are compiled.
+    pub(super) fn plain(model: &Model) -> Self {
         let compiler = Compiler::new(model);
         let firing = Firing::of(model);
         let drafts = compiler.drafts();
@@ -296,6 +297,7 @@ impl<'m> Compiler<'m> {
                 name: String::new(),
                 membership_function: MembershipFunction::Constant { value: 1.0 },
                 height: 1.0,
+                lower: None,
             };
             by_input[*input].push(Literal {
                 term: term.map_or_else(always, |t| model.inputs[*input].terms[t].clone()),

@@ -13,8 +13,8 @@ use super::{
     operators::{larger, smaller},
 };
 use crate::model::{
-    Activation, Aggregation, Defuzzifier, MembershipFunction, Model, Operators, Output, Term,
-    Variable, concludes,
+    Activation, Aggregation, Defuzzifier, MembershipFunction, Model, Operators, Output, Rule, Term,
+    Variable, concludes, type2::Bound,
 };
 use crate::rule::{Condition, Proposition};
 use crate::table::{self, Partial};
@@ -103,6 +103,7 @@ fn degrees(terms: &[Term], value: f64) -> Vec<Degree> {
     let degree = |term: &Term| Degree {
         term: term.name.clone(),
         degree: term.membership(value),
+        lower: term.lower.as_ref().map(|_| term.lower_membership(value)),
     };
     terms.iter().map(degree).collect()
 }
@@ -153,6 +154,16 @@ fn fired(known: &Known<'_>) -> Vec<FiredRule> {
         .map(|output| known.is_evaluated(&output.variable.name))
         .collect();
     let mut degrees = vec![0.0; known.model.rules.len()];
+    let lower_strength = |rule: &Rule| {
+        let operators = known.model.operators_of(rule);
+        let degree = holds(&rule.rule.condition, operators, known, Bound::Lower);
+        let strength = rule.rule.weight * degree;
+        if strength >= known.model.least_strength {
+            strength
+        } else {
+            0.0
+        }
+    };
     let mut blocks: BTreeMap<usize, (Activation, Vec<Partial>)> = BTreeMap::new();
     for ((rule, degree), index) in known.model.rules.iter().zip(&mut degrees).zip(0..) {
         let mut outputs = known.model.outputs.iter().zip(&evaluated);
@@ -160,7 +171,8 @@ fn fired(known: &Known<'_>) -> Vec<FiredRule> {
         if !is_evaluated || !known.model.is_enabled(rule) {
             continue;
         }
-        *degree = holds(&rule.rule.condition, known.model.operators_of(rule), known);
+        let operators = known.model.operators_of(rule);
+        *degree = holds(&rule.rule.condition, operators, known, Bound::Upper);
         let activation = known.model.activation_of(rule);
         let (_, strengths) = blocks.entry(rule.block).or_insert((activation, Vec::new()));
         strengths.push(Partial::new(rule.rule.weight * *degree, index));
@@ -178,6 +190,7 @@ fn fired(known: &Known<'_>) -> Vec<FiredRule> {
                     text: rule.rule.to_string(),
                     degree: degrees[index],
                     strength,
+                    lower: known.model.reads_type2(rule).then(|| lower_strength(rule)),
                 });
             }
         }
@@ -187,12 +200,18 @@ fn fired(known: &Known<'_>) -> Vec<FiredRule> {
     fired
 }
 
-/// Returns the degree of a condition, computed from its syntax tree.
-pub(super) fn holds(condition: &Condition, operators: Operators, known: &Known<'_>) -> f64 {
-    let degree = |part: &Condition| holds(part, operators, known);
+/// Returns a bound of the degree of a condition, computed from its syntax tree. Without type-2 terms both bounds are the
+/// degree.
+pub(super) fn holds(
+    condition: &Condition,
+    operators: Operators,
+    known: &Known<'_>,
+    bound: Bound,
+) -> f64 {
+    let degree = |part: &Condition| holds(part, operators, known, bound);
     match condition {
-        Condition::Is(proposition) => proposition_holds(proposition, known),
-        Condition::Not(inner) => 1.0 - degree(inner),
+        Condition::Is(proposition) => proposition_holds(proposition, known, bound),
+        Condition::Not(inner) => 1.0 - holds(inner, operators, known, bound.opposite()),
         Condition::And(parts) => {
             let joined = parts
                 .iter()
@@ -210,12 +229,12 @@ pub(super) fn holds(condition: &Condition, operators: Operators, known: &Known<'
     }
 }
 
-fn proposition_holds(proposition: &Proposition, known: &Known<'_>) -> f64 {
+fn proposition_holds(proposition: &Proposition, known: &Known<'_>, bound: Bound) -> f64 {
     let named = known.variable(&proposition.variable.text);
     let membership = named.and_then(|(variable, value)| {
         let name = &proposition.term.as_ref()?.text;
         let term = variable.terms.iter().find(|term| term.name == *name)?;
-        Some(term.membership(value?))
+        Some(term.bound(bound.through(&proposition.hedges), value?))
     });
     let hedges = proposition.hedges.iter().rev();
     hedges.fold(membership.unwrap_or(0.0), |degree, hedge| hedge.of(degree))
@@ -250,6 +269,7 @@ fn explain_output(
                     rule: rule.rule,
                     term,
                     strength: consequent.hedged(rule.strength),
+                    lower: rule.lower.map(|lower| consequent.hedged(lower)),
                     part: 0.0,
                 });
             }
@@ -289,6 +309,7 @@ fn explain_output(
             rule: one.rule,
             term: one.term.name.clone(),
             strength: one.strength,
+            lower: one.lower,
             share: if whole > 0.0 { one.part / whole } else { 0.0 },
             value: (weighted || discrete)
                 .then(|| number(output, one, known))
@@ -304,6 +325,7 @@ fn explain_output(
         .collect();
     rules.sort_by(|a, b| b.share.total_cmp(&a.share));
     let value = outcome.value();
+    let is_interval = matches!(outcome.state, State::Interval { .. });
     let numbers = output.defuzzifier.takes_numbers();
     let sets = variable
         .terms
@@ -312,6 +334,8 @@ fn explain_output(
     ExplainedOutput {
         name: variable.name.clone(),
         value,
+        low: outcome.low().filter(|_| is_interval),
+        high: outcome.high().filter(|_| is_interval),
         is_default: matches!(outcome.state, State::Default(_)),
         keeps_previous: output.keeps_previous(),
         coverage: outcome.coverage,
@@ -365,6 +389,7 @@ struct Active<'m> {
     rule: usize,
     term: &'m Term,
     strength: f64,
+    lower: Option<f64>,
     /// Its contribution to the result, accumulated so far.
     part: f64,
 }

@@ -40,8 +40,11 @@ pub struct ExplainedInput {
 pub struct Degree {
     /// The name of the term.
     pub term: String,
-    /// The degree, in [0, 1].
+    /// The degree, in [0, 1]; of an interval type-2 term the upper one.
     pub degree: f64,
+    /// The lower degree of an interval type-2 term; absent for any other term.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub lower: Option<f64>,
 }
 
 /// A rule that fired.
@@ -62,8 +65,12 @@ pub struct FiredRule {
     /// The degree of its condition.
     pub degree: f64,
     /// The degree of the condition times the weight of the rule, adjusted by the activation method. Hedges of its
-    /// consequents are applied in [`Share::strength`].
+    /// consequents are applied in [`Share::strength`]. If the condition reads an interval type-2 term, this is the upper
+    /// bound, and so is `degree`.
     pub strength: f64,
+    /// The lower bound of the strength, if the condition reads an interval type-2 term; otherwise absent.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub lower: Option<f64>,
 }
 
 /// An output with the rules that contribute to it.
@@ -76,6 +83,12 @@ pub struct ExplainedOutput {
     pub name: String,
     /// The value; `None` if no rule fires and the output has no default.
     pub value: Option<f64>,
+    /// The lower end of the interval whose middle is the value, if interval type-2 terms determine it; otherwise absent.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub low: Option<f64>,
+    /// The upper end of that interval.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub high: Option<f64>,
     /// Whether no rule fires and the value is the default of the output.
     pub is_default: bool,
     /// Whether the output keeps its previous value where no rule fires. An explanation covers a single point, which has
@@ -90,7 +103,7 @@ pub struct ExplainedOutput {
     pub rules: Vec<Share>,
     /// The degree of the value in each term; empty for Takagi-Sugeno outputs.
     pub terms: Vec<Degree>,
-    /// The aggregated set: `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for
+    /// The aggregated set, with interval type-2 terms the upper one: `(value, degree)` at evenly spaced values over the range, or at the singletons. Empty for
     /// Takagi-Sugeno and Tsukamoto outputs.
     pub set: Vec<(f64, f64)>,
 }
@@ -110,11 +123,14 @@ pub struct Share {
     pub rule: usize,
     /// The term that the rule concludes.
     pub term: String,
-    /// The firing strength.
+    /// The firing strength; if the condition reads an interval type-2 term, its upper bound.
     pub strength: f64,
+    /// The lower bound of the firing strength, if the condition reads an interval type-2 term; otherwise absent.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub lower: Option<f64>,
     /// The share of the result, in [0, 1]. With maximum as aggregation, it is the fraction of the aggregated set's area
     /// in which this rule is the highest; with sums, the rule's fraction of the area of all sets; in a Takagi-Sugeno or
-    /// Tsukamoto output, its fraction of the weights.
+    /// Tsukamoto output, its fraction of the weights. With interval type-2 terms, upper bounds determine it.
     pub share: f64,
     /// The number that the consequent yields at these inputs; only for Takagi-Sugeno and Tsukamoto outputs and for
     /// singletons.

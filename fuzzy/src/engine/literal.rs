@@ -230,6 +230,7 @@ mod tests {
                 name: String::new(),
                 membership_function,
                 height: 1.0,
+                lower: None,
             },
             hedges: hedges.to_vec(),
         }

@@ -22,12 +22,14 @@ use crate::model::{Model, NoRuleFires};
 use crate::table::{self, Buffers, Partial, Strongest, Table};
 use aligned::Rows;
 use arrays::OwnedTable;
+use bounds::BoundsScratch;
 use chain::Chain;
 use strategy::Single;
 
 mod aligned;
 mod arrays;
 pub(crate) mod batch;
+mod bounds;
 mod chain;
 mod compile;
 mod error;
@@ -149,6 +151,8 @@ struct StageScratch<const L: usize = 1> {
     table: RowBuffers<L>,
     /// Memory for outputs without a closed form.
     workspace: Workspace,
+    /// Memory for the lower bounds of firing strengths, if the stage has interval type-2 terms.
+    bounds: Option<Box<BoundsScratch>>,
 }
 
 #[cfg(feature = "check")]
@@ -237,10 +241,12 @@ impl Engine {
     }
 
     /// Returns the compiled arrays, which can be evaluated without this engine or written to a file: see [`table`].
-    /// `None` if an output [reads](Model::reads) another one, because a table has only one stage. A table cannot
-    /// evaluate outputs whose set is [`ClosedForm::Integrated`](table::ClosedForm::Integrated); only the engine can.
+    /// `None` if an output [reads](Model::reads) another one, because a table has only one stage, or if the model has
+    /// [type-2 terms](Model::has_type2_terms). A table cannot evaluate outputs whose set is
+    /// [`ClosedForm::Integrated`](table::ClosedForm::Integrated); only the engine can.
     pub fn table(&self) -> Option<Table<'_>> {
-        self.chain.is_none().then(|| self.first.arrays.table())
+        let is_table = self.chain.is_none() && !self.model.has_type2_terms();
+        is_table.then(|| self.first.arrays.table())
     }
 
     /// Evaluates one value per input, in the order of the model, and returns one outcome per output.
@@ -361,7 +367,9 @@ impl Stage {
         let sizes = arrays.sizes;
         let strengths = sizes.strengths as usize;
         let integrated = self.outputs.iter().filter_map(CompiledOutput::integrated);
+        let bounds = self.bounds();
         let cuts = integrated.map(Integrated::cuts);
+        let cuts = cuts.chain(bounds.map(bounds::Bounds::cuts));
         StageScratch {
             table: Buffers {
                 values: Rows::new(arrays.inputs.len()),
@@ -376,6 +384,7 @@ impl Stage {
             },
             // A term crosses two levels of its implication, on its rising and on its falling side.
             workspace: Workspace::new(strengths, 5 * strengths + cuts.max().unwrap_or(0)),
+            bounds: bounds.map(|bounds| Box::new(bounds.scratch())),
         }
     }
 
@@ -399,6 +408,7 @@ impl Stage {
             Single::Rules => self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
                 table::fire_row(arrays, buffers);
             }),
+            Single::Bounds(bounds) => bounds.outcomes(self, scratch, inputs, outcomes),
         }
     }
 
@@ -413,6 +423,7 @@ impl Stage {
         let StageScratch {
             table: buffers,
             workspace,
+            ..
         } = scratch;
         let integrate =
             |index: usize, strengths: &[f64]| self.integrate(index, strengths, workspace);

@@ -36,8 +36,8 @@ pub struct Said {
 
 impl Engine {
     /// Returns the rule that raises an output most, as [`Table::raised_by`](table::Table::raised_by) defines it. The
-    /// result is an index in evaluation order, as [`Said::place`]. `None` if no rule fires, a value is not finite, or
-    /// there is no such output.
+    /// result is an index in evaluation order, as [`Said::place`]. `None` if no rule fires, a value is not finite,
+    /// there is no such output, or the model has [type-2 terms](crate::Model::has_type2_terms).
     ///
     /// # Example: the rule that makes the fan fast
     /// ```
@@ -96,7 +96,7 @@ impl Engine {
         output: usize,
         sought: Sought<'_>,
     ) -> Option<usize> {
-        if inputs.len() != self.inputs.len() {
+        if inputs.len() != self.inputs.len() || self.model.has_type2_terms() {
             return None;
         }
         let Some(chain) = &self.chain else {
@@ -194,6 +194,7 @@ fn rule_of(
     let StageScratch {
         table: buffers,
         workspace,
+        ..
     } = scratch;
     let arrays = &stage.arrays;
     let integrate = |index: usize, strengths: &[f64]| stage.integrate(index, strengths, workspace);
@@ -226,6 +227,7 @@ fn literal(variable: &Variable, proposition: &Proposition) -> Option<Literal> {
                 right: variable.high,
             },
             height: 1.0,
+            lower: None,
         },
     };
     Some(Literal {

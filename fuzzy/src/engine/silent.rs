@@ -11,7 +11,7 @@ use super::{
     explain::{Known, holds},
 };
 use crate::{
-    model::{Operators, Rule, concludes},
+    model::{Operators, Rule, concludes, type2::Bound},
     rule::Condition,
 };
 
@@ -151,7 +151,7 @@ fn silence(rule: &Rule, known: &Known<'_>) -> Silence {
         };
     }
     let operators = model.operators_of(rule);
-    let degree = holds(&rule.rule.condition, operators, known);
+    let degree = holds(&rule.rule.condition, operators, known, Bound::Upper);
     let strength = rule.rule.weight * degree;
     if strength > 0.0 {
         return Silence::Activation { strength };
@@ -168,6 +168,6 @@ fn zero<'c>(condition: &'c Condition, operators: Operators, known: &Known<'_>) -
         return condition;
     };
     let mut parts = parts.iter();
-    let first = parts.find(|part| holds(part, operators, known) <= 0.0);
+    let first = parts.find(|part| holds(part, operators, known, Bound::Upper) <= 0.0);
     first.map_or(condition, |part| zero(part, operators, known))
 }

@@ -46,9 +46,11 @@
 //! | one row | `Vectors` | `engine/vectors/uniform.rs` | feature `simd`, a uniform table of 3 or 4 inputs and 1 output | 66 (`four_inputs`) |
 //! | one row | `Cells` | `table/firing.rs` | any other uniform table without programs | 73 (2 outputs) |
 //! | one row | `Rules` | `table/firing.rs` | any other rules | 82 (`tipper`) |
+//! | one row | `Bounds` | `engine/bounds.rs` | interval type-2 terms: the rules fire twice, and `defuzzify/reduction.rs` computes the interval | - |
 //! | many rows | - | `engine/batch.rs` | programs alone, if there are few ([`OwnedTable::programs_alone`]); otherwise the layout above | 13 |
 
 use super::arrays::OwnedTable;
+use super::bounds::Bounds;
 #[cfg(feature = "simd")]
 use super::vectors::{Plane, Uniform};
 use crate::defuzzify::{
@@ -73,6 +75,8 @@ pub(super) enum Single {
     Cells,
     /// Any other layout.
     Rules,
+    /// Two evaluations, for the bounds of the firing strengths, and a type reduction.
+    Bounds(alloc::boxed::Box<Bounds>),
 }
 
 impl Single {
@@ -103,7 +107,7 @@ impl Single {
             }
             #[cfg(feature = "simd")]
             Single::Vectors(_) => false,
-            Single::Cells | Single::Rules => false,
+            Single::Cells | Single::Rules | Single::Bounds(_) => false,
         }
     }
 }

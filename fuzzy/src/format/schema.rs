@@ -128,6 +128,7 @@ fn definitions() -> Node {
             ),
         ),
         ("term", term()),
+        ("function", function()),
         ("rule", rule()),
         ("block", block()),
         ("allowed", allowed()),
@@ -291,7 +292,8 @@ fn scalar() -> Node {
     Node::list(["string", "number", "boolean"].map(Node::text).into())
 }
 
-fn term() -> Node {
+/// Returns the schema of a membership function with its height.
+fn function() -> Node {
     let height = (
         "height",
         about(
@@ -341,13 +343,27 @@ fn term() -> Node {
         .map(|form| (form.name, shape(form)))
         .chain(others);
     let mut entries = object(
-        "A term: one shape, and a height where it is not 1",
+        "A membership function, and a height if it is not 1",
         properties,
         &[],
     );
     entries.push(entry("minProperties", Node::number(1.0)));
     entries.push(entry("maxProperties", Node::number(2.0)));
     Node::mapping(entries)
+}
+
+/// Returns the schema of a term: a membership function, or an upper and a lower one.
+fn term() -> Node {
+    let bounds = ["upper", "lower"].map(|bound| (bound, reference("function")));
+    let interval = object(
+        "An interval type-2 term: the lower membership function is nowhere above the upper one",
+        bounds,
+        &["upper", "lower"],
+    );
+    any_of(
+        "A term",
+        Vec::from([reference("function"), Node::mapping(interval)]),
+    )
 }
 
 /// Returns the schema of the parameters of a shape, with all its notations.

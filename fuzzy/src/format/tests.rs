@@ -281,6 +281,12 @@ proptest! {
                     prop_assert!(within || (defuzzifier.is_weighted() && value.is_finite()), "{value}");
                     prop_assert!(outcome.coverage > 0.0);
                 }
+                (State::Interval { low, high }, _) => {
+                    let within = variable.low <= low && high <= variable.high;
+                    prop_assert!(within || (defuzzifier.is_weighted() && (low + high).is_finite()));
+                    prop_assert!(low <= high, "{low} {high}");
+                    prop_assert!(outcome.coverage > 0.0);
+                }
                 (State::NoRuleFired, NoRuleFires::Undefined | NoRuleFires::Previous(None)) => {}
                 (
                     State::Default(value),

@@ -17,7 +17,7 @@ use super::{
 use crate::{
     diagnostic::{Diagnostic, all_of, duplicate},
     model::{
-        Defuzzifier, MembershipFunction, NoRuleFires, Output, Sampling, SamplingRule, Term,
+        Defuzzifier, Lower, MembershipFunction, NoRuleFires, Output, Sampling, SamplingRule, Term,
         Variable, between_peaks, even_peaks,
     },
     tree::{Entry, Fields, Node, Value},
@@ -521,6 +521,7 @@ pub(super) fn unread(name: &str) -> Term {
         name: String::from(name),
         membership_function: MembershipFunction::Constant { value: 1.0 },
         height: 1.0,
+        lower: None,
     }
 }
 
@@ -573,22 +574,92 @@ fn term(
         return None;
     };
     // The valid keys depend on the membership function, so all keys are accepted here and checked there.
-    let keys: Vec<&str> = pairs
-        .iter()
-        .filter_map(|(key, _)| match &key.value {
-            Value::Scalar(scalar) => Some(scalar.text.as_str()),
-            _ => None,
-        })
-        .collect();
-    let fields = entry.fields(&term, &keys, "write one: `{triangle: [0, 1, 2]}`", findings)?;
+    let keys = keys_of(pairs);
+    let fields = entry.fields(&term, &keys, TERM_HELP, findings)?;
+    let name = entry.key.to_string();
+    if ["upper", "lower"].iter().any(|key| keys.contains(key)) {
+        return interval(&term, name, &fields, spans, findings);
+    }
+    let (membership_function, height) = function(&term, &fields, spans, findings)?;
+    Some(Term {
+        name,
+        membership_function,
+        height,
+        lower: None,
+    })
+}
+
+/// The form of a term.
+const TERM_HELP: &str = "write one: `{triangle: [0, 1, 2]}`";
+
+fn keys_of(pairs: &[(Node, Node)]) -> Vec<&str> {
+    let keys = pairs.iter().filter_map(|(key, _)| match &key.value {
+        Value::Scalar(scalar) => Some(scalar.text.as_str()),
+        _ => None,
+    });
+    keys.collect()
+}
+
+/// Reads `{triangle: [0, 1, 2], height: 0.8}`: a membership function and its height.
+fn function(
+    what: &str,
+    fields: &Fields<'_>,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<(MembershipFunction, f64)> {
     let height = fields.get("height").map_or(Some(1.0), |node| {
         spans.height = node.span.clone();
-        node.finite(&format!("the height of {term}"), findings)
+        node.finite(&format!("the height of {what}"), findings)
     });
-    let membership_function = shapes::read(&term, &fields, spans, findings);
-    Some(Term {
-        name: entry.key.to_string(),
-        membership_function: membership_function?,
-        height: height?,
+    let membership_function = shapes::read(what, fields, spans, findings);
+    Some((membership_function?, height?))
+}
+
+/// Reads `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3], height: 0.8}}`: an interval type-2 term.
+fn interval(
+    term: &str,
+    name: String,
+    fields: &Fields<'_>,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Term> {
+    const HELP: &str = "write both membership functions: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3]}}`";
+    let mut others = fields.entries().iter();
+    let other = others.find(|entry| !["upper", "lower"].contains(&entry.key));
+    if let Some(other) = other {
+        let message = format!("{term} has `{}` beside `upper` and `lower`", other.key);
+        let help = "`upper` and `lower` each contain a membership function and its height: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3], height: 0.8}}`";
+        let finding = Diagnostic::error("unknown-key", other.key_span.clone(), message);
+        findings.push(finding.help(help));
+    }
+    let upper = fields.require("upper", HELP, findings);
+    let lower = fields.require("lower", HELP, findings);
+    let mut lower_spans = TermSpans {
+        name: spans.name.clone(),
+        ..TermSpans::default()
+    };
+    let mut read = |which: &str, node: Option<&Node>, spans: &mut TermSpans| {
+        let what = format!("the {which} membership function of {term}");
+        let node = node?;
+        let Value::Mapping(pairs) = &node.value else {
+            findings.push(node.unexpected(&what).help(HELP));
+            return None;
+        };
+        let fields = node.fields(&what, &keys_of(pairs), HELP, findings)?;
+        function(&what, &fields, spans, findings)
+    };
+    let upper = read("upper", upper, spans);
+    let lower = read("lower", lower, &mut lower_spans);
+    spans.names.extend(lower_spans.names.iter().cloned());
+    spans.lower = Some(lower_spans.into());
+    let ((membership_function, height), lower) = (upper?, lower?);
+    other.is_none().then_some(Term {
+        name,
+        membership_function,
+        height,
+        lower: Some(Lower {
+            membership_function: lower.0,
+            height: lower.1,
+        }),
     })
 }

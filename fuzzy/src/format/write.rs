@@ -8,7 +8,8 @@ use super::{
 };
 use crate::{
     model::{
-        Activation, LEAST_STRENGTH, Model, NoRuleFires, Output, SamplingRule, Variable, even_peaks,
+        Activation, LEAST_STRENGTH, MembershipFunction, Model, NoRuleFires, Output, SamplingRule,
+        Variable, even_peaks,
     },
     tree::Node,
 };
@@ -89,6 +90,15 @@ fn output(output: &Output) -> Node {
     Node::mapping(entries)
 }
 
+fn function(membership_function: &MembershipFunction, height: f64) -> Node {
+    let (shape, parameters) = shapes::write(membership_function);
+    let mut entries: Entries = Vec::from([(shape, parameters)]);
+    if height != 1.0 {
+        entries.push(("height", Node::number(height)));
+    }
+    Node::mapping(entries)
+}
+
 /// Returns the terms; as a partition or as steps if they form one.
 fn terms(variable: &Variable) -> (&'static str, Node) {
     let terms = &variable.terms;
@@ -100,12 +110,15 @@ fn terms(variable: &Variable) -> (&'static str, Node) {
     }
     let Some(peaks) = variable.partition_peaks() else {
         let terms = terms.iter().map(|term| {
-            let (shape, parameters) = shapes::write(&term.membership_function);
-            let mut entries: Entries = Vec::from([(shape, parameters)]);
-            if term.height != 1.0 {
-                entries.push(("height", Node::number(term.height)));
-            }
-            (term.name.as_str(), Node::mapping(entries))
+            let upper = function(&term.membership_function, term.height);
+            let term_node = match &term.lower {
+                None => upper,
+                Some(lower) => {
+                    let lower = function(&lower.membership_function, lower.height);
+                    Node::mapping([("upper", upper), ("lower", lower)])
+                }
+            };
+            (term.name.as_str(), term_node)
         });
         return ("terms", Node::mapping(terms));
     };

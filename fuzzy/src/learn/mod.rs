@@ -124,7 +124,7 @@ impl Learner {
     /// Creates a learner for the variables of a model with one output.
     ///
     /// # Errors
-    /// The model does not have exactly one output, or has rule blocks; a variable has no terms; or the settings name an
+    /// The model does not have exactly one output, or has rule blocks or type-2 terms; a variable has no terms; or the settings name an
     /// input that the model does not have.
     pub fn new(model: &Model, settings: Settings) -> Result<Learner, LearnError> {
         let [output] = model.outputs.as_slice() else {
@@ -134,6 +134,9 @@ impl Learner {
         };
         if !model.blocks.is_empty() {
             return Err(LearnError::Blocks);
+        }
+        if model.has_type2_terms() {
+            return Err(LearnError::Type2);
         }
         let mut variables = model.inputs.iter().chain([&output.variable]);
         if let Some(bare) = variables.find(|v| v.terms.is_empty()) {

@@ -115,6 +115,8 @@ pub enum LearnError {
     },
     /// The rule set has rule blocks.
     Blocks,
+    /// The rule set has interval type-2 terms.
+    Type2,
     /// The outputs that the learned output reads cannot be computed.
     Chain {
         /// The message of the cause.
@@ -152,6 +154,9 @@ impl core::fmt::Display for LearnError {
                     "the outputs before the last one cannot be computed: {message}"
                 )
             }
+            LearnError::Type2 => {
+                f.write_str("the rule set has type-2 terms, for which rules cannot be learned")
+            }
             LearnError::Blocks => f.write_str("learned rules have no rule blocks"),
             LearnError::ReadsInputs { term } => write!(
                 f,
@@ -172,6 +177,9 @@ impl LearnError {
         match self {
             LearnError::Outputs { .. } => "learn with one of these outputs and those that it reads",
             LearnError::Chain { .. } => "mend the rules of the outputs that the last one reads",
+            LearnError::Type2 => {
+                "remove the lower membership functions for learning, and add them again afterwards"
+            }
             LearnError::Blocks => "remove `blocks` and its rules; add blocks again after learning",
             LearnError::ReadsInputs { .. } => {
                 "replace it by a number, such as `{constant: 5}`; `tune` fits functions of inputs to rows, for rules that you write"

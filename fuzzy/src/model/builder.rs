@@ -206,6 +206,7 @@ impl Variable {
             name: name.into(),
             membership_function,
             height: 1.0,
+            lower: None,
         });
         self
     }

@@ -1,6 +1,6 @@
 //! A model that was parsed from a text, with the positions of its parts.
 
-use alloc::vec::Vec;
+use alloc::{boxed::Box, vec::Vec};
 use core::ops::Range;
 
 use super::Model;
@@ -123,6 +123,9 @@ pub struct TermSpans {
     pub names: Vec<Name>,
     /// The height.
     pub height: Range<usize>,
+    /// The parts of the lower membership function of an interval type-2 term; the fields above are those of the upper
+    /// one, except that `names` contains the names in both.
+    pub lower: Option<Box<TermSpans>>,
     /// Whether the membership function could not be parsed; a finding reports the error.
     pub(crate) unread: bool,
 }

@@ -14,6 +14,7 @@ mod partition;
 mod plateau;
 mod provenance;
 mod steps;
+pub(crate) mod type2;
 pub use crate::formula::Formula;
 pub(crate) use crate::shape::{Form, Parts};
 pub use crate::shape::{MembershipError, MembershipFunction, Role};
@@ -27,6 +28,7 @@ pub use builder::ModelBuilder;
 pub(crate) use partition::{between_peaks, even_peaks};
 pub use provenance::{DataFile, LossChange, Step};
 pub(crate) use steps::between_limits;
+pub use type2::Lower;
 
 /// A rule set: inputs, outputs, operators and rules.
 ///
@@ -103,10 +105,12 @@ pub struct Variable {
 pub struct Term {
     /// The name used in rules.
     pub name: String,
-    /// The membership function.
+    /// The membership function; of an interval type-2 term the upper one.
     pub membership_function: MembershipFunction,
     /// The height of the membership function, in (0, 1]; 1 by default.
     pub height: f64,
+    /// The lower membership function of an interval type-2 term; `None` for an ordinary term.
+    pub lower: Option<Lower>,
 }
 
 /// An output variable, with the method that reduces its fuzzy result to a number.

@@ -24,6 +24,7 @@ pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
             name: String::from(name),
             membership_function,
             height: 1.0,
+            lower: None,
         }
     };
     peaks.iter().enumerate().map(term).collect()

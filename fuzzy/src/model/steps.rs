@@ -15,6 +15,7 @@ pub(crate) fn between_limits(low: f64, high: f64, below: &[(&str, f64)], last: &
             name: String::from(name),
             membership_function,
             height: 1.0,
+            lower: None,
         }
     };
     let mut terms: Vec<Term> = below

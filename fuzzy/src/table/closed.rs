@@ -392,6 +392,22 @@ fn weighted<const L: usize>(
     });
 }
 
+/// Returns the number of a Takagi-Sugeno consequent at the values of the inputs.
+pub(crate) fn number<A: Arrays>(table: &A, consequent: &Consequent, inputs: &[[f64; 1]]) -> f64 {
+    let range = consequent.first as usize..consequent.end as usize;
+    let terms = table.coefficients().get(range).unwrap_or_default();
+    let code = consequent.first_code as usize..consequent.end_code as usize;
+    let code = table.points().get(code).unwrap_or_default();
+    let input = |index: usize| inputs.get(index).map_or(f64::NAN, |[value]| *value);
+    let linear = terms.iter().fold(consequent.constant, |z, c| {
+        z + c.coefficient * input(c.input as usize)
+    });
+    match code {
+        [] => linear,
+        code => linear + evaluate(code, input),
+    }
+}
+
 /// Adds the weighted values of a consequent, and its weights.
 #[inline(always)]
 fn add<const L: usize>(

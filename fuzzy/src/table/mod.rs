@@ -99,8 +99,8 @@ pub use set::{FuzzySet, OfMaxima, Section, SetDefuzzifier, SetTerm, Strand};
 pub use crate::shape::Kind;
 
 use crate::rows::{each, set};
-pub(crate) use closed::value_in_row;
 use closed::{closed, closed_apart, partition};
+pub(crate) use closed::{number, value_in_row};
 pub(crate) use firing::{fire, fire_row, has_cells_alone};
 use operators::{larger, smaller};
 pub(crate) use raising::{concluded_by, raised_by};
@@ -335,7 +335,7 @@ pub(crate) fn evaluate_rows<A, N, P, S, const L: usize, const CELLS: bool>(
 
 /// Clamps each value to the range of its input, including values that are not finite.
 #[inline(always)]
-fn clamp<A: Arrays, const L: usize>(
+pub(crate) fn clamp<A: Arrays, const L: usize>(
     table: &A,
     inputs: impl Iterator<Item = [f64; L]>,
     values: &mut [[f64; L]],

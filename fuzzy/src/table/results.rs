@@ -71,12 +71,13 @@ impl<const L: usize> Results<L> {
         (self.coverage[row] > 0.0).then_some(rule_of(self.rules[row]))
     }
 
-    /// Stores the outcome of a row.
+    /// Stores the outcome of a row; of an interval, only its middle.
     pub(crate) fn set(&mut self, row: usize, outcome: &Outcome) {
         (self.values[row], self.default_values[row]) = (f64::NAN, f64::NAN);
+        let value = outcome.value().unwrap_or(f64::NAN);
         match outcome.state {
-            State::Defined(value) => self.values[row] = value,
-            State::Default(value) | State::Previous(value) => self.default_values[row] = value,
+            State::Defined(_) | State::Interval { .. } => self.values[row] = value,
+            State::Default(_) | State::Previous(_) => self.default_values[row] = value,
             State::NoRuleFired | State::InputNotFinite => {}
         }
         self.coverage[row] = outcome.coverage;

@@ -29,24 +29,40 @@ impl Validator<'_> {
         }
         let no_spans = TermSpans::default();
         for (i, term) in variable.terms.iter().enumerate() {
-            let term_spans = spans.terms.get(i).unwrap_or(&no_spans);
+            let spans = spans.terms.get(i).unwrap_or(&no_spans);
+            if spans.unread {
+                continue;
+            }
             let what = format!("term `{}` of {what}", term.name);
-            if !term_spans.unread
-                && let Err(error) = term.membership_function.validate()
-            {
-                let blamed = error.parameter.and_then(|i| term_spans.parameters.get(i));
-                let here = blamed.unwrap_or(&term_spans.name);
-                let message = format!("{what}: {error}");
-                let help = "the positions of a membership function ascend, its widths are greater than 0, its degrees lie in [0, 1]";
-                self.error("wrong-parameter", here, message, help);
+            self.function(&what, &term.membership_function, term.height, spans);
+            if let Some(lower) = &term.lower {
+                let what = format!("the lower membership function of {what}");
+                let spans = spans.lower.as_deref().unwrap_or(&no_spans);
+                self.function(&what, &lower.membership_function, lower.height, spans);
             }
-            if !(term.height > 0.0 && term.height <= 1.0) {
-                let here = or(&term_spans.height, &term_spans.name);
-                let message = format!("the height {} of {what} is outside (0, 1]", term.height);
-                let help =
-                    "a height is the largest degree of membership: greater than 0, at most 1";
-                self.error("wrong-parameter", here, message, help);
-            }
+        }
+    }
+
+    /// Validates the parameters of a membership function, and its height.
+    fn function(
+        &mut self,
+        what: &str,
+        function: &MembershipFunction,
+        height: f64,
+        spans: &TermSpans,
+    ) {
+        if let Err(error) = function.validate() {
+            let blamed = error.parameter.and_then(|i| spans.parameters.get(i));
+            let here = blamed.unwrap_or(&spans.name);
+            let message = format!("{what}: {error}");
+            let help = "the positions of a membership function ascend, its widths are greater than 0, its degrees lie in [0, 1]";
+            self.error("wrong-parameter", here, message, help);
+        }
+        if !(height > 0.0 && height <= 1.0) {
+            let here = or(&spans.height, &spans.name);
+            let message = format!("the height {height} of {what} is outside (0, 1]");
+            let help = "a height is the largest degree of membership: greater than 0, at most 1";
+            self.error("wrong-parameter", here, message, help);
         }
     }
 
@@ -82,29 +98,44 @@ impl Validator<'_> {
             let no_spans = TermSpans::default();
             let spans = spans.terms.get(i).unwrap_or(&no_spans);
             let what = format!("term `{}` of input `{}`", term.name, input.name);
-            match &term.membership_function {
-                MembershipFunction::Linear { .. } => {
-                    let message = format!("{what} is a linear function");
-                    let help = "only outputs may have one; an input needs a membership function such as `triangle`";
-                    self.error("wrong-term", &spans.name, message, help);
-                    continue;
-                }
-                MembershipFunction::Function { formula } => {
-                    self.own_formula(&what, input, formula, spans);
-                }
-                _ => {}
+            self.function_is_set(&what, &term.membership_function, input, spans);
+            if let Some(lower) = &term.lower {
+                let what = format!("the lower membership function of {what}");
+                let spans = spans.lower.as_deref().unwrap_or(&no_spans);
+                self.function_is_set(&what, &lower.membership_function, input, spans);
             }
-            if let Some(number) = term.membership_function.number()
-                && !(0.0..=1.0).contains(&number)
-                && !spans.unread
-            {
-                let here = spans.parameters.first().unwrap_or(&spans.name);
-                let message = format!("the degree {number} of {what} is outside [0, 1]");
-                let help = format!(
-                    "a `constant` of an input is its degree everywhere; for values near {number} write a set such as `triangle`, for that value alone `singleton: {number}`"
-                );
-                self.error("wrong-parameter", here, message, &help);
+        }
+    }
+
+    fn function_is_set(
+        &mut self,
+        what: &str,
+        function: &MembershipFunction,
+        input: &Variable,
+        spans: &TermSpans,
+    ) {
+        match function {
+            MembershipFunction::Linear { .. } => {
+                let message = format!("{what} is a linear function");
+                let help = "only outputs may have one; an input needs a membership function such as `triangle`";
+                self.error("wrong-term", &spans.name, message, help);
+                return;
             }
+            MembershipFunction::Function { formula } => {
+                self.own_formula(what, input, formula, spans);
+            }
+            _ => {}
+        }
+        if let Some(number) = function.number()
+            && !(0.0..=1.0).contains(&number)
+            && !spans.unread
+        {
+            let here = spans.parameters.first().unwrap_or(&spans.name);
+            let message = format!("the degree {number} of {what} is outside [0, 1]");
+            let help = format!(
+                "a `constant` of an input is its degree everywhere; for values near {number} write a set such as `triangle`, for that value alone `singleton: {number}`"
+            );
+            self.error("wrong-parameter", here, message, &help);
         }
     }
 
@@ -181,9 +212,11 @@ impl Validator<'_> {
             self.error("value-outside-range", here, message, &help);
         }
         self.consequents_fit(&what, output, spans);
+        self.bounds_are_sets(&what, output, spans);
         let unread = spans.range_unread || spans.terms.iter().any(|term| term.unread);
         if self.findings.len() == first && !unread && !output.defuzzifier.is_weighted() {
             self.terms_have_area(&what, output, spans);
+            self.bounds(&what, variable, spans);
         }
     }
 

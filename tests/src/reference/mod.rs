@@ -1,6 +1,6 @@
 //! A second implementation of the documents, independent of the libraries: direct, slow, in `f64`.
 //!
-//! [`rules`] evaluates a rule set as docs/rule-sets.md defines it. [`flight`] follows a flight as docs/profiles.md defines
+//! [`rules`] evaluates a rule set as docs/rule-sets.md defines it, [`type2`] one with interval type-2 terms. [`flight`] follows a flight as docs/profiles.md defines
 //! it: it keeps every sample and computes every window from scratch.
 
 pub mod balance;
@@ -14,5 +14,6 @@ mod operators;
 pub mod rules;
 mod sets;
 mod shapes;
+pub mod type2;
 pub mod window;
 pub mod yaw;

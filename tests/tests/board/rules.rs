@@ -88,7 +88,7 @@ fn told(outcomes: &[Outcome]) -> String {
             State::Default(_) => 1,
             State::NoRuleFired => 2,
             State::InputNotFinite => 3,
-            State::Previous(_) => panic!("{outcome:?}"),
+            State::Previous(_) | State::Interval { .. } => panic!("{outcome:?}"),
         };
         format!(
             "{state} {} {} {} {}",

@@ -87,6 +87,8 @@ struct Plan {
     input_of: Vec<Option<usize>>,
     with: Vec<With>,
     suffix: String,
+    /// Whether each output is the middle of an interval, whose ends have columns of their own.
+    intervals: Vec<bool>,
     /// For each output, the column with its measured values.
     measured: Vec<Option<usize>>,
     delimiter: u8,
@@ -125,6 +127,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 .collect(),
         },
         suffix: arguments.suffix.clone(),
+        intervals: {
+            let model = engine.model();
+            let outputs = model.outputs.iter();
+            outputs.map(|output| model.has_interval(output)).collect()
+        },
         engine,
         header,
         with,
@@ -196,7 +203,13 @@ impl Plan {
                 .map(|output| format!("{output}_{word}"))
                 .collect(),
         };
-        let mut added = outputs.clone();
+        let mut added = Vec::new();
+        for (output, is_interval) in outputs.iter().zip(&self.intervals) {
+            added.push(output.clone());
+            if *is_interval {
+                added.extend(["low", "high"].map(|end| format!("{output}_{end}")));
+            }
+        }
         for with in &self.with {
             added.extend(match with {
                 With::Coverage | With::Rule => of_outputs(with.name()),

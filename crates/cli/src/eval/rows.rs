@@ -226,11 +226,13 @@ impl<'p> Evaluator<'p> {
                 writer.write_field(number_or_cell(&String::from_utf8_lossy(text)).as_bytes())?;
             }
         }
-        for outcome in outcomes {
-            let value = outcome
-                .value()
-                .map_or("", |value| digits(&mut number, value));
-            writer.write_field(value)?;
+        for (outcome, is_interval) in outcomes.iter().zip(&self.plan.intervals) {
+            let ends = [outcome.low(), outcome.high()];
+            let ends = ends.into_iter().filter(|_| *is_interval);
+            for value in std::iter::once(outcome.value()).chain(ends) {
+                let value = value.map_or("", |value| digits(&mut number, value));
+                writer.write_field(value)?;
+            }
         }
         for with in &self.plan.with {
             match with {

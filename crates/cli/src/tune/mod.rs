@@ -296,6 +296,7 @@ fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
         TuneError::Outputs { .. } => {
             "tune a rule set with one of these outputs and those that it reads"
         }
+        TuneError::Type2 => "remove the lower membership functions for tuning",
         TuneError::Unknown { .. } => "name a variable, or a term as `variable.term`",
         TuneError::NothingMoves => {
             "`--only` and `--fix` leave nothing to tune; `--rule-weights` tunes the weights of rules"

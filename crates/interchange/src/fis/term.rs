@@ -134,6 +134,7 @@ pub(super) fn read(
         name: name.to_owned(),
         membership_function: function,
         height: 1.0,
+        lower: None,
     };
     Some((term, spans))
 }

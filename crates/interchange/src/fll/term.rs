@@ -48,6 +48,7 @@ pub(crate) fn of_shape(
             name: name.to_owned(),
             membership_function,
             height: 1.0,
+            lower: None,
         };
         return Some((term, spans));
     }
@@ -108,6 +109,7 @@ pub(crate) fn of_shape(
             name: name.to_owned(),
             membership_function: function,
             height,
+            lower: None,
         },
         spans,
     ))

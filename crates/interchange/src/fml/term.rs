@@ -95,6 +95,7 @@ pub(super) fn read(
         name: name.to_owned(),
         membership_function: function,
         height: 1.0,
+        lower: None,
     };
     Some((term, spans))
 }
@@ -218,6 +219,7 @@ pub(super) fn tsk(
         name: name.to_owned(),
         membership_function,
         height: 1.0,
+        lower: None,
     };
     Some((term, spans))
 }

@@ -89,6 +89,9 @@ pub enum SimplifyError {
         /// The number of rules.
         rules: usize,
     },
+    /// The rule set has interval type-2 terms.
+    #[error("the rule set has type-2 terms, with which rules cannot be merged")]
+    Type2,
     /// The model cannot be used.
     #[error(transparent)]
     Compile(#[from] Findings),
@@ -148,6 +151,9 @@ pub fn simplify(
         return Err(SimplifyError::TooManyRules {
             rules: model.rules.len(),
         });
+    }
+    if model.has_type2_terms() {
+        return Err(SimplifyError::Type2);
     }
     // Detects an invalid model before points are generated.
     Engine::new(model)?;

@@ -80,8 +80,9 @@ fn any_variable() -> impl Strategy<Value = Variable> {
         option::of(any_text()),
         option::of(any_text()),
         0.1..=1.0f64,
+        option::weighted(0.05, 0.3..=1.0f64),
     )
-        .prop_map(|([low, high], shapes, unit, description, height)| {
+        .prop_map(|([low, high], shapes, unit, description, height, lower)| {
             let high = if low < high { high } else { low + 1.0 };
             let mut variable = Variable::new("x", low, high);
             let names: Vec<String> = (0..shapes.len()).map(|i| format!("t {i}")).collect();
@@ -93,6 +94,10 @@ fn any_variable() -> impl Strategy<Value = Variable> {
                         .zip(sets)
                         .map(|(name, membership_function)| Term {
                             name,
+                            lower: lower.map(|part| Lower {
+                                membership_function: membership_function.clone(),
+                                height: part * height,
+                            }),
                             membership_function,
                             height,
                         });

@@ -1,0 +1,347 @@
+//! Type reduction: the interval of the centroids of all sets between a lower and an upper aggregated set.
+//!
+//! The left end of the interval of a set between `lower(x)` and `upper(x)` is the smallest centroid. It is reached by the
+//! set that is as high as possible left of its own centroid and as low as possible right of it. So the left end is the
+//! root c of
+//!
+//! ```text
+//! F(c) = integral of (c - x) upper(x) over x < c  +  integral of (c - x) lower(x) over x > c
+//! ```
+//!
+//! F is convex and never decreases, since its derivative is the area of the upper set left of c plus the area of the lower
+//! set right of c. Between the kinks of straight sets it is a cubic. Newton's method with the exact integrals of the
+//! pieces therefore approaches the root from one side, without samples, and ends at the last digit. The right end is its
+//! mirror image. For weighted numbers the integrals are sums, F is a polygon, and the search ends after finitely many
+//! steps.
+//!
+//! If the lower set is empty, the centroid of a narrow set anywhere inside the upper one is possible: the interval is the
+//! support of the upper set.
+
+use alloc::vec::Vec;
+
+use super::curves::Curves;
+use super::piece::{Integrals, Piece, unit};
+use super::workspace::Workspace;
+use super::{Joint, Strengths};
+use crate::model::{Defuzzifier, Output, Term, type2::Bound};
+use crate::table::operators::{larger, smaller};
+
+/// The maximum number of steps of the search for an end. A few are enough, unless the lower set is almost empty. Then a
+/// step leaves up to two thirds of the distance to the end, so that the rest is far below rounding.
+const MOST_STEPS: usize = 250;
+
+/// The type reduction of an output.
+#[derive(Debug, Clone)]
+pub(crate) enum Reduction {
+    /// The centroid of a fuzzy set.
+    Set(Set),
+    /// The centroid of singletons.
+    Singletons(Vec<Singleton>, Joint),
+    /// Takagi-Sugeno: the weighted average of numbers.
+    Average,
+    /// Takagi-Sugeno: the weighted sum of numbers.
+    Sum,
+}
+
+/// The terms of a fuzzy output.
+#[derive(Debug, Clone)]
+pub(crate) struct Set {
+    low: f64,
+    high: f64,
+    joint: Joint,
+    lower: Curves,
+    upper: Curves,
+}
+
+/// A term that is a single point.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Singleton {
+    at: f64,
+    term: usize,
+    lower_height: f64,
+    upper_height: f64,
+}
+
+/// A number with the bounds of its weight.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Weighted {
+    at: f64,
+    lower: f64,
+    upper: f64,
+}
+
+/// An end of the interval.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    Left,
+    Right,
+}
+
+impl Reduction {
+    /// Creates the type reduction of an output of a valid model.
+    pub(crate) fn new(output: &Output, joint: Joint) -> Self {
+        let terms = &output.variable.terms;
+        match output.defuzzifier {
+            Defuzzifier::WeightedSum => return Reduction::Sum,
+            Defuzzifier::WeightedAverage => return Reduction::Average,
+            Defuzzifier::Centroid
+            | Defuzzifier::Bisector
+            | Defuzzifier::SmallestOfMaxima
+            | Defuzzifier::MeanOfMaxima
+            | Defuzzifier::LargestOfMaxima
+            | Defuzzifier::Tsukamoto => {}
+        }
+        if output.is_discrete() {
+            let points = terms.iter().enumerate().filter_map(|(index, term)| {
+                Some(Singleton {
+                    at: term.membership_function.at()?,
+                    term: index,
+                    lower_height: term.lower.as_ref().map_or(term.height, |it| it.height),
+                    upper_height: term.height,
+                })
+            });
+            let mut points: Vec<Singleton> = points.collect();
+            points.sort_by(|a, b| a.at.total_cmp(&b.at).then(a.term.cmp(&b.term)));
+            return Reduction::Singletons(points, joint);
+        }
+        let (low, high) = (output.variable.low, output.variable.high);
+        let curves = |bound: Bound| {
+            let terms: Vec<Term> = terms.iter().map(|term| term.only(bound)).collect();
+            Curves::new(&terms, low, high)
+        };
+        Reduction::Set(Set {
+            low,
+            high,
+            joint,
+            lower: curves(Bound::Lower),
+            upper: curves(Bound::Upper),
+        })
+    }
+
+    /// Returns the maximum number of cuts of an evaluation, not counting those of its activations.
+    pub(crate) fn cuts(&self) -> usize {
+        match self {
+            Reduction::Set(set) => set.lower.workspace().max(set.upper.workspace()),
+            Reduction::Singletons(..) | Reduction::Average | Reduction::Sum => 0,
+        }
+    }
+
+    /// Returns the ends of the interval; `None` if no rule fires or the ends are not finite. `number` returns the number
+    /// of a term of a Takagi-Sugeno output. `points` is memory for one element per term.
+    pub(crate) fn interval(
+        &self,
+        lower: Strengths<'_>,
+        upper: Strengths<'_>,
+        number: impl Fn(usize) -> f64,
+        workspace: &mut Workspace,
+        points: &mut Vec<Weighted>,
+    ) -> Option<(f64, f64)> {
+        points.clear();
+        let (left, right) = match self {
+            Reduction::Set(set) => set.interval(lower, upper, workspace)?,
+            Reduction::Singletons(singletons, joint) => {
+                points.extend(singletons.chunk_by(|a, b| a.at == b.at).filter_map(|same| {
+                    let degree = |strengths: Strengths<'_>, height: fn(&Singleton) -> f64| {
+                        let of = |one| strengths.of(one).iter().filter(|h| **h > 0.0);
+                        let parts = same.iter().flat_map(|one| {
+                            of(one.term).map(|h| joint.implication.of(*h, height(one)))
+                        });
+                        parts.fold(0.0, |all, part| joint.aggregation.of(all, part))
+                    };
+                    Some(Weighted {
+                        at: same.first()?.at,
+                        lower: degree(lower, |one| one.lower_height),
+                        upper: degree(upper, |one| one.upper_height),
+                    })
+                }));
+                average(points)?
+            }
+            Reduction::Average | Reduction::Sum => {
+                let total = |all: &[f64]| all.iter().sum::<f64>();
+                let terms = 0..upper.offsets.len().saturating_sub(1);
+                let terms = terms.filter(|term| total(upper.of(*term)) > 0.0);
+                points.extend(terms.map(|term| Weighted {
+                    at: number(term),
+                    lower: total(lower.of(term)),
+                    upper: total(upper.of(term)),
+                }));
+                match self {
+                    Reduction::Sum => sum(points)?,
+                    _ => average(points)?,
+                }
+            }
+        };
+        (left.is_finite() && right.is_finite()).then_some((left, right))
+    }
+}
+
+impl Set {
+    fn interval(
+        &self,
+        lower: Strengths<'_>,
+        upper: Strengths<'_>,
+        workspace: &mut Workspace,
+    ) -> Option<(f64, f64)> {
+        let Set { low, high, .. } = *self;
+        let unit = unit(high - low);
+        let mut whole = [Integrals::about(low + 0.5 * (high - low), unit); 2];
+        let mut support = (high, low);
+        self.upper
+            .pieces(upper, self.joint, workspace, &mut |piece| {
+                whole[1].add(piece);
+                if has_area(piece) {
+                    support = (smaller(support.0, piece.from), piece.to);
+                }
+            });
+        self.lower
+            .pieces(lower, self.joint, workspace, &mut |piece| {
+                whole[0].add(piece);
+            });
+        let start = whole[1].centroid()?;
+        if whole[0].area <= 0.0 {
+            return Some(support);
+        }
+        let mut sums = |end: End, x: f64| {
+            let mut sums = Integrals::about(x, unit);
+            let below = (f64::NEG_INFINITY, x);
+            let above = (x, f64::INFINITY);
+            let (of_upper, of_lower) = match end {
+                End::Left => (below, above),
+                End::Right => (above, below),
+            };
+            self.upper
+                .pieces(upper, self.joint, workspace, &mut |piece| {
+                    sums.add_between(piece, of_upper);
+                });
+            self.lower
+                .pieces(lower, self.joint, workspace, &mut |piece| {
+                    sums.add_between(piece, of_lower);
+                });
+            (sums.area, sums.moment)
+        };
+        let range = (low, high);
+        let left = search(End::Left, start, range, |x| sums(End::Left, x));
+        let right = search(End::Right, start, range, |x| sums(End::Right, x));
+        Some((left, right))
+    }
+}
+
+fn has_area(piece: &Piece<'_>) -> bool {
+    let inside = |curve: super::piece::Curve<'_>| (curve.degree)(0.5) > 0.0;
+    piece.left > 0.0 || piece.right > 0.0 || piece.curve.is_some_and(inside)
+}
+
+/// Returns the interval of `sum(w x) / sum(w)` over all weights between their bounds; `None` if all are 0.
+fn average(points: &[Weighted]) -> Option<(f64, f64)> {
+    let mut positive = points.iter().filter(|point| point.upper > 0.0);
+    let first = positive.next()?.at;
+    let (low, high) = positive.fold((first, first), |(low, high), point| {
+        (smaller(low, point.at), larger(high, point.at))
+    });
+    if points.iter().all(|point| point.lower <= 0.0) {
+        return Some((low, high));
+    }
+    let sums = |end: End, x: f64| {
+        let (mut total, mut moment) = (0.0, 0.0);
+        for point in points {
+            let below = point.at < x;
+            let weight = if below == (end == End::Left) {
+                point.upper
+            } else {
+                point.lower
+            };
+            total += weight;
+            moment += weight * (point.at - x);
+        }
+        (total, moment)
+    };
+    let (range, start) = ((low, high), low + 0.5 * (high - low));
+    let left = search(End::Left, start, range, |x| sums(End::Left, x));
+    let right = search(End::Right, start, range, |x| sums(End::Right, x));
+    Some((left, right))
+}
+
+/// Returns the interval of `sum(w x)` over all weights between their bounds; `None` if all are 0.
+fn sum(points: &[Weighted]) -> Option<(f64, f64)> {
+    let (mut low, mut high) = (0.0, 0.0);
+    for point in points {
+        let (one, other) = (point.lower * point.at, point.upper * point.at);
+        low += smaller(one, other);
+        high += larger(one, other);
+    }
+    (!points.is_empty()).then_some((low, high))
+}
+
+/// Returns an end of the interval by Newton's method. `sums` returns the area and the moment about x of the set that is
+/// the upper one on the side of the end, and the lower one on the other side of x.
+fn search(
+    end: End,
+    start: f64,
+    (low, high): (f64, f64),
+    mut sums: impl FnMut(f64) -> (f64, f64),
+) -> f64 {
+    let mut x = start;
+    for step in 0..MOST_STEPS {
+        let (area, moment) = sums(x);
+        let next = larger(low, smaller(high, x + moment / area));
+        // The first step may come from the wrong side; all later ones approach the root from inside the interval, up to
+        // rounding.
+        let approaches = match end {
+            End::Left => next < x,
+            End::Right => next > x,
+        };
+        if next.is_nan() || (step > 0 && !approaches) {
+            break;
+        }
+        x = next;
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(all: &[(f64, f64, f64)]) -> Vec<Weighted> {
+        let points = all
+            .iter()
+            .map(|&(at, lower, upper)| Weighted { at, lower, upper });
+        points.collect()
+    }
+
+    #[test]
+    fn averages_by_hand() {
+        // The weights of 0 and 10 lie in [1, 3]: 1 * 10 / 4 and 3 * 10 / 4.
+        let two = points(&[(10.0, 1.0, 3.0), (0.0, 1.0, 3.0)]);
+        assert_eq!(average(&two), Some((2.5, 7.5)));
+        // Equal bounds give a number.
+        let crisp = points(&[(4.0, 0.5, 0.5), (8.0, 0.5, 0.5)]);
+        assert_eq!(average(&crisp), Some((6.0, 6.0)));
+        // Without a lower bound every average is possible, and also each number alone.
+        let open = points(&[(4.0, 0.0, 0.5), (8.0, 0.0, 0.1), (9.0, 0.0, 0.0)]);
+        assert_eq!(average(&open), Some((4.0, 8.0)));
+        assert_eq!(average(&points(&[(4.0, 0.0, 0.0)])), None);
+    }
+
+    #[test]
+    fn sums_by_hand() {
+        let two = points(&[(10.0, 0.25, 0.5), (-4.0, 0.0, 1.0)]);
+        assert_eq!(sum(&two), Some((2.5 - 4.0, 5.0)));
+        assert_eq!(sum(&[]), None);
+    }
+
+    #[test]
+    fn an_almost_empty_lower_set_ends_near_the_support() {
+        for tiny in [1e-6, 1e-12, 1e-100, 1e-300] {
+            // The root of c^3 / 6 - tiny c = tiny / 2 (1 - c)^2 is close to that of c^3 = 3 tiny.
+            let upper = |x: f64| (0.5 * x * x, -x * x * x / 6.0);
+            let lower = |x: f64| (tiny * (1.0 - x), 0.5 * tiny * (1.0 - x) * (1.0 - x));
+            let left = search(End::Left, 2.0 / 3.0, (0.0, 1.0), |x| {
+                (upper(x).0 + lower(x).0, upper(x).1 + lower(x).1)
+            });
+            let (upper, lower) = (upper(left).1, lower(left).1);
+            let is_root = (upper + lower).abs() <= 1e-12 * lower;
+            assert!(is_root || left < 1e-40, "{tiny} {left}");
+        }
+    }
+}

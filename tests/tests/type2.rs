@@ -1,0 +1,115 @@
+//! Interval type-2 rule sets, compared with sums over many samples for all switch points, and with published figures.
+
+use flagred_tests::random_type2::{Kind, model};
+use flagred_tests::reference::type2;
+use fuzzy::{Engine, Model};
+
+/// Compares `count` random models, each at three points. Returns the number of intervals.
+fn compare(kind: Kind, count: usize, samples: usize, tolerance: f64) -> usize {
+    let models = (0..).filter_map(|seed| Some((seed, model(seed, kind)?)));
+    let (mut values, mut worst) = (0, 0.0_f64);
+    for (seed, (model, points)) in models.take(count) {
+        let engine = Engine::new(&model).unwrap();
+        let output = &model.outputs[0];
+        let range = match kind {
+            Kind::Numbers => 1.0,
+            Kind::Straight | Kind::Curved => output.variable.high - output.variable.low,
+        };
+        for point in &points {
+            let outcome = engine.evaluate(point).unwrap()[0];
+            let expected = type2::interval(&model, output, point, samples);
+            let (Some(low), Some(high), Some(expected)) = (outcome.low(), outcome.high(), expected)
+            else {
+                assert_eq!(outcome.value().is_none(), expected.is_none(), "seed {seed}");
+                continue;
+            };
+            let error = |expected: type2::Interval| {
+                let errors = [low - expected.low, high - expected.high];
+                let errors = errors.map(|error| error.abs() / range);
+                errors[0].max(errors[1])
+            };
+            // Near an empty lower set, the ends depend on a few samples.
+            let tolerance = match expected.lower_share {
+                share if share < 1e-2 => 1e-2,
+                _ => tolerance,
+            };
+            let mut worst_here = error(expected);
+            if worst_here > tolerance {
+                // An error of the samples is a hundredth with ten times as many.
+                let finer = type2::interval(&model, output, point, 10 * samples);
+                worst_here = error(finer.unwrap());
+            }
+            assert!(
+                worst_here <= tolerance,
+                "seed {seed} at {point:?}: {low} to {high}, not {expected:?} ({worst_here:e})\n{model:?}"
+            );
+            if tolerance < 1e-3 {
+                values += 1;
+                worst = worst.max(worst_here);
+            }
+            let value = outcome.value().unwrap();
+            assert!((low..=high).contains(&value), "{outcome:?}");
+        }
+    }
+    println!("{values} intervals of {kind:?} terms, worst {worst:e} of the range");
+    values
+}
+
+#[test]
+fn straight_terms_have_the_interval_of_all_switch_points() {
+    assert!(compare(Kind::Straight, 40, 20_000, 1e-9) > 60);
+}
+
+#[test]
+fn curved_terms_and_all_operators_have_the_interval_of_all_switch_points() {
+    assert!(compare(Kind::Curved, 25, 20_000, 1e-9) > 30);
+}
+
+#[test]
+fn weighted_numbers_have_the_interval_of_all_corners() {
+    assert!(compare(Kind::Numbers, 400, 0, 1e-12) > 800);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn thousands_of_intervals() {
+    assert!(compare(Kind::Straight, 1000, 40_000, 1e-9) > 1500);
+    assert!(compare(Kind::Curved, 500, 40_000, 1e-9) > 600);
+    assert!(compare(Kind::Numbers, 20_000, 0, 1e-12) > 40_000);
+}
+
+/// Returns the centroid of a word of the code book of Wu and Mendel (A comparative study of ranking methods, similarity measures and
+/// uncertainty measures for interval type-2 fuzzy sets, Information Sciences 179, 2009), whose parameters and centroids are
+/// printed with two decimals.
+fn centroid(upper: &str, lower: &str) -> (f64, f64) {
+    let text = format!(
+        "
+fuzzy: 1
+name: word
+inputs: {{x: {{range: [0, 1], partition: [no, yes]}}}}
+outputs: {{word: {{range: [0, 10], terms: {{it: {{upper: {{trapezoid: {upper}}}, lower: {lower}}}}}}}}}
+rules: [IF x IS any THEN word IS it]
+"
+    );
+    let model: Model = text.parse().unwrap();
+    let outcome = Engine::new(&model).unwrap().evaluate(&[0.0]).unwrap()[0];
+    (outcome.low().unwrap(), outcome.high().unwrap())
+}
+
+#[test]
+fn words_have_their_published_centroids() {
+    let a_bit = centroid(
+        "[0.59, 1.5, 2, 3.41]",
+        "{triangle: [0.79, 1.68, 2.21], height: 0.74}",
+    );
+    assert!(
+        (a_bit.0 - 1.42).abs() < 0.01 && (a_bit.1 - 2.08).abs() < 0.01,
+        "{a_bit:?}"
+    );
+    let very_little = centroid("[0, 0, 0.14, 1.97]", "{trapezoid: [0, 0, 0.05, 0.66]}");
+    let (low, high) = very_little;
+    assert!(
+        (low - 0.22).abs() < 0.01 && (high - 0.73).abs() < 0.01,
+        "{very_little:?}"
+    );
+}
