@@ -61,16 +61,27 @@ export interface Stretch {
 export const PARTS = [
   'head',
   'risk',
+  'track',
   'map',
   'inputs',
   'rules',
   'motors',
   'attitude',
   'events',
+  'signals',
   'sources',
   'texts',
 ] as const;
 export type Part = (typeof PARTS)[number];
+
+/** A signal of a log. */
+export interface SignalLabel {
+  name: string;
+  /** Empty if it has none or it is unknown. */
+  unit: string;
+  /** The message and field that contain it. */
+  source: string;
+}
 
 /** Returns the style sheet of {@link Assessment.part} and {@link Comparison.part}. */
 export const reportStyle = (): string => guarded(() => wasm.reportStyle());
@@ -108,7 +119,10 @@ export class Profile {
     return guarded(() => this.inner.warnings);
   }
 
-  /** The signals that must be read from a log to assess it with this profile and to draw the report. */
+  /**
+   * The signals that must be read from a log to assess it with this profile. The report of a flight that was read with
+   * these has no others; that of a flight with all signals offers them all.
+   */
   get signals(): string[] {
     return guarded(() => this.inner.signals);
   }
@@ -226,6 +240,16 @@ export class Assessment {
   /** Returns a part of the report as HTML in which all text is escaped; empty if there is nothing to show. */
   part(part: Part, stretch?: Stretch): string {
     return guarded(() => this.inner.part(part, stretch?.start_s, stretch?.end_s));
+  }
+
+  /** Returns the signals of the log that were read and have a known value. */
+  signals(): SignalLabel[] {
+    return JSON.parse(guarded(() => this.inner.signals())) as SignalLabel[];
+  }
+
+  /** Returns the charts of some signals as HTML, as {@link Assessment.part} does. */
+  signalCharts(names: string[], stretch?: Stretch): string {
+    return guarded(() => this.inner.signalCharts(names, stretch?.start_s, stretch?.end_s));
   }
 
   /** Returns the state at a time, and the rules that fire. */
