@@ -24,7 +24,7 @@ const guarded = guard(wasm.panicMessage);
 
 /** Loads the module for flight logs, from the file next to this one or from `source`. Later calls do nothing. */
 export async function startFlight(source?: Source): Promise<void> {
-  await wasm.default({ module_or_path: source ?? (await beside('flight')) });
+  await wasm.default({ module_or_path: source ?? (await beside(new URL('./wasm/flight_bg.wasm', import.meta.url))) });
 }
 
 /** Available only in workers. */
@@ -60,6 +60,7 @@ export interface Stretch {
 /** The parts of a report, in their order. */
 export const PARTS = [
   'head',
+  'about',
   'risk',
   'track',
   'map',
@@ -141,7 +142,7 @@ export class Profile {
 
   /** Frees its memory. */
   free(): void {
-    this.inner.free();
+    guarded(() => this.inner.free());
   }
 }
 
@@ -197,7 +198,7 @@ export class Flight {
 
   /** Frees its memory. */
   free(): void {
-    this.inner.free();
+    guarded(() => this.inner.free());
   }
 }
 
@@ -259,7 +260,7 @@ export class Assessment {
 
   /** Frees its memory. */
   free(): void {
-    this.inner.free();
+    guarded(() => this.inner.free());
   }
 }
 
@@ -299,6 +300,6 @@ export class Comparison {
 
   /** Frees its memory. */
   free(): void {
-    this.inner.free();
+    guarded(() => this.inner.free());
   }
 }

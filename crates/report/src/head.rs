@@ -16,14 +16,20 @@ use crate::{
     words,
 };
 
-/// Verdict and findings, then vehicle, limitations of the verdict and figures.
+/// Verdict and findings.
 pub(crate) fn head(subject: &Subject, loaded: &Loaded) -> Markup {
+    html! {
+        h1 { (badge(&subject.assessed.verdict)) " " (subject.title()) }
+        (findings(subject, loaded))
+    }
+}
+
+/// Figures, vehicle and limitations of the verdict.
+pub(crate) fn about(subject: &Subject, loaded: &Loaded) -> Markup {
     let Subject {
         flight, assessed, ..
     } = subject;
     html! {
-        h1 { (badge(&assessed.verdict)) " " (subject.title()) }
-        (findings(subject, loaded))
         (figures(subject))
         p.soft { (words::vehicle(flight)) }
         @if !flight.report.is_clean() {

@@ -15,7 +15,7 @@ use crate::{
     clock::Clock,
     curve::Stretch,
     decision,
-    head::head,
+    head::{about, head},
     offered,
     panel::panel,
     sources::sources,
@@ -53,8 +53,10 @@ impl Subject {
 /// The parts of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// Verdict, vehicle, findings and figures.
+    /// Verdict and findings.
     Head,
+    /// Figures, vehicle and limitations of the verdict.
+    About,
     /// Risk over time.
     Risk,
     /// The track over ground.
@@ -81,8 +83,9 @@ pub enum Part {
 
 impl Part {
     /// All parts, in their order on the page.
-    pub const ALL: [Part; 12] = [
+    pub const ALL: [Part; 13] = [
         Part::Head,
+        Part::About,
         Part::Risk,
         Part::Track,
         Part::Map,
@@ -100,6 +103,7 @@ impl Part {
     pub fn name(self) -> &'static str {
         match self {
             Part::Head => "head",
+            Part::About => "about",
             Part::Risk => "risk",
             Part::Track => "track",
             Part::Map => "map",
@@ -157,6 +161,7 @@ impl<'a> Report<'a> {
         let stretch = timeline.stretch;
         match part {
             Part::Head => head(subject, loaded),
+            Part::About => about(subject, loaded),
             Part::Risk => {
                 let risk = charts::risk(assessed, estimator, stretch);
                 section("Risk over time", "", risk, timeline)
