@@ -35,7 +35,7 @@ export function inOrder<T>(given: ArrayLike<T> | Readonly<Record<string, T>>, in
   const wrong = Object.keys(given).find((name) => !inputs.includes(name));
   if (wrong !== undefined) throw refusal(`\`${wrong}\` is not an input of the rule set`, `the inputs are ${quoted(inputs)}`);
   return inputs.map((name) => {
-    if (Object.hasOwn(given, name)) return given[name]!;
+    if (Object.hasOwn(given, name)) return (given as Readonly<Record<string, T>>)[name]!;
     throw refusal(`input \`${name}\` has no value`, 'give `null` if it is unknown');
   });
 }

@@ -18,23 +18,22 @@ use crate::{
 };
 
 /// The signals that a report draws in addition to those of the profile.
-pub(crate) const SIGNALS: [&str; 10] = [
+pub(crate) const SIGNALS: [&str; 6] = [
     "roll_des_deg",
     "roll_deg",
     "pitch_des_deg",
     "pitch_deg",
     "battery_v",
     "battery_remaining_pct",
-    "latitude_deg",
-    "longitude_deg",
-    "north_m",
-    "east_m",
 ];
+/// The signals of which the track is drawn.
+pub(crate) const POSITIONS: [&str; 4] = ["latitude_deg", "longitude_deg", "north_m", "east_m"];
 
 /// The signals that are needed to assess a log and to draw its report without the signals that readers may add.
 pub fn signals(estimator: &Estimator) -> Vec<String> {
     let of_profile = estimator.profile().signals().into_iter();
-    let mut signals: Vec<String> = of_profile.chain(SIGNALS).map(str::to_owned).collect();
+    let drawn = SIGNALS.into_iter().chain(POSITIONS);
+    let mut signals: Vec<String> = of_profile.chain(drawn).map(str::to_owned).collect();
     signals.sort_unstable();
     signals.dedup();
     signals

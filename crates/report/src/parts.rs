@@ -166,7 +166,12 @@ impl<'a> Report<'a> {
                 let risk = charts::risk(assessed, estimator, stretch);
                 section("Risk over time", "", risk, timeline)
             }
-            Part::Track => track::map(flight, assessed, subject.stretch()).unwrap_or_default(),
+            Part::Track => html! {
+                @if let Some(map) = track::map(flight, assessed, subject.stretch()) {
+                    h2 { "Track over ground" }
+                    (map)
+                }
+            },
             Part::Map => html! {
                 @if let Some(map) = decision::map(estimator, model, &assessed.steps) {
                     h2 { "The rules and their inputs" }

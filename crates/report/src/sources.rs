@@ -61,7 +61,9 @@ pub(crate) fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
     let signals = loaded.estimator.profile().signals();
     let drawn = charts::SIGNALS.into_iter();
     let drawn = drawn.filter(|name| has_motors || flight.signal(name).is_some());
-    for name in signals.into_iter().chain(drawn) {
+    let positions = charts::POSITIONS.into_iter();
+    let positions = positions.filter(|name| flight.signal(name).is_some());
+    for name in signals.into_iter().chain(drawn).chain(positions) {
         let value = flight.signal(name).map(|signal| {
             let rate = signal.rate_hz().map(|hz| format!(", {hz:.1} Hz"));
             format!("{}{}", signal.label.source, rate.unwrap_or_default())

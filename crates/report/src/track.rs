@@ -96,7 +96,7 @@ pub(crate) fn map(flight: &Flight, assessed: &Assessment, stretch: Stretch) -> O
     let length = minutes(stretch.length_s(), 0);
     Some(html! {
         figure.track data-start=(number(stretch.start_s, 3)) data-points=(data) {
-            figcaption { b { "Track over ground" } " " output {} }
+            figcaption { b { "North is up." } " " output {} }
             .area {
                 svg viewBox={ (m(left)) " " (m(top)) " " (m(side)) " " (m(side)) } {
                     title { "The track of " (length) " minutes, seen from above, north up, coloured by risk" }

@@ -58,7 +58,7 @@ function highest({ summary, findings }: Brief): number | undefined {
   return values.length > 0 ? Math.max(...values) : undefined;
 }
 
-const GRAVITY: Record<Brief['verdict'], number> = { NA: 0, GOOD: 1, INFO: 2, WARN: 3, FAIL: 4 };
+const GRAVITY: Record<Brief['verdict'], number> = { NA: 0, GOOD: 1, WARN: 2, FAIL: 3 };
 
 /** The columns: heading, text, and what they are sorted by; unknown values come last. */
 const COLUMNS: [string, (entry: Entry) => string, (entry: Entry) => number | string | undefined][] = [

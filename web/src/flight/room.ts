@@ -57,7 +57,7 @@ export function open(root: HTMLElement, app: App): Room {
   });
   const profile = profiles((source) => quiet(useProfile(source, {})));
   const compareButton = h('button', { type: 'button', 'aria-pressed': 'false' }, 'Compare');
-  const closeButton = h('button', { type: 'button' }, 'Close');
+  const closeButton = h('button', { type: 'button', 'aria-label': 'Close' }, h('span', { class: 'wide' }, 'Close'), h('span', { class: 'narrow' }, '×'));
   const downloads = downloadMenu((kind) => quiet(save(kind)));
   const plotted = picker((names) => {
     signals = names;
