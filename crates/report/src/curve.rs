@@ -29,7 +29,7 @@ const STEPS_S: [f64; 17] = [
     3600.0, 7200.0,
 ];
 /// The maximum number of ticks along the time axis, which must fit on a phone.
-const MOST_TICKS: f64 = 7.0;
+const MOST_TICKS: f64 = 6.0;
 
 impl Stretch {
     /// The length in seconds, at least a millisecond.

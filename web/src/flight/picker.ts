@@ -27,7 +27,8 @@ export function picker(choose: (names: string[]) => void): Picker {
       chosen = box.checked ? [...chosen, name] : chosen.filter((other) => other !== name);
       choose(chosen);
     });
-    const words = unit ? `${source}, ${unit}` : source;
+    // The column of a flight CSV has the name of the signal.
+    const words = [source.includes(name) ? '' : source, unit].filter(Boolean).join(', ');
     return h('label', {}, box, h('span', {}, name), h('span', { class: 'soft' }, words));
   };
   return {

@@ -92,7 +92,11 @@ export function open(root: HTMLElement, app: App): Room {
     });
   }
 
-  const listLogs = (): void => list.show(entries, isComparing ? undefined : current);
+  const listLogs = (): void => {
+    list.show(entries, isComparing ? undefined : current);
+    // The table of several logs removes them.
+    closeButton.hidden = entries.length > 1;
+  };
   const source = (): ProfileSource => (isUnchanged(changes) || !facts ? base : { ...base, text: facts.text });
   const view = (): Stretch => shown ?? whole;
   const done = (): Entry[] => entries.filter((entry) => entry.state === 'done');
@@ -249,7 +253,7 @@ export function open(root: HTMLElement, app: App): Room {
   async function draw(report: Report, isAll: boolean): Promise<void> {
     const wanted = shown;
     compareButton.setAttribute('aria-pressed', String(isComparing));
-    aside.hidden = plotted.element.hidden = closeButton.hidden = isComparing;
+    aside.hidden = plotted.element.hidden = isComparing;
     if (isComparing) {
       const { html, length_s } = await engine.call('compareLogs', done().map(({ log }) => log), source(), wanted);
       whole = { start_s: 0, end_s: length_s };
