@@ -75,7 +75,7 @@ def by_pyulog(log, topics):
 
 
 def peer_of(log):
-    """Name of the peer, what it does, the messages of commands and attitude."""
+    """Name of the peer, its description, and the messages of commands and attitude."""
     start = Path(log).read_bytes()[:16]
     if start.startswith(b"ULog"):
         topics = ["actuator_motors", "actuator_outputs", "vehicle_attitude",
@@ -111,7 +111,7 @@ def speed(binary, logs):
 
 @contextlib.contextmanager
 def silence():
-    """The peers tell every damaged byte, pymavlink's C part around Python's own streams."""
+    """Suppresses the messages of the peers about every damaged byte; the C part of pymavlink bypasses Python's streams."""
     sys.stdout.flush()
     kept = [os.dup(stream) for stream in (1, 2)]
     nothing = os.open(os.devnull, os.O_WRONLY)
@@ -128,7 +128,7 @@ def silence():
 
 
 def damaged(log, seed):
-    """A copy with twenty holes of up to 512 bytes behind its first tenth, where definitions are."""
+    """A copy with twenty holes of up to 512 bytes after its first tenth, which contains definitions."""
     choose = random.Random(seed)
     data = bytearray(Path(log).read_bytes())
     for _ in range(20):
@@ -153,7 +153,7 @@ def damage(binary, logs, copies):
                     with silence():
                         counts = read(copy.name)
                     theirs = max(counts[c] for c in commands) + counts[attitude]
-                except Exception:  # the peer gives up
+                except Exception:  # the peer fails
                     theirs = 0
                 own = ours(binary, copy.name, 1, ["roll_deg"])
                 mine = own["commands"] + own["attitude"]

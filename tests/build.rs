@@ -1,4 +1,4 @@
-//! Finds the documents, and makes a test of every Rust block in them, so that what is printed is what runs.
+//! Finds the documents and creates a test of every Rust block in them, so that the printed code is the code that runs.
 
 use std::{env, fmt::Write as _, fs, path::Path};
 
@@ -42,7 +42,7 @@ fn main() -> std::io::Result<()> {
     fs::write(Path::new(&out).join("documents.rs"), tests)
 }
 
-/// A test for each block that is fenced as `rust`. The tests run at the root of the repository, where a reader stands.
+/// Adds a test for each block fenced as `rust`. The tests run at the root of the repository, like the commands of a reader.
 fn add(tests: &mut String, page: &str, text: &str) {
     let name: String = page
         .chars()
@@ -58,7 +58,7 @@ fn add(tests: &mut String, page: &str, text: &str) {
         let Some((code, _)) = rest.split_once("\n```") else {
             continue;
         };
-        // As rustdoc has it, `# ` hides a line that a reader does not need; the answer is ours.
+        // As in rustdoc, `# ` hides a line that a reader does not need. The test has its own `Ok`.
         let code: String = code
             .lines()
             .map(|line| line.strip_prefix("# ").unwrap_or(line))
@@ -67,7 +67,7 @@ fn add(tests: &mut String, page: &str, text: &str) {
             .collect();
         let name = format!("page_{name}_{}", i + 1);
         let result = "Result<(), Box<dyn std::error::Error>>";
-        // A block that starts from a `text` of the reader's own can be compiled, but there is nothing to run it on.
+        // A block that requires a `text` of the reader is compiled only, because there is no text to run it on.
         if code.find("(text)") < code.find("let text").or(Some(usize::MAX))
             && code.contains("(text)")
         {

@@ -15,7 +15,7 @@ fn main() {
 
 const POINTS: usize = 1024;
 
-/// One call for each of 1024 points; the times are those of all, the throughput counts evaluations.
+/// One call at each of 1024 points; times are those of all calls, the throughput counts evaluations.
 fn single(bencher: Bencher<'_, '_>, model: &Model) {
     let engine = Engine::new(model).unwrap();
     let mut scratch = engine.scratch();

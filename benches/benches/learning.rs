@@ -1,4 +1,4 @@
-//! Time and memory of learning rules and of filling a map's gaps, at the size of a large data set: 100,000 rows of four
+//! Time and memory of learning rules and of filling the gaps of a map, at the size of a large data set: 100,000 rows of four
 //! inputs with five terms each, and 51 cells along each of four inputs, 6.8 million in all.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
@@ -20,7 +20,7 @@ fn main() {
 
 const ROWS: usize = 100_000;
 
-/// Rows that lie evenly over the inputs, with what the rules say there as the output.
+/// Rows spread evenly over the inputs, with the value of the rules as the output.
 fn rows() -> (Model, Vec<Row>) {
     let model = four_inputs();
     let engine = Engine::new(&model).unwrap();

@@ -27,14 +27,14 @@ fn estimator(name: &str) -> Estimator {
     }
 }
 
-/// Motors that fight gusts.
+/// Motors that compensate gusts.
 fn commands(i: u32) -> [f64; MOTORS] {
     let t_s = f64::from(i) * 0.02;
     let gust = (t_s * 1.3).sin().max(0.0) * 0.4;
     std::array::from_fn(|n| (0.55 + gust * (t_s * 9.0 + n as f64).sin()).clamp(0.0, 1.0))
 }
 
-/// A run of samples after so many that the windows are full; the times are those of a run, the throughput counts
+/// A run of samples after enough samples to fill the windows; times are those of a run, the throughput counts
 /// samples.
 fn run(bencher: Bencher<'_, '_>, mut push: impl FnMut(&Sample<'_>)) {
     let flight: Vec<[f64; MOTORS]> = (0..SAMPLES).map(commands).collect();

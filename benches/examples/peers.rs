@@ -1,4 +1,4 @@
-//! The reference systems as files for other programs, and our own side of the comparison with them.
+//! The reference systems as files for other programs, and our times for the comparison with them.
 //!
 //! `write FOLDER`: each system in fuzzylite's language, points, and the exact values there.
 //! `time`: our time for each system, as `system,program,ns`.
@@ -16,7 +16,7 @@ use fuzzy::model::{Defuzzifier, Implication, MembershipFunction, Model, Variable
 use fuzzy::{Engine, rule::Condition, rule::Rule};
 
 const POINTS: usize = 1024;
-/// So many that a processor cannot learn which way each branch goes at each of them, as it does with the 1024.
+/// Too many points for the branch predictor of a processor to learn, unlike the 1024.
 const MANY_POINTS: usize = 16_384;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -158,7 +158,7 @@ fn sentence(rule: &Rule) -> String {
     )
 }
 
-/// The fastest of many rounds, in ns a call: what the machine can do when others leave it alone.
+/// The fastest of many rounds, in ns per call: the speed of the machine without other load.
 fn fastest(calls: usize, mut round: impl FnMut()) -> f64 {
     let mut best = f64::INFINITY;
     let started = Instant::now();

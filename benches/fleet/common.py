@@ -1,4 +1,4 @@
-"""What the scripts of this folder share: logs, a dataset's rows, a Dask cluster of processes on loopback."""
+"""Functions shared by the scripts of this folder: logs, the rows of a dataset, a Dask cluster of processes on loopback."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ STEADY = ROOT / "examples/flights/steady.BIN"
 
 
 def flight_csv(seed: int, seconds: int = 60) -> str:
-    """A flight as CSV with random commands, which now and then saturate."""
+    """A flight as CSV with random commands that sometimes saturate."""
     chance = random.Random(seed)
     head = f"# vehicle_id: v{seed % 17:02}\n# firmware: test {seed % 3}\n# utc_at_zero_s: {1_780_000_000 + seed * 43_210}\n"
     rows = []
@@ -31,7 +31,8 @@ def flight_csv(seed: int, seconds: int = 60) -> str:
 
 
 def make_logs(folder: Path, count: int, own: int = 40) -> None:
-    """So many logs in folders of vehicles: copies of the shipped flight and of some others, three of them no logs."""
+    """Writes this many files in folders of vehicles: copies of the shipped flight and of some others; three of them are not
+    logs."""
     shutil.rmtree(folder, ignore_errors=True)
     originals = folder.with_name(folder.name + "-originals")
     shutil.rmtree(originals, ignore_errors=True)
@@ -48,12 +49,12 @@ def make_logs(folder: Path, count: int, own: int = 40) -> None:
         of.mkdir(parents=True, exist_ok=True)
         special = {count // 4: "damaged.BIN", count // 2: "noise.BIN", count * 3 // 4: "empty.BIN"}.get(number)
         name = special or ("steady.BIN" if number % 2 or own == 0 else f"{number // 2 % own}.csv")
-        # Copies: hard links to one file count once.
+        # Copies, because hard links to one file count once.
         shutil.copyfile(originals / name, of / f"{number:06}{Path(name).suffix}")
 
 
 def rows(dataset: Path, kind: str) -> list[str]:
-    """All rows of a table, as text, in an order of their own."""
+    """All rows of a table as text, sorted."""
     files = (dataset / kind).rglob("*.parquet")
     return sorted(str(row) for file in files for row in pq.ParquetFile(file).read().to_pylist())
 
@@ -65,7 +66,7 @@ def logs_of(dataset: Path) -> list[str]:
 
 
 class Cluster:
-    """A scheduler and workers as processes of their own."""
+    """A scheduler and workers as separate processes."""
 
     def __init__(self, workers: int, port: int, environment: dict[str, str] | None = None) -> None:
         self.workers, self.port = workers, port
@@ -94,7 +95,7 @@ class Cluster:
         return self.started[0].pid
 
     def worker_pids(self) -> list[int]:
-        """The processes that work, which those that watch over them started."""
+        """The processes that work, which their supervisors started."""
         watchers = {process.pid for process in self.started[1:]}
         return [pid for pid, parent, command in processes() if parent in watchers and "spawn_main(" in command]
 
@@ -122,7 +123,7 @@ def processes() -> list[tuple[int, int, str]]:
 
 
 def driver(arguments: list[str], shard_bytes: int | None = None) -> list[str]:
-    """The command line of fleets as a process; smaller shards make more moments at which something can be killed."""
+    """The command line of fleets as a process; smaller shards create more moments at which a process can be killed."""
     if shard_bytes is None:
         return [sys.executable, "-m", "flagred.fleet", *arguments]
     program = f"import sys, flagred.fleet.shards as shards; shards.MOST_BYTES = {shard_bytes}\n"

@@ -1,8 +1,8 @@
 """Kills parts of a fleet's job at random moments: python benches/fleet/faults.py [--rounds 20] [--logs 400]
 
-In turn a worker, all workers, the scheduler and the driver are killed (SIGKILL) while logs are assessed on a cluster of two workers.
-Then the command runs once more, at once: workers that lost their driver may still be at it. The dataset must have exactly one row a log,
-and the rows of an undisturbed run. Exits with 1 where it has not.
+In turn, a worker, all workers, the scheduler and the driver are killed (SIGKILL) while logs are assessed on a cluster of
+two workers. Then the command runs once more, at once: workers that lost their driver may still be active. The dataset
+must have exactly one row per log, and the rows of an undisturbed run; otherwise the exit code is 1.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ VICTIMS = ("worker", "all workers", "scheduler", "driver")
 
 
 def errors(said: str) -> list[str]:
-    """What a command says went wrong."""
+    """The errors in the output of a command."""
     return [line for line in said.splitlines() if line.startswith("error")]
 
 
@@ -78,7 +78,7 @@ def main() -> int:
                 cluster.start()
             again = run()
             said_again = again.communicate(timeout=300)
-            # What a worker without a driver was at when the run ended would be seen by the next.
+            # Otherwise the next run would see what a worker without a driver was still processing.
             found = {kind: rows(out, kind) for kind in expected}
             logs_found = logs_of(out)
             is_right = again.returncode == 0 and found == expected and len(set(logs_found)) == len(logs_found) == given.logs

@@ -1,10 +1,10 @@
-"""Whether changes that are planted in a fleet are found, and how often a calm fleet raises a false alert: python benches/fleet/planted.py
+"""Measures whether planted changes are found, and how often a calm fleet raises a false alert: python benches/fleet/planted.py
 
-The rows are made up: 12 vehicles fly 48 times in 24 weeks, on 24 to 48 different days. The risk depends on the wind, which is stronger
-in the second half, on the time in the air and on the day. Two kinds of fleets:
+The rows are generated: 12 vehicles fly 48 times in 24 weeks, on 24 to 48 different days. The risk depends on the wind,
+which is stronger in the second half, on the time in the air and on the day. There are two kinds of fleets:
 
-- planted: half of the vehicles have flown 20 times each with a firmware that raises the share of flights that warn from 5 % to 25 %. Of
-  the others one wears out, by 0.76 % of mean risk a week, and the risk of one jumps once, by 10 %.
+- planted: half of the vehicles have flown 20 times each with a firmware that raises the share of flights that warn from 5
+% to 25 %.   Of the others, one wears out, by 0.76 % of mean risk per week, and the risk of another jumps once, by 10 %.
 - calm: the same weather and firmware, without any effect.
 """
 
@@ -28,11 +28,11 @@ WORN, SLOPE_PCT_WEEK = 5, 0.76
 JUMPED, JUMP_PCT, JUMP_WEEK = 9, 10, 10
 WARNED_BEFORE, WARNED_AFTER = 0.05, 0.25
 AFTER = 20
-"""Flights of a vehicle with the new firmware."""
+"""The number of flights of a vehicle with the new firmware."""
 
 
 def chance_to_warn(share: float, wind: np.ndarray) -> np.ndarray:
-    """The probability of each flight, larger in strong wind, so that it is so large on average of a wind of 4 m/s."""
+    """The probability of each flight, larger in strong wind, with this average at a wind of 4 m/s."""
     typical = np.random.default_rng(0).gamma(4, 1, 20_000)
     low, high = -20.0, 20.0
     for _ in range(60):
@@ -42,7 +42,7 @@ def chance_to_warn(share: float, wind: np.ndarray) -> np.ndarray:
 
 
 def write(out: Path, seed: int, is_planted: bool) -> None:
-    """A dataset of one fleet."""
+    """Writes the dataset of one fleet."""
     chance = np.random.default_rng(seed)
     vehicle = np.repeat(np.arange(VEHICLES), FLIGHTS)
     days = np.sort(chance.integers(0, 7 * WEEKS, (VEHICLES, FLIGHTS)), axis=1)
@@ -50,7 +50,7 @@ def write(out: Path, seed: int, is_planted: bool) -> None:
     start_s = (synthetic.START_S + days * 86_400 + hour * 3600).ravel()
     week = days.ravel() / 7
     has_new = np.isin(vehicle, WITH_FIRMWARE) & (np.tile(np.arange(FLIGHTS), VEHICLES) >= FLIGHTS - AFTER)
-    # Weather and task of a day are the same for its flights.
+    # Flights of one day have the same weather and task.
     key = vehicle * 1000 + days.ravel()
     _, of_day = np.unique(key, return_inverse=True)
     wind = np.maximum(chance.gamma(4, 1, of_day.max() + 1)[of_day] * np.where(week > WEEKS / 2, 1.25, 1) + chance.normal(0, 0.5, len(key)), 0)
@@ -64,7 +64,7 @@ def write(out: Path, seed: int, is_planted: bool) -> None:
     if is_planted:
         mean = mean + np.where(vehicle == WORN, SLOPE_PCT_WEEK * week, 0) + np.where((vehicle == JUMPED) & (week >= JUMP_WEEK), JUMP_PCT, 0)
     mean = np.clip(mean, 1, 95)
-    # Motor 3 of the worn vehicle gives less thrust from week to week.
+    # Motor 3 of the worn vehicle loses thrust from week to week.
     commands = 0.45 + 0.004 * wind[:, None] + chance.normal(0, 0.01, (len(key), 4))
     if is_planted:
         commands[:, 2] += np.where(vehicle == WORN, 0.004 * week, 0)

@@ -1,4 +1,4 @@
-"""How long the questions of the report take: python benches/fleet/questions.py [--flights 1000000]"""
+"""Times the questions of the report: python benches/fleet/questions.py [--flights 1000000]"""
 
 from __future__ import annotations
 

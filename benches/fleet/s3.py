@@ -1,6 +1,7 @@
-"""A fleet on object storage, with its troubles: python benches/fleet/s3.py [--keys 1200]. Needs `pip install 'moto[server]'`.
+"""A fleet on object storage with failures: python benches/fleet/s3.py [--keys 1200]. Requires `pip install 'moto[server]'`.
 
-Logs and dataset are on an S3 server process on loopback, which now and then answers 503 and reads slowly: see s3_server.py.
+Logs and dataset are on an S3 server process on loopback, which sometimes answers 503 and sometimes reads slowly: see
+s3_server.py.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ def check(given: argparse.Namespace) -> int:
     (given.folder / "recovered").touch()
     assert run().assessed == 1 and flights(out)[down]["status"] == "assessed"
     assert run().assessed == 0
-    time.sleep(1.1)  # The time of a change is in seconds.
+    time.sleep(1.1)  # Modification times have a resolution of a second.
     place.write(f"{place.root}/vehicle=1/000001.csv", texts[9])
     place.delete(f"{place.root}/vehicle=2/000002.csv")
     assert run().assessed == 1
@@ -99,7 +100,7 @@ def check(given: argparse.Namespace) -> int:
     assert [log for log, row in rows.items() if row["deleted"]] == ["s3://fleet/logs/vehicle=2/000002.csv"]
     same = next(row for log, row in rows.items() if log.endswith("000009.csv"))
     assert rows["s3://fleet/logs/vehicle=1/000001.csv"]["etag"] == same["etag"]
-    print(f"{fleet.compact(out)} files less by joining")
+    print(f"{fleet.compact(out)} fewer files after joining")
     assert flights(out) == rows and run().assessed == 0
     assert fleet.ask(out, "verdicts").num_rows >= 1
     page = given.folder / "fleet.html"

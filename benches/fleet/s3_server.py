@@ -1,8 +1,8 @@
-"""moto's S3 server with the troubles of a real one: answers 503 for a while, and slow reads. Needs `pip install 'moto[server]'`.
+"""moto's S3 server with the failures of a real one: 503 for some time, and slow reads. Requires `pip install 'moto[server]'`.
 
-A key that holds `busy` answers 503 to its first eight reads, one that holds `down` to all until the file `recovered` is in the folder
-that the second argument names; one read in forty of the others is answered with 503. A read of a key that holds `slow` takes three
-seconds. What was answered is counted in the file `counts.json` of that folder.
+A key that contains `busy` answers 503 to its first eight reads, one that contains `down` to all until the file
+`recovered` is in the folder of the second argument; one in forty reads of others is answered with 503. A read of a key
+that contains `slow` takes three seconds. The file `counts.json` in that folder counts the answers.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ BUSY = b"<Error><Code>SlowDown</Code><Message>Please reduce your request rate.</
 
 
 class Troubled:
-    """The server, which some reads do not reach."""
+    """The server, behind a filter that fails some reads."""
 
     def __init__(self, folder: Path) -> None:
         self.app = DomainDispatcherApplication(create_backend_app)
@@ -53,7 +53,7 @@ class Quiet(WSGIRequestHandler):
     protocol_version = "HTTP/1.1"
 
     def log(self, *_: object) -> None:
-        """Requests are counted and not written down."""
+        """Suppresses the log, because requests are counted."""
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Datasets of made-up flights at random times: as large as one likes, with vehicles whose risk is known to rise."""
+"""Datasets of generated flights at random times, of any size, with vehicles whose risk rises by a known amount."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CAUSES = [
 
 
 def write(out: Path, flights: int, vehicles: int, weeks: int = 26, rising: dict[str, float] | None = None, seed: int = 1) -> None:
-    """So many flights. The risk of the vehicles in `rising` grows by so many per cent a week."""
+    """Writes this many flights. The risk of the vehicles in `rising` grows by this many percent per week."""
     chance = np.random.default_rng(seed)
     slopes = np.zeros(vehicles)
     for name, slope in (rising or {}).items():
@@ -71,7 +71,7 @@ def write(out: Path, flights: int, vehicles: int, weeks: int = 26, rising: dict[
 
 
 def write_rows(out: Path, columns: dict[str, np.ndarray]) -> None:
-    """A dataset of assessed flights with these columns and ``start_s``; the others are made up."""
+    """Writes a dataset of assessed flights with these columns and ``start_s``; the other columns are generated."""
     count = len(columns["start_s"])
     ids = [f"{i:020x}" for i in range(count)]
     made_up = {

@@ -1,7 +1,7 @@
-"""What a fleet costs: python benches/fleet/throughput.py [--logs 2000] [--names 100000]
+"""The time and memory of a fleet: python benches/fleet/throughput.py [--logs 2000] [--names 100000]
 
-Assesses so many logs with one and with two workers, and by plain processes that do nothing but read and assess; checks every row; and
-measures the memory of the driver with that many names of logs.
+Assesses this many logs with one and with two workers, and with plain processes that only read and assess; checks every
+row; and measures the memory of the driver with that many names of logs.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from common import STEADY, logs_of, make_logs
 
 
 def plain(paths: list[str]) -> int:
-    """Reads and assesses, as a fleet does, and keeps nothing."""
+    """Reads and assesses like a fleet, and keeps nothing."""
     profile, done = flagred.Profile(), 0
     for path in paths:
         try:
@@ -37,14 +37,14 @@ def plain(paths: list[str]) -> int:
 
 def by_processes(paths: list[str], count: int) -> float:
     with multiprocessing.get_context("spawn").Pool(count) as pool:
-        pool.map(plain, [paths[:1]] * count)  # Python and flagred are loaded.
+        pool.map(plain, [paths[:1]] * count)  # Loads Python and flagred.
         begin_s = time.perf_counter()
         pool.map(plain, [paths[i : i + 29] for i in range(0, len(paths), 29)], chunksize=1)
         return time.perf_counter() - begin_s
 
 
 def by_fleet(logs: Path, out: Path, workers: int) -> tuple[float, float]:
-    """Seconds in all, and those after the workers were there."""
+    """The total time in seconds, and the time after the workers were started."""
     shutil.rmtree(out, ignore_errors=True)
     program = (
         "import json, sys, time, flagred.fleet as fleet\n"
@@ -65,13 +65,13 @@ def by_fleet(logs: Path, out: Path, workers: int) -> tuple[float, float]:
 
 
 def cpu_s() -> float:
-    """CPU time of all processes that were started and ended."""
+    """CPU time of all child processes that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
 def check(logs: Path, out: Path, count: int) -> None:
-    """Each log has one row, and all links of one log have the same answer."""
+    """Checks that each log has one row, and that all links to one log have the same result."""
     found = logs_of(out)
     assert found == sorted(str(path) for path in logs.rglob("*") if path.is_file()) and len(found) == count
     files = sorted((out / "flights").rglob("*.parquet"))
@@ -86,7 +86,7 @@ def check(logs: Path, out: Path, count: int) -> None:
 
 
 def memory_of_names(names: int, out: Path) -> None:
-    """The memory of a driver that lists so many logs, of which all but 29 are done, and assesses the rest."""
+    """The memory of a driver that lists this many logs, of which all but 29 are done, and assesses the rest."""
     program = (
         "import sys, resource, time, shutil, os\n"
         "from pathlib import Path\n"
@@ -154,7 +154,7 @@ def main() -> int:
         fleet_s = cpu_s() - started_s - few_s - plain_s
         spent[workers] = work_s
         check(logs, out, len(paths))
-        # What the start costs, and a process of Python, is not of the logs: they are taken off by the run with few logs.
+        # The cost of starting, and of a Python process, is subtracted with a run of few logs.
         overhead_ms = ((fleet_s - few_s) / (len(paths) - 80) - plain_s / len(paths)) * 1e3
         print(
             f"{workers} workers: {whole_s:.1f} s in all, {work_s:.1f} s without the start; plain processes {alone_s:.1f} s; CPU {fleet_s:.1f} s "

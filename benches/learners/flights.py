@@ -1,6 +1,7 @@
-"""ROC areas of rule sets and of other learners, all on the inputs of rules/flagred.yaml, with whole vehicles left out.
+"""ROC areas of rule sets and of other learners, all on the inputs of rules/flagred.yaml, cross-validated over vehicles.
 
-Critical is an attitude error over 5 degrees within the next 5 s. DATA is a folder of flight CSVs with attitudes and vehicles.
+Critical means an attitude error over 5 degrees within the next 5 s. DATA is a folder of flight CSVs with attitudes and
+vehicles.
 """
 
 import csv
@@ -23,7 +24,7 @@ CRITICAL_DEG = 5.0
 
 def flagred(*arguments):
     done = subprocess.run([FLAGRED, *map(str, arguments)], capture_output=True, text=True)
-    # 1: some rows were left out or have no value.
+    # Exit code 1: some rows were skipped or have no value.
     if done.returncode > 1:
         sys.exit(done.stderr)
     return list(csv.DictReader(io.StringIO(done.stdout)))

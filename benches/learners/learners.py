@@ -1,4 +1,4 @@
-"""Errors on rows left out, of rule sets and of other learners, on textbook data."""
+"""Cross-validation errors of rule sets and of other learners, on textbook data."""
 
 import csv
 import subprocess
@@ -30,7 +30,7 @@ def patients():
 
 
 def series():
-    """A chaotic series (Mackey and Glass 1977), six steps ahead of four of its values, as ANFIS has it (Jang 1993)."""
+    """A chaotic series (Mackey and Glass 1977), six steps ahead of four of its values, as for ANFIS (Jang 1993)."""
     step, delay = 0.1, 170
     x = [1.2]
     slope = lambda x, past: 0.2 * past / (1 + past**10) - 0.1 * x
@@ -48,7 +48,7 @@ def series():
 
 
 def bells(x, names):
-    """The rule set that ANFIS begins with: two bells for each input, a line for each combination."""
+    """The initial rule set of ANFIS: two bells for each input, a line for each combination."""
     low, high = x.min() - 0.1, x.max() + 0.1
     bell = lambda center: f"{{bell: {{center: {center}, width: {(high - low) / 2}, slope: 2}}}}"
     inputs = "".join(f"  {name}: {{range: [{low}, {high}], terms: {{low: {bell(low)}, high: {bell(high)}}}}}\n" for name in names)
@@ -75,14 +75,14 @@ def table(path, names, columns):
 
 def flagred(*arguments):
     done = subprocess.run([FLAGRED, *map(str, arguments)], capture_output=True, text=True)
-    # 1: some rows have no value.
+    # Exit code 1: some rows have no value.
     if done.returncode > 1:
         sys.exit(done.stderr)
     return done.stdout
 
 
 def rule_sets(folder, names, known, unknown, start=None):
-    """The predictions of rule sets, and how many rules they have."""
+    """The predictions of rule sets, and their numbers of rules."""
     data, points = folder / "known.csv", folder / "unknown.csv"
     table(data, [*names, "y"], np.column_stack(known))
     table(points, names, unknown)
@@ -125,7 +125,7 @@ def main():
                 start = None if random else bells(x[known], names)
                 found += rule_sets(Path(folder), names, (x[known], y[known]), x[unknown], start)
             for name, predicted, count in found:
-                # Where no rule fires there is no value; the mean stands for it, so that no way is spared its gaps.
+                # Where no rule fires there is no value; it is replaced by the mean, so that gaps count for every method.
                 predicted = np.where(np.isfinite(predicted), predicted, y[known].mean())
                 errors.setdefault(name, []).append(np.sqrt(np.mean((predicted - y[unknown]) ** 2)))
                 rules.setdefault(name, []).append(count)

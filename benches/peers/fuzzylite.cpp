@@ -17,7 +17,7 @@ int main(int, char** arguments) {
         fl::OutputVariable* output = engine->getOutputVariable(0);
         auto integral = dynamic_cast<fl::IntegralDefuzzifier*>(output->getDefuzzifier());
         if (integral) integral->setResolution(samples);
-        else if (samples > 100) break;  // Takagi-Sugeno takes no samples.
+        else if (samples > 100) break;  // Takagi-Sugeno does not sample.
         std::vector<std::vector<double>> rows;
         std::ifstream file(folder + "/" + name + ".points");
         for (std::string line; std::getline(file, line);) {

@@ -90,6 +90,6 @@ def simpful_():
 for peer in (scikit_fuzzy, simpful_):
     try:
         peer()
-    except Exception as error:  # A peer that fails is said, and the others go on.
+    except Exception as error:  # The error of a peer is printed, and the others continue.
         print(f"bw,{peer.__name__} failed,nan,nan")
         print(f"{peer.__name__}: {type(error).__name__}: {error}", file=sys.stderr)

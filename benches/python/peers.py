@@ -1,7 +1,7 @@
-"""A million rows of the tipper, beside scikit-fuzzy, simpful and pyfuzzylite; `run` makes their environment.
+"""A million rows of the tipper, compared with scikit-fuzzy, simpful and pyfuzzylite; `run` creates their environment.
 
-Each is asked in its own way, and as arrays where it can. Rows a peer takes too long for are fewer; ratios are of the time for
-a row. scikit-fuzzy has its cache off: repeated inputs are no measure.
+Each is called in its own way, with arrays if it supports them. Slow peers get fewer rows; ratios are per row.
+The cache of scikit-fuzzy is off, because repeated inputs would not be measured.
 """
 
 import sys
@@ -99,7 +99,7 @@ def scikit_fuzzy():
         control.Rule(s["excellent"] | f["delicious"], t["generous"]),
     ]
 
-    # A simulation takes arrays of one length, or numbers.
+    # A simulation accepts arrays of one length, or numbers.
     def ask(simulation, first, second):
         simulation.input["service"], simulation.input["food"] = first, second
         simulation.compute()

@@ -1,4 +1,4 @@
-//! The systems that are timed here and in `benches/peers`, made in code.
+//! The systems that are timed here and in `benches/peers`.
 
 use fuzzy::model::{
     Defuzzifier, Implication, MembershipFunction, Model, ModelBuilder, Output, Variable,
@@ -48,7 +48,7 @@ pub fn tipper() -> Model {
         .build()
 }
 
-/// (bw) and (b): the ten rules of the published method, with their degrees as weights or without.
+/// (bw) and (b): the ten rules of the published method, with or without their degrees as weights.
 pub fn published(weighted: bool) -> Model {
     let mut model = Model::builder("published")
         .input(
@@ -212,14 +212,14 @@ pub fn points(model: &Model, count: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// (g): the commonest system of gaussians: 2 inputs of 5 terms, 25 rules, an output of so many gaussian terms.
+/// (g): a common system with gaussians: 2 inputs of 5 terms, 25 rules, an output with this many gaussian terms.
 pub fn gaussians(outputs: usize) -> Model {
     let of = |name: &str, low: f64, high: f64, count: usize| {
         let step = (high - low) / (count - 1) as f64;
         (0..count).fold(Variable::new(name, low, high), |variable, i| {
             let term = MembershipFunction::Gaussian {
                 mean: low + step * i as f64,
-                // Not all alike, and none so wide that it is flat.
+                // Different widths, and none so wide that the term is flat.
                 sd: step * (0.35 + 0.05 * (i % 3) as f64),
             };
             variable.term(format!("t{i}"), term)

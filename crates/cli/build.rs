@@ -1,15 +1,15 @@
-//! Puts the page of `flagred studio` into the program, gzipped; nothing where there is none.
+//! Embeds the gzipped page of `flagred studio` in the program; an empty file if there is no page.
 
 use std::{env, fs, io::Write, path::PathBuf};
 
 use flate2::{Compression, write::GzEncoder};
 
-/// Names another page than that of `web/build`.
+/// The environment variable that names another page than that of `web/build`.
 const VARIABLE: &str = "FLAGRED_STUDIO_PAGE";
 
 fn main() -> std::io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");
-    // The folder, since a page that is not there yet cannot be watched.
+    // Watches the folder, since cargo cannot watch a file that does not exist yet.
     println!("cargo::rerun-if-changed=page");
     println!("cargo::rerun-if-env-changed={VARIABLE}");
     let page = match env::var_os(VARIABLE).map(PathBuf::from) {

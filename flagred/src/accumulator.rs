@@ -119,7 +119,7 @@ mod tests {
     };
 
     #[test]
-    fn the_normal_distribution_is_that_of_the_tables() {
+    fn the_normal_distribution_has_tabulated_values() {
         for (z, share) in [
             (-2.0, 0.022_750_132),
             (0.0, 0.5),
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn without_spread_it_is_a_step() {
+    fn without_spread_the_distribution_is_a_step() {
         assert_eq!(share_below(75.0, 74.9, 0.0), 1.0);
         assert_eq!(share_below(75.0, 75.1, 0.0), 0.0);
         assert_eq!(share_below(75.0, 75.0, 0.0), 0.5);
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn it_rises_holds_falls_and_stays_within_0_and_100() {
+    fn the_elevated_risk_rises_holds_falls_and_stays_within_0_and_100() {
         let (mut accumulator, mut risks) = (Accumulator::new(SETTINGS), Window::new(5.0));
         let mut t_s = 0.0;
         let mut hold = |accumulator: &mut Accumulator, risks: &mut Window, risk: f64, seconds| {
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn it_does_not_depend_on_the_sample_rate() {
+    fn the_elevated_risk_does_not_depend_on_the_sample_rate() {
         // A risk that swings slowly, seen at 1, 10, 25 and 400 Hz.
         let run = |rate: u32| {
             let (mut accumulator, mut risks) = (Accumulator::new(SETTINGS), Window::new(5.0));

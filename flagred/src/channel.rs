@@ -100,9 +100,9 @@ impl Statistic {
 ///     let observed = observer.value(0).ok_or("nothing observed")?;
 ///     Ok(observed.value)
 /// };
-/// assert_eq!(of(Statistic::Std, Motors::Pooled)?, 0.25); // of all values there are
-/// assert_eq!(of(Statistic::Std, Motors::Mean)?, 0.0); // of what they do together, which does not change
-/// assert_eq!(of(Statistic::Mean, Motors::Std)?, 0.25); // how far apart they are
+/// assert_eq!(of(Statistic::Std, Motors::Pooled)?, 0.25); // over all values
+/// assert_eq!(of(Statistic::Std, Motors::Mean)?, 0.0); // of their mean, which does not change
+/// assert_eq!(of(Statistic::Mean, Motors::Std)?, 0.25); // the mean spread between the motors
 /// # Ok::<(), String>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -223,7 +223,7 @@ pub enum Threshold {
 
 /// One quantity to observe over one window.
 ///
-/// # Example: what the paper's second input observes
+/// # Example: the channel of the paper's second input
 /// ```
 /// # use flagred::{estimator::Estimator, shipped};
 /// # let estimator = shipped::flagred_paper();

@@ -35,7 +35,7 @@ const LEAST_SHARE: f64 = 0.02;
 /// unit or range, and for signals that are spelled almost like a known one. `signals` are names and units of known
 /// signals; a flight may have other signals as well.
 ///
-/// # Example: a threshold above what the rules can say
+/// # Example: a threshold above the highest risk of the rules
 /// ```
 /// use flagred::{check, shipped};
 /// use fuzzy::Source;
@@ -106,7 +106,7 @@ pub fn outvoted(profile: &fuzzy::Source, estimator: &Estimator) -> Findings {
     Findings::locate(found, profile.text())
 }
 
-/// The values of a document, found by their keys.
+/// The values of a document, by their keys.
 struct Places<'t>(&'t Node);
 
 impl Places<'_> {
@@ -264,7 +264,7 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
 const LONGEST_WINDOW_S: f64 = 600.0;
 const LONGEST_WAIT_S: f64 = 30.0;
 
-/// Windows and waits so long that they are likely in another unit.
+/// Finds windows and waits so long that they are likely in another unit.
 fn durations(profile: &Profile, at: &Places, found: &mut Vec<Diagnostic>) {
     let mut note = |path: &[&str], message: String, help: &str| {
         found.push(Diagnostic::warning("unit", at.of(path), message).help(help));

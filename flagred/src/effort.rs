@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_yaw_command_of_a_quad_is_yaw_alone() {
+    fn a_yaw_command_of_a_quad_has_effort_in_yaw_only() {
         let found = efforts(&QUAD_X, &[0.6, 0.6, 0.4, 0.4]).unwrap();
         for (found, expected) in found.into_iter().zip([0.0, 0.0, 0.1, 0.5]) {
             approx::assert_abs_diff_eq!(found, expected, epsilon = 1e-12);
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn three_motors_cannot_be_told_apart() {
+    fn three_motors_have_no_efforts() {
         assert_eq!(efforts(&QUAD_X[..3], &[0.5; 3]), None);
     }
 
@@ -132,7 +132,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_was_mixed_is_found_again(mixed in prop::array::uniform4(-0.2..0.2f64), turn in 0.0..1.0f64) {
+        fn mixed_commands_are_recovered(mixed in prop::array::uniform4(-0.2..0.2f64), turn in 0.0..1.0f64) {
             // An octocopter with motors at eight angles.
             let factors: Vec<Factors> = (0..8).map(|i| {
                 let angle = (f64::from(i) + turn) * core::f64::consts::FRAC_PI_4;

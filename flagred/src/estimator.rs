@@ -246,7 +246,7 @@ impl Estimator {
         &self.0.engine
     }
 
-    /// As [`Lookup::order`].
+    /// The order of the inputs, as in [`Lookup::order`].
     pub(crate) fn order(&self) -> &[u32] {
         &self.0.order
     }

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_weighted_mean_and_deviation_of_all_samples() {
+    fn exponential_statistics_are_weighted_mean_and_deviation() {
         for constant_s in [0.3, 2.0, 60.0] {
             let samples = samples();
             let mut window = Exponential::new(constant_s);
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn it_follows_a_step_as_a_low_pass_does() {
+    fn the_exponential_mean_follows_a_step_like_a_low_pass() {
         let mut window = Exponential::new(5.0);
         for i in 1..=20_000 {
             let value = if i <= 10_000 { 0.0 } else { 1.0 };
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn it_covers_the_time_so_far_and_less_after_a_silence() {
+    fn exponential_coverage_grows_with_time_and_shrinks_after_a_silence() {
         let mut window = Exponential::new(5.0);
         assert_eq!((window.covered_s(), window.total().mean()), (0.0, None));
         for i in 1..=100 {

@@ -34,11 +34,11 @@ pub use serialize::{NamedStep, Steps, VerdictWord};
 /// The share of the time in the air for which the risk must be known for a verdict of GOOD.
 const KNOWN_SHARE: f64 = 0.5;
 
-/// The number of findings that are kept of a flight, the gravest ones.
+/// The number of findings that are kept of a flight, the most severe ones.
 const MOST_FINDINGS: usize = 1000;
 /// The number of steps that are kept of a flight: seven hours at 10 Hz.
 pub const MOST_STEPS: usize = 250_000;
-/// Judged risks closer together than this, in seconds, are merged while they can still be taken back by a landing.
+/// Judged risks closer together than this, in seconds, are merged while a landing could still take them back.
 const PENDING_S: f64 = 1e-4;
 
 /// The margin below which a motor counts as saturated.
@@ -371,7 +371,7 @@ impl Flight {
         }
     }
 
-    /// Drops the least grave findings if there are too many.
+    /// Drops the least severe findings if there are too many.
     fn bound_findings(&mut self) {
         if self.findings.len() >= 2 * MOST_FINDINGS {
             self.keep_gravest();
@@ -405,7 +405,7 @@ impl Flight {
         self.widened_step_s = Some(self.widened_step_s.map_or(mean_s, |s| mean_s.max(2.0 * s)));
     }
 
-    /// Counts the pending risks up to a time, which no landing can take back any more.
+    /// Counts the pending risks up to a time, which a landing can no longer take back.
     fn settle(&mut self, until_s: f64) {
         while let Some(risk) = self.pending.front().filter(|risk| risk.t_s <= until_s) {
             self.judged_s += risk.held_s;

@@ -12,7 +12,7 @@
 //! | compile a profile and a rule set made in code | [`profile::Profile`], [`estimator::Estimator`] | |
 //! | run on board, without an allocator | [`board::Monitor`] | without `std` |
 //!
-//! The other modules define what these take and return.
+//! The other modules define the arguments and results of these entry points.
 //!
 //! # Example: a live monitor
 //! ```

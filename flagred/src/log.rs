@@ -11,7 +11,7 @@ use crate::{
     verdict::Level,
 };
 
-/// Assesses a flight. Every motor sample is used. A step is kept every `step_s` seconds, or no steps if that is `None`.
+/// Assesses a flight, using every motor sample. A step is kept every `step_s` seconds, or no steps if that is `None`.
 ///
 /// # Example: from a log to a verdict
 /// ```
@@ -30,7 +30,7 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     let profile = estimator.profile();
     let missing = match profile.reads_motors() {
         true => gaps.iter().find(is_needed).cloned(),
-        // For any vehicle.
+        // A profile that reads no motors applies to any vehicle.
         false => flight.gap_of_air(),
     };
     if let Some(gap) = missing {
@@ -128,7 +128,7 @@ pub fn craft<'a>(flight: &'a Flight, signals: &'a [&'a str]) -> Craft<'a> {
         .with_geometry(geometry.map_or(&[], |geometry| &geometry.factors))
 }
 
-/// Those of the named signals that the flight contains.
+/// The named signals that the flight contains.
 pub fn carried<'a>(flight: &Flight, names: &[&'a str]) -> Vec<&'a str> {
     let names = names.iter().copied();
     names.filter(|name| flight.signal(name).is_some()).collect()

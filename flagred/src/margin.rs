@@ -147,7 +147,7 @@ mod tests {
         }
 
         #[test]
-        fn fraction_undoes_a_range(low in -10.0..10.0f64, width in 0.01..10.0f64, e in 0.0..=1.0f64) {
+        fn fraction_is_the_inverse_of_a_range(low in -10.0..10.0f64, width in 0.01..10.0f64, e in 0.0..=1.0f64) {
             let range = Range::new(low, low + width).unwrap();
             prop_assert!((range.fraction(low + e * width) - e).abs() < 1e-9);
         }

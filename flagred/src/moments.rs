@@ -195,7 +195,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn values_alike_are_those_merged_one_by_one(values in prop::collection::vec(-1.0..1.0f64, 0..20)) {
+        fn equal_values_merge_like_single_ones(values in prop::collection::vec(-1.0..1.0f64, 0..20)) {
             let mut merged = Moments::EMPTY;
             for value in &values {
                 merged.merge(&Moments::of(*value, 1.0));
@@ -213,7 +213,7 @@ mod tests {
         }
 
         #[test]
-        fn merging_is_pooling(a in prop::collection::vec((-5.0..5.0f64, 0.1..2.0f64), 1..20), cut in 0usize..20) {
+        fn merged_moments_are_those_of_all_values(a in prop::collection::vec((-5.0..5.0f64, 0.1..2.0f64), 1..20), cut in 0usize..20) {
             let pooled = a.iter().fold(Moments::EMPTY, |mut m, (x, w)| { m.merge(&Moments::of(*x, *w)); m });
             let cut = cut.min(a.len());
             let (mut left, mut right) = (Moments::EMPTY, Moments::EMPTY);

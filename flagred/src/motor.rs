@@ -21,7 +21,7 @@ fn bin_of(t_s: f64) -> f64 {
 #[cfg_attr(not(feature = "std"), expect(unreachable_pub))]
 pub const MOST_OUTSIDE: f64 = 0.5;
 
-/// In place of an index: no motor.
+/// Marks the absence of a motor, in place of its index.
 const NONE: u32 = u32::MAX;
 
 /// The state of one motor.

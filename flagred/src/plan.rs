@@ -28,7 +28,7 @@ pub enum NoPlan {
         output: String,
     },
     /// The profile has several risks.
-    #[error("the profile has the risks `{output}` and `{other}`, and what flies on board has one")]
+    #[error("the profile has the risks `{output}` and `{other}`, but exported code has one")]
     SeveralRisks {
         /// The first risk.
         output: String,
@@ -109,7 +109,7 @@ mod tests {
     };
 
     #[test]
-    fn an_output_without_a_closed_form_makes_no_plan() {
+    fn an_output_without_a_closed_form_has_no_plan() {
         let profile = shipped::flagred_paper().profile().clone();
         let mut rules = shipped::flagred_paper_rules();
         rules.outputs[0].samples = Some(SAMPLED);
@@ -122,9 +122,9 @@ mod tests {
         );
     }
 
-    /// The risk of the paper in an output of its own, which a second output passes on.
+    /// The paper's risk in a separate output, which a second output passes on.
     #[test]
-    fn a_chain_is_assessed_and_an_open_output_that_it_reads_makes_no_plan() {
+    fn a_chain_has_a_plan_unless_it_reads_an_output_without_a_closed_form() {
         let profile = shipped::flagred_paper().profile().clone();
         let mut rules = shipped::flagred_paper_rules();
         let mut passed_on = rules.outputs[0].clone();

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_shipped_file_is_valid_and_goes_by_its_name() {
+    fn every_shipped_file_is_valid_and_found_by_its_name() {
         for (shipped, estimator) in
             PROFILES
                 .iter()
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn the_battery_adds_to_the_default_profile_and_changes_nothing_of_it() {
+    fn the_battery_profile_extends_the_default_profile_unchanged() {
         let mut profile = profile(2);
         profile.inputs.retain(|input| input.name != "battery");
         profile.findings.retain(|words| words.input != "battery");

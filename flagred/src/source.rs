@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_with_an_unknown_motor_counts_for_nothing() {
+    fn a_sample_with_an_unknown_motor_is_ignored() {
         let sources = [
             source(Statistic::Mean, Motors::Pooled, "motor_command"),
             source(Statistic::Last, Motors::Min, "motor_command"),
@@ -501,7 +501,7 @@ mod tests {
     }
 
     #[test]
-    fn inputs_that_look_at_the_same_thing_share_a_window() {
+    fn inputs_with_the_same_source_share_a_window() {
         let sources = [
             source(Statistic::Mean, Motors::Pooled, "motor_command"),
             source(Statistic::Std, Motors::Pooled, "motor_command"),
@@ -546,7 +546,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_is_told_from_movement_as_a_plain_computation_does() {
+    fn noise_and_movement_agree_with_a_plain_computation() {
         let mut random = noise();
         let values: Vec<f64> = (0..600)
             .map(|i| (f64::from(i) * 0.05).sin() + 0.3 * random())
@@ -623,7 +623,7 @@ mod tests {
     ];
 
     #[test]
-    fn turning_the_nose_of_a_quad_leaves_the_spread_without_yaw_as_it_is() {
+    fn yaw_of_a_quad_does_not_change_the_spread_without_yaw() {
         let sources = ["motor_command_less_yaw", "motor_command"]
             .map(|signal| source(Statistic::Mean, Motors::Std, signal));
         let spread = |geometry, yaw: f64| {

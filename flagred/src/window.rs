@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rate_does_not_matter() {
+    fn statistics_of_a_window_do_not_depend_on_the_rate() {
         let signal = |t: f64| 0.3 + 0.1 * (t * 0.9).sin();
         let mut totals = Vec::new();
         for rate in [10, 25, 400, 4000] {
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn silence_empties_a_window() {
+    fn a_silence_empties_a_window() {
         let mut window = Window::new(1.0);
         for i in 1..=50 {
             window.push(f64::from(i) * 0.04, 0.04, &Moments::of(0.3, 0.04));
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_window_knows_nothing() {
+    fn an_empty_window_is_unknown() {
         let total = Window::new(1.0).total();
         assert_eq!(
             (

@@ -153,7 +153,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_word_is_folded_and_stands_once() {
+    fn every_foreign_word_is_lower_case_and_listed_once() {
         for (i, (word, meanings)) in WORDS.iter().enumerate() {
             assert_eq!(folded(word), *word);
             assert!(!meanings.is_empty(), "{word}");
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_means_what_fits_the_place() {
+    fn the_meaning_of_a_foreign_word_depends_on_its_position() {
         let or = ["maximum", "bounded_sum"];
         let and = ["minimum", "bounded_difference"];
         assert_eq!(meant("Lukasiewicz", or), ["bounded_sum"]);

@@ -37,7 +37,7 @@ fn places(shape: &str, range: &str, height: f64) -> Vec<(f64, f64, f64)> {
 }
 
 #[test]
-fn a_place_is_where_the_term_has_the_degree() {
+fn a_tsukamoto_value_is_where_the_term_has_the_degree() {
     for shape in [
         "right_shoulder: [2, 8]",
         "left_shoulder: [2, 8]",
@@ -92,7 +92,7 @@ fn plateaus_steps_and_infinity() {
 }
 
 #[test]
-fn places_are_weighed_rule_by_rule() {
+fn tsukamoto_values_are_weighted_rule_by_rule() {
     let output = "{y: {range: [0, 10], defuzzifier: tsukamoto, terms: {up: {right_shoulder: [2, 8]}, down: {left_shoulder: [1, 5]}}}}";
     let rules = "[IF x IS high THEN y IS up, IF x IS low THEN y IS up WITH 0.5, IF x IS low THEN y IS down]";
     let engine = Engine::new(&model(output, rules)).unwrap();
@@ -239,7 +239,7 @@ rules: [IF x IS very low THEN y IS a, IF x IS high THEN y IS b]
 }
 
 #[test]
-fn an_output_of_singletons_is_a_few_places() {
+fn an_output_of_singletons_has_a_few_positions() {
     let of = |defuzzifier: &str, operators: &str, x: f64| {
         let text = format!(
             "{{fuzzy: 1, name: t, inputs: {{x: {{range: [0, 1], partition: [low, high]}}}}, outputs: {{y: {{range: [0, 10], defuzzifier: {defuzzifier}, terms: {{a: {{singleton: 2}}, b: {{singleton: 8}}, c: {{singleton: 9, height: 0.5}}, d: {{singleton: 2}}}}}}}}, operators: {{{operators}}}, rules: [IF x IS low THEN y IS a, IF x IS high THEN y IS b, IF x IS high THEN y IS c, IF x IS high THEN y IS d WITH 0.5]}}"

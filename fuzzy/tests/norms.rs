@@ -179,7 +179,7 @@ fn near(found: Option<f64>, expected: f64) {
 }
 
 #[test]
-fn integrals_by_hand() {
+fn norms_have_integrals_computed_by_hand() {
     let one = "IF x IS high THEN y IS a WITH 0.6";
     let two = "IF x IS high THEN y IS a WITH 0.5, IF x IS high THEN y IS b WITH 0.25";
     // min(0.6, m) where m > 0.4: rises from 0.8 to 1.2, is level up to 5.2, and falls to 6.8.

@@ -58,7 +58,7 @@ fn a_mistake_inside_a_configuration_is_explained() {
 }
 
 #[test]
-fn outcomes_and_explanations_are_data() {
+fn outcomes_and_explanations_are_serialised() {
     let config: Config = serde_yaml::from_str(CONFIG).unwrap();
     let engine = Engine::new(&config.rules).unwrap();
     let outcomes = engine.evaluate_named([("heat", 40.0)]).unwrap();
@@ -76,7 +76,7 @@ fn outcomes_and_explanations_are_data() {
 }
 
 #[test]
-fn structs_and_maps_are_inputs() {
+fn structs_and_maps_serve_as_inputs() {
     #[derive(Serialize)]
     struct Reading {
         heat: Option<f32>,
@@ -138,7 +138,7 @@ fn files(folder: &str) -> Vec<PathBuf> {
 }
 
 #[test]
-fn every_rule_set_of_the_repository_means_the_same_to_both() {
+fn both_parsers_read_every_rule_set_alike() {
     let (mut same, mut refused) = (0, 0);
     for path in [files("rules"), files("tests")].concat() {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -162,7 +162,7 @@ fn every_rule_set_of_the_repository_means_the_same_to_both() {
 
 /// Tests the differences between the two readers.
 #[test]
-fn tags_duplicates_and_numbers() {
+fn tags_duplicates_and_numbers_are_handled() {
     let rule_set = |name: &str| {
         format!(
             "fuzzy: 1\nname: {name}\ninputs: {{x: {{range: [0, 1], partition: [a, b]}}}}\n\
@@ -314,7 +314,7 @@ fn mappings_that_were_sorted_are_read_as_before() {
 }
 
 #[test]
-fn steps_survive_formats_without_a_word_for_nothing_and_with_sorted_keys() {
+fn steps_survive_formats_without_null_and_with_sorted_keys() {
     let text = "fuzzy: 1\nname: credit\n\
                 inputs: {dti: {range: [-10, 100], steps: {zero: 0, fine: 36, over: }}}\n\
                 outputs: {risk: {range: [0, 1], partition: [low, high]}}\n\

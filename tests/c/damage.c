@@ -1,6 +1,6 @@
-/* Damages a plan: each word and each length of it in turn, then several at random. A monitor refuses the plan, or assesses
- * samples in the memory that the library asks for: the library stops at a panic, and the alarm ends the program.
- * Arguments: how many plans are damaged at random, and a seed. */
+/* Damages a plan: each word and each length in turn, then several at random. A monitor refuses the plan, or assesses
+ * samples in memory of the size that the library returns. A panic stops the library, and the alarm then ends the program.
+ * Arguments: the number of randomly damaged plans, and a seed. */
 #define _POSIX_C_SOURCE 200809L
 #include <stddef.h>
 #include <stdio.h>
@@ -18,16 +18,16 @@
         }                                                                \
     } while (0)
 
-/* A plan that asks for more is as good as refused here. */
+/* A plan that requires more memory counts as refused here. */
 #define MOST_MEMORY ((size_t)1 << 20)
 #define MOST_MOTORS 4
-/* What one call may take, in seconds. */
+/* The time limit of one call, in seconds. */
 #define LONGEST 60
 
 static flagred_plan plan;
 static long tried, accepted;
 
-/* The arrays of a plan: where it points to them, and the size of an item. Copies of the items can be damaged. */
+/* The arrays of a plan: the location of their pointers, and the size of an item. Copies of the items can be damaged. */
 #define ARRAY(name) {offsetof(flagred_plan, name), sizeof *((flagred_plan *)0)->name}
 #define RULES(name) ARRAY(rules.name)
 static const struct { size_t field, size; } arrays[] = {
@@ -41,7 +41,7 @@ static const struct { size_t field, size; } arrays[] = {
 };
 #define ARRAYS (sizeof arrays / sizeof *arrays)
 
-/* The words of a plan that are no arrays. */
+/* The words of a plan that are not arrays. */
 static const struct { size_t first, end; } words[] = {
     {offsetof(flagred_plan, rules.and_operator), offsetof(flagred_plan, rules.inputs)},
     {offsetof(flagred_plan, output), offsetof(flagred_plan, order)},
@@ -96,7 +96,7 @@ static void try_plan(size_t motors, int samples) {
         CHECK(flagred_start(&plan, motors, NULL, most, sizeof most, &monitor) != FLAGRED_OK && monitor == NULL);
         return;
     }
-    /* As much as it says: what is written beyond is found by a sanitizer. */
+    /* Exactly this size, so that a sanitizer finds writes beyond it. */
     if (posix_memalign(&memory, 16, size) != 0) {
         exit(2);
     }
@@ -118,7 +118,7 @@ static uint32_t below(size_t limit) {
     return (uint32_t)((state * 0x2545f4914f6cdd1d >> 32) % limit);
 }
 
-/* What a word becomes: numbers that are out of bounds, next to it, or the upper half of a double that is no number. */
+/* The new value of a word: out of bounds, adjacent to the old one, or the upper half of a NaN or infinite double. */
 #define VALUES 9
 static uint32_t value(uint32_t kept, int index) {
     const uint32_t values[VALUES] = {0, 1, 7, UINT32_MAX, kept + 1, kept - 1, kept ^ 0x80000000, 0x7ff80000, 0x7ff00000};
@@ -136,7 +136,7 @@ static void damage(unsigned char *word, int samples) {
     memcpy(word, &kept, sizeof kept);
 }
 
-/* Each word of what is no array, each length, each word of each item. */
+/* Damages each word that is not an array, each length, and each word of each item. */
 static void damage_in_turn(void) {
     for (int i = 0; i < 2; i++) {
         for (size_t word = words[i].first; word < words[i].end; word += sizeof(uint32_t)) {
@@ -151,7 +151,7 @@ static void damage_in_turn(void) {
             try_plan(1, 3);
         }
         set(i, found);
-        /* What moves a knot is the same for each: a few of many. */
+        /* All knots are processed alike: a few of many are enough. */
         size_t step = sizeof(uint32_t) * (1 + bytes / 40000);
         for (size_t word = 0; word < bytes; word += step) {
             damage((unsigned char *)found.items + word, 3);
@@ -159,7 +159,7 @@ static void damage_in_turn(void) {
     }
 }
 
-/* Up to six words and lengths at once. */
+/* Damages up to six words and lengths at once. */
 static void damage_at_random(void) {
     struct { unsigned char *word; uint32_t kept; } changed[6];
     flagred_plan kept = plan;

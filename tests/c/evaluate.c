@@ -1,6 +1,6 @@
 /* Evaluates an exported rule set and writes the outcomes bit for bit. PROFILE is the exported file, PLAN the name of the rule
- * set, MEMORY the size of its memory. Standard input has doubles: the values of the inputs, point after point. Before that,
- * what is wrong is refused. */
+ * set, MEMORY the size of its memory. Standard input contains doubles: the values of the inputs, point after point. Before that,
+ * it tests that invalid arguments are refused. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Assesses flights with an exported profile and writes the results bit for bit. PROFILE is the exported file, PLAN the name
- * of its plan. Standard input has doubles: 0 and a sample (t_s, in_air, motors, signals), 1 and a point (inputs), 2 at the end
+ * of its plan. Standard input contains doubles: 0 and a sample (t_s, in_air, motors, signals), 1 and a point (inputs), 2 at the end
  * of a flight, or 3 before one and the factors of each motor. */
 #include <stdio.h>
 #include <stdlib.h>

@@ -108,7 +108,7 @@ int main(void) {
         case 5: channels[0].window_s = NAN; break;
         case 6: channels[0].window_s = INFINITY; break;
         case 7: channels[0].observed = 8; channels[0].indices[1] = plan->signals; break;
-        case 8: channels[0].exponential = 1; break; /* a statistic that is not one of weights, or with bins */
+        case 8: channels[0].exponential = 1; break; /* a statistic without weights, or with bins */
         case 9: channels[0].threshold = 3; break;
         case 10: damaged.settings.risk_window_s = -1; break;
         }
@@ -151,7 +151,7 @@ int main(void) {
     sample.commands = commands;
     sample.motors = MOTORS;
 
-    /* What is not known is never a risk: NAN, 65535 and infinities in every field, too few and too many motors. */
+    /* Unknown values never give a risk: NAN, 65535 and infinities in every field, too few and too many motors. */
     const double odd[] = {NAN, 65535.0, INFINITY, -INFINITY, -1.0, 1e300};
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
         CHECK(start(plan, &monitor) == FLAGRED_OK);
@@ -191,7 +191,7 @@ int main(void) {
             }
         }
         CHECK(said.level == FLAGRED_LEVEL_NONE);
-        /* Rounding is clamped. */
+        /* Small excesses from rounding are clamped. */
         commands[2] = 1.0000001;
         sample.motors = MOTORS;
         for (int step = 1000; step < 1500; step++) {
@@ -201,7 +201,7 @@ int main(void) {
         CHECK(said.unknown == FLAGRED_KNOWN && said.unknown_motor == -1);
     }
 
-    /* Limits between which there is nothing. */
+    /* Limits of an empty range. */
     flagred_limits narrow[MOTORS];
     for (int motor = 0; motor < MOTORS; motor++) {
         narrow[motor].low = 0.0;

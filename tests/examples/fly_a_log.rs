@@ -1,4 +1,4 @@
-//! Flies a log again as MAVLink, for a look at `flagred watch` without a vehicle or a simulator:
+//! Replays a log over MAVLink, to try `flagred watch` without a vehicle or a simulator:
 //! `cargo run -p flagred-tests --example fly_a_log -- LOG ADDRESS:PORT`.
 
 use std::{env, error::Error, process::ExitCode};

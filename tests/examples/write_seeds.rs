@@ -1,4 +1,4 @@
-//! Writes the seeds of every fuzz target to `tests/fuzz/corpus`, where `cargo fuzz` looks for them.
+//! Writes the seeds of every fuzz target to `tests/fuzz/corpus`, the folder of `cargo fuzz`.
 
 use std::{fs, io, path::Path};
 

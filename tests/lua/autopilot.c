@@ -1,18 +1,18 @@
 /* Runs a script as ArduPilot does, over a flight from standard input.
  *
  * Lua is built with LUA_32BITS, as on the autopilot: floats and integers of 32 bits, and with the autopilot's limits of local
- * variables and upvalues. The script has ArduPilot's globals and no others. Each call has the autopilot's budget of
+ * variables and upvalues. The script has only ArduPilot's globals. Each call has the autopilot's budget of
  * instructions, and a full collection follows it.
  *
  *     autopilot SCRIPT MOTORS FIRST_US NAME=VALUE...
  *
  * FIRST_US is the clock at the first record; the parameters follow. A record of the flight is doubles: the time in us since the
- * first record, whether flying, the output of each motor in us (NaN: none), and what is left in the battery in % (NaN: not
- * monitored). The parameter BROKEN=1 makes a binding fail, and SCR_HEAP_SIZE limits the heap. Written are lines: `log RECORD RISK
- * ELEVATED LEVEL`, `float RECORD NAME VALUE`, `text RECORD SEVERITY TEXT`, `blocks RECORD WHY` where the autopilot could not be
- * armed, `ended RECORD` where the script gives no function to call, and at the end the measures: `calls`, `instructions` (the
- * most of a call at the start, the most of others, their mean), `heap` (the bytes of a pointer; the bytes in use before the
- * script, with it after a collection, the most ever at the start and in flight). */
+ * first record, whether flying, the output of each motor in us (NaN: none), and the remaining battery in % (NaN: not
+ * monitored). The parameter BROKEN=1 makes a binding fail, and SCR_HEAP_SIZE limits the heap. It writes lines: `log RECORD RISK
+ * ELEVATED LEVEL`, `float RECORD NAME VALUE`, `text RECORD SEVERITY TEXT`, `blocks RECORD WHY` if the autopilot cannot be
+ * armed, `ended RECORD` if the script returns no function to call, and at the end the measures: `calls`, `instructions` (the
+ * maximum of a call at the start, the maximum of other calls, their mean), `heap` (the bytes of a pointer; the bytes in use
+ * before the script, with it after a collection, and the peaks at the start and in flight). */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -43,7 +43,7 @@ static struct {
 } added[8];
 static int tables;
 
-/* As ArduPilot's heap: memory is never resized in place, and shrinking never fails. */
+/* Like ArduPilot's heap: memory is never resized in place, and shrinking never fails. */
 static void *allocate(void *nothing, void *memory, size_t before, size_t size) {
     (void)nothing;
     if (!memory) {
@@ -108,7 +108,7 @@ static int motor_of(lua_Integer function) {
 static int get_output_pwm(lua_State *L) {
     lua_Integer function = luaL_checkinteger(L, 2);
     int motor = motor_of(function);
-    /* This firmware knows no functions over 150. */
+    /* This firmware does not support functions over 150. */
     luaL_argcheck(L, function >= 0 && function <= 150, 2, "out of range");
     if (motor < 1 || motor > motors || isnan(now[1 + motor])) {
         return 0;
@@ -244,8 +244,8 @@ static void open_autopilot(lua_State *L) {
     lua_register(L, "micros", get_micros);
 }
 
-/* Calls the function on the stack, which is replaced by the next one. An error, and a result that is neither nothing nor a
- * function and a time, block arming. */
+/* Calls the function on the stack, and replaces it by the next one. An error, or a result that is neither empty nor a
+ * function and a time, blocks arming. */
 static int call(lua_State *L) {
     instructions = 0;
     lua_sethook(L, count, LUA_MASKCOUNT, 1);

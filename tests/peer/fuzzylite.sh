@@ -1,5 +1,5 @@
 #!/bin/sh
-# Asks fuzzylite's Python library for the values of rule sets that are written for it. Exits with 3 where there is no Python.
+# Compares the values of exported rule sets in fuzzylite's Python library. Exits with 3 without Python.
 set -eu
 cd "$(dirname "$0")/../.."
 venv=target/fuzzylite

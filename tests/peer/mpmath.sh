@@ -1,5 +1,5 @@
 #!/bin/sh
-# Computes the values of random rule sets with numbers of 80 digits, in Python. Exits with 3 where there is no Python.
+# Computes the values of random rule sets with numbers of 80 digits, in Python. Exits with 3 without Python.
 set -eu
 cd "$(dirname "$0")/../.."
 venv=target/mpmath

@@ -1,4 +1,4 @@
-"""Computes rule sets a second time, from the formulas of docs/rule-sets.md, with numbers of 80 digits.
+"""A second implementation of rule sets, from the formulas of docs/rule-sets.md, with numbers of 80 digits.
 
 python mpmath_peer.py FILE: each line of the file is an object with a rule set, points, and the values there.
 """
@@ -11,14 +11,14 @@ from multiprocessing import Pool
 from mpmath import cos, exp, mp, mpf, pi, sqrt
 from mpmath.calculus.quadrature import GaussLegendre
 
-mp.dps = 80  # beside the middle of a flat bell, degrees differ by their sixth power
+mp.dps = 80  # near the middle of a flat bell, degrees differ by the sixth power of the distance
 LARGEST = mpf("1e-9")  # difference, of an output's range
-LEAST = mpf("1e-12")  # strength that fires; rounding of operators with a step; ties of maxima
-GRID = 48  # stretches of a piece in which roots are looked for
+LEAST = mpf("1e-12")  # minimum strength that fires; tolerance of operators with a step, and of ties of maxima
+GRID = 48  # intervals of a piece that are searched for roots
 NODES = GaussLegendre(mp).calc_nodes(3, 200)  # 12 nodes on [-1, 1]
 
 
-# Membership functions: the degree at x, and the places at which it is not smooth.
+# Membership functions: the degree at x, and the positions at which it is not smooth.
 
 
 def polyline(points):
@@ -146,7 +146,7 @@ def shape(name, p):
         return polyline([(x, mpf(y)) for x, y in straight[name](*p)])
     degree, kinks = curved[name](*p)
     if name in ("gaussian", "bell", "cosine", "spike", "semi_ellipse", "sigmoid", "sigmoid_difference", "sigmoid_product"):
-        # 1 at a single place at most; beside it, 80 digits would round to 1.
+        # 1 at a single position at most; near it, 80 digits would round to 1.
         return lambda x: min(degree(x), 1 - mpf("1e-78")), kinks
     return degree, kinks
 
@@ -179,7 +179,7 @@ AND = {
     "nilpotent_minimum": nilpotent_minimum,
 }
 IMPLICATION = AND | {
-    # Of a term that it cuts, it leaves where the degree is 1 on a stretch.
+    # Of a term that it cuts off, it keeps only intervals with the degree 1.
     "drastic": lambda h, m: m if h >= 1 - LEAST else h if m == 1 else mpf(0),
 }
 OR = {
@@ -188,7 +188,7 @@ OR = {
     "bounded_sum": lambda a, b: min(mpf(1), a + b),
     "drastic": lambda a, b: max(a, b) if min(a, b) <= LEAST else mpf(1),
     "einstein": lambda a, b: (a + b) / (1 + a * b),
-    # Without the cancellation of (a + b - 2 a b) / (1 - a b) near 1.
+    # Avoids the cancellation of (a + b - 2 a b) / (1 - a b) near 1.
     "hamacher": lambda a, b: (a * (1 - b) + b * (1 - a)) / (1 - a * b) if max(a, b) < 1 else mpf(1),
     "nilpotent_maximum": nilpotent_maximum,
     "sum": lambda a, b: a + b,
@@ -196,7 +196,7 @@ OR = {
 
 
 def condition(words, is_so, join, loosest="OR"):
-    """The degree of a condition in words, which it takes from the list."""
+    """The degree of a condition in words, which are removed from the list."""
     if loosest is None:
         if words[0] == "NOT":
             words.pop(0)
@@ -220,7 +220,7 @@ def condition(words, is_so, join, loosest="OR"):
 
 
 def root(f, a, b):
-    """Where a function changes its sign: bisection, and regula falsi between."""
+    """A root of a function that changes its sign, by bisection and regula falsi."""
     fa, fb = f(a), f(b)
     if (fa > 0) == (fb > 0):
         return a if abs(fa) < abs(fb) else b
@@ -250,13 +250,13 @@ class AggregatedSet:
         for switches in [self.levels(implication), self.crossings(aggregation)]:
             new = [root(f, a, b) for f in switches for a, b in self.grid(f)]
             self.cuts = sorted({*self.cuts, *new})
-        # Two roots of one place, apart by their last digits.
+        # Two roots at one position, which differ in their last digits.
         narrow = (high - low) * mpf("1e-38")
         self.cuts = [low, *(b for a, b in zip(self.cuts, self.cuts[1:]) if b - a > narrow)]
         self.pieces = list(zip(self.cuts, self.cuts[1:]))
 
     def is_whole(self, strength, term, implication):
-        """Whether a strength is the highest degree of a term, or higher, but for rounding."""
+        """Whether a strength is at least the highest degree of a term, except for rounding."""
         if implication not in ("minimum", "nilpotent_minimum"):
             return False
         degree, kinks = term
@@ -270,7 +270,7 @@ class AggregatedSet:
         return strength >= max(y for *_, y in tops) * (1 - LEAST)
 
     def grid(self, f):
-        """Stretches in which a function changes its sign."""
+        """Intervals in which a function changes its sign."""
         for from_, to in zip(self.cuts, self.cuts[1:]):
             inside = (to - from_) * mpf("1e-30")
             xs = [from_ + inside + (to - from_ - 2 * inside) * i / GRID for i in range(GRID + 1)]
@@ -361,8 +361,8 @@ class AggregatedSet:
         return self.high
 
     def tops(self):
-        """Peaks, and stretches with their least degree: (from, to, degree)."""
-        tops, before = [], (-1, False)  # the degree at the end of the piece before, and whether it rises to it
+        """Peaks, and intervals with their lowest degree: (from, to, degree)."""
+        tops, before = [], (-1, False)  # the degree at the end of the preceding piece, and whether it rises to it
         for from_, to in self.pieces:
             inside = (to - from_) * mpf("1e-30")
             xs = [from_ + inside + (to - from_ - 2 * inside) * i / GRID for i in range(GRID + 1)]
@@ -445,7 +445,7 @@ def evaluate(model, point, rounding=mpf(1)):
 
 
 def by_name(part):
-    """Lists of named entries, which keep the order of names where a format sorts them, as dictionaries."""
+    """Converts lists of named entries, which keep the order of names in formats that sort them, to dictionaries."""
     if isinstance(part, dict):
         return {key: by_name(value) for key, value in part.items()}
     if isinstance(part, list) and part and all(isinstance(entry, dict) and "name" in entry for entry in part):
@@ -454,7 +454,8 @@ def by_name(part):
 
 
 def compare(line):
-    """Compares the values of one line. Returns how many there are, what is wrong, and how many hang on rounding."""
+    """Compares the values of one line. Returns the number of values, the errors, and the number of values that depend on
+    rounding."""
     case = json.loads(line)
     model = by_name(case["model"])
     ((_, output),) = model["outputs"].items()
@@ -472,7 +473,7 @@ def compare(line):
         if not differ(ours, exact):
             continue
         if differ(exact, evaluate(model, point, 1 - mpf("1e-15"))):
-            ill_conditioned += 1  # hangs on the last digit of the firing strengths
+            ill_conditioned += 1  # depends on the last digit of the firing strengths
             continue
         told = exact and float(exact)
         wrong.append(f"seed {case['seed']} at {point}: {ours}, not {told}, {defuzzifier} {model['operators']}")

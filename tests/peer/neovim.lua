@@ -1,4 +1,4 @@
--- Run by neovim.sh: fails where the server does not do what docs/editors.md says.
+-- Run by neovim.sh: fails if the server does not behave as documented in docs/editors.md.
 local function fail(why)
   io.stderr:write(why .. "\n")
   vim.cmd("cquit 1")
@@ -25,7 +25,7 @@ local ran, why = pcall(function()
     return answers[id].result
   end
 
-  -- Mend the mistake as a person would: the diagnostic goes.
+  -- Correct the mistake like a user: the diagnostic disappears.
   local line = vim.api.nvim_buf_get_lines(0, 7, 8, false)[1]
   vim.api.nvim_buf_set_lines(0, 7, 8, false, { (line:gsub("slwo", "slow")) })
   local function errors() return vim.diagnostic.get(0, { severity = vim.diagnostic.severity.ERROR }) end

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The language server with a real editor: Neovim opens a rule set with a mistake, asks for completion, renames a term.
-# Exits with 3 where there is no Neovim.
+# The language server with a real editor: Neovim opens a rule set with a mistake, requests completion, renames a term.
+# Exits with 3 without Neovim.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

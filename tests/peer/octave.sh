@@ -1,5 +1,5 @@
 #!/bin/sh
-# Asks Octave's fuzzy-logic-toolkit for the values of rule sets that are written for it. Exits with 3 where there is no Octave
+# Compares the values of exported rule sets in Octave's fuzzy-logic-toolkit. Exits with 3 without Octave
 # (Debian: apt-get install octave octave-fuzzy-logic-toolkit, 126 MB).
 set -eu
 cd "$(dirname "$0")/../.."

@@ -3,12 +3,12 @@
 % octave-cli octave_peer.m FOLDER: for each NAME.fis, NAME.csv has a column for each input and output.
 pkg load fuzzy-logic-toolkit
 
-% MATLAB's name of it.
+% The name in MATLAB.
 function y = probor (varargin)
   y = algebraic_sum (varargin{:});
 endfunction
 
-SAMPLES = 1001;    % of an integral, which is exact on our side
+SAMPLES = 1001;    % of an integral, which is exact in this project
 files = glob (fullfile (argv (){end}, '*.fis'));
 wrong = 0;
 for k = 1:numel (files)

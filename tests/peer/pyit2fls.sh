@@ -1,5 +1,5 @@
 #!/bin/sh
-# Asks PyIT2FLS for the values of FCL that are written for it. Exits with 3 where there is no Python.
+# Compares the values of exported FCL in PyIT2FLS. Exits with 3 without Python.
 set -eu
 cd "$(dirname "$0")/../.."
 venv=target/pyit2fls

@@ -1,10 +1,10 @@
-"""A vehicle made with pymavlink, which knows nothing of flagred: does each understand the other?
+"""A vehicle made with pymavlink, which is independent of flagred, to test that both understand each other.
 
 Usage: pymavlink_peer.py FLAGRED [1|2|signed]
 
-Starts `FLAGRED watch` on a free port, flies a made-up flight whose motors saturate, in MAVLink 1 or 2, and checks what
-comes back. In MAVLink 2 it sends signed packets at the end, which are to be left out with a note. In the signed round both
-have a key: pymavlink signs and verifies all packets, and what it sends unsigned or replays at the end is to be refused.
+Starts `FLAGRED watch` on a free port, flies a generated flight whose motors saturate, in MAVLink 1 or 2, and checks the
+answers. In MAVLink 2 it sends signed packets at the end, which must be skipped with a note. In the signed round, both
+have a key: pymavlink signs and verifies all packets, and its unsigned or replayed packets at the end must be refused.
 """
 
 import atexit
@@ -37,7 +37,7 @@ options = ["--key", key_file.name] if is_signed else []
 watch = subprocess.Popen(
     [flagred, "watch", "udpin:127.0.0.1:0", "--jsonl", *options], stdout=subprocess.PIPE, text=True
 )
-atexit.register(watch.kill)  # a watch left behind would hold the pipes of whoever runs this
+atexit.register(watch.kill)  # a remaining watch would keep the pipes of the caller open
 started = json.loads(watch.stdout.readline())
 address = started["endpoint"].removeprefix("listening at ")
 link = mavutil.mavlink_connection(f"udpout:{address}", source_system=3, source_component=1)
@@ -72,14 +72,14 @@ def listen():
 
 
 def pulses(t_s):
-    """20 s of hovering, 15 s of motors that go from one limit to the other, and hovering again."""
+    """20 s of hovering, 15 s of motors that alternate between their limits, and hovering again."""
     if 20 <= t_s < 35:
         return [1000 + 975 * (round(t_s * 25) // 5 + n & 1) for n in range(4)]
     return [round(1500 + 10 * math.sin(3 * t_s + n)) for n in range(4)]
 
 
 def asked_rates():
-    """The interval in microseconds that was asked for, of each message."""
+    """The requested interval of each message, in microseconds."""
     return {int(m.param1): m.param2 for m in heard if m.get_type() == "COMMAND_LONG"}
 
 

@@ -1,7 +1,6 @@
 #!/bin/sh
-# Runs the tests with pymavlink as the peer, in a Python environment of their own under `target/`. Takes the names of
-# tests. Exits with 3 where there
-# is no Python to make one with.
+# Runs the tests with pymavlink as the peer, in a separate Python environment under `target/`. Arguments: names of tests.
+# Exits with 3 without Python.
 set -eu
 cd "$(dirname "$0")/../.."
 venv=target/pymavlink

@@ -1,5 +1,5 @@
 """A stand-in for ArduCopter's simulator, for scripts/try-against-sitl: two TCP links that forward to each other, the
-commands that the script gives, and motors that hover, turn and lose thrust. Nothing of it is flight dynamics.
+commands of the script, and motors that hover, turn and lose thrust. It does not simulate flight dynamics.
 
 Usage: sitl_stand_in.py SPEED. Prints the ports of its links.
 """

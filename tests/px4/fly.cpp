@@ -1,4 +1,4 @@
-// Flies the example: calm, then motors that are in turns at their limits, 50 times a second.
+// Runs the example: calm motors, then motors alternately at their limits, 50 times a second.
 #include <cmath>
 #include <stub.hpp>
 

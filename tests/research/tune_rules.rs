@@ -1,9 +1,8 @@
-//! Tunes candidates for the rules to fly with, judges them on vehicles that they were not tuned on, and writes the chosen one.
+//! Tunes candidates for the default rule set, validates them on held-out vehicles, and writes the chosen one.
 //!
-//! `scripts/learn-flagred DATA` makes the rows and runs it. Prints the areas of each candidate, then of the chosen one, with its
-//! vote of a sudden change: areas with 95 % intervals over flights, how often it is high where it should not be, every real
-//! vehicle, and what followed its risks, all judged by rules that do not know the vehicle. The last it also writes into
-//! profiles.
+//! `scripts/learn-flagred DATA` creates the rows and runs it. Prints the areas of each candidate, then the figures of the chosen
+//! one with its vote of a sudden change: areas with 95 % intervals over flights, false alarms, every real vehicle, and the
+//! reliability, all by rules tuned without the vehicle. The reliability is also written into profiles.
 
 use std::{collections::BTreeMap, error::Error, fs, io::Write, path::Path};
 
@@ -13,9 +12,9 @@ use flagred_tests::tuning::{
     risks_pct, shares, tune, tune_without, with_shares, with_step,
 };
 
-/// A real vehicle counts on its own from so many critical and so many other steps on.
+/// Minimum number of critical steps, and of other steps, for a separate line of a real vehicle.
 const ENOUGH: usize = 20;
-/// Bands of risk in the table that is printed, and in profiles.
+/// Number of bands of risk in the printed table and in profiles.
 const PRINTED_BANDS: usize = 10;
 const PROFILE_BANDS: usize = 5;
 
@@ -122,7 +121,7 @@ fn main() -> Result<()> {
 struct Candidate {
     rows: Vec<Row>,
     tuned: Votes,
-    /// The risk at each row by rules that do not know its vehicle, in %.
+    /// The risk of each row in %, by rules tuned without its vehicle.
     unknown: Vec<f64>,
     /// These rules, for each fold.
     left_out: Vec<Votes>,
@@ -144,7 +143,7 @@ impl Candidate {
         })
     }
 
-    /// The rule set. The engine says the same, and nowhere is a gap that a monitor would fill.
+    /// The rule set, after verifying that the engine gives the same risks and that there is no gap for a monitor to fill.
     fn rule_set(&self) -> Result<fuzzy::Model> {
         let model = self.tuned.rule_set(&self.rows);
         let engine = fuzzy::Engine::new(&model)?;
@@ -165,7 +164,7 @@ impl Candidate {
     }
 }
 
-/// How good risks in % are on all sets.
+/// Prints figures of risks in % for all data sets.
 fn print(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Result<()> {
     writeln!(
         out,
@@ -209,7 +208,7 @@ fn print(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Result<()> {
     print_vehicles(rows, risks_pct, out)
 }
 
-/// Each real vehicle.
+/// Prints a line for each real vehicle.
 fn print_vehicles(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Result<()> {
     writeln!(
         out,
@@ -245,7 +244,7 @@ fn print_vehicles(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Resu
     Ok(())
 }
 
-/// What followed risks in bands of 10 %.
+/// Prints the reliability in bands of 10 %.
 fn print_shares(rows: &[Row], risks_pct: &[f64], out: &mut impl Write) -> Result<()> {
     writeln!(out, "\n| risk | real | sitl2 | sitl3 |\n|---|---|---|---|")?;
     let sets: [fn(Set) -> bool; 3] = [

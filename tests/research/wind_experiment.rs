@@ -1,5 +1,5 @@
-//! A flight in wind: the risk from its motors beside the autopilot's own wind estimate and, where the log of a simulator
-//! has it, the true wind.
+//! A flight in wind: the risk from its motors beside the wind estimate of the autopilot and, if the log of a simulator contains
+//! it, the true wind.
 //!
 //! `cargo run -p flagred-tests --example wind_experiment -- FLIGHT.BIN wind.svg`
 
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Seconds and risk in %, where it is known.
+/// Time in seconds and risk in %, where it is known.
 fn risks(flight: &Flight) -> Result<Vec<(f64, f64)>, Box<dyn Error>> {
     let estimator = shipped::flagred();
     let mut monitor = Monitor::new(&estimator, Craft::new(flight.motors.len()))?;
@@ -75,7 +75,7 @@ fn draw(flight: &Flight, risks: &[(f64, f64)]) -> String {
         (risks, 100.0, "#d55e00"),
     ] {
         svg.push_str("<polyline points=\"");
-        // Five points a second are more than the picture can show.
+        // Five points per second exceed the resolution of the picture.
         let mut next_s = f64::NEG_INFINITY;
         for (t_s, value) in points {
             if *t_s < next_s {
@@ -84,7 +84,7 @@ fn draw(flight: &Flight, risks: &[(f64, f64)]) -> String {
             next_s = t_s + 0.2;
             let x = MARGIN + (t_s - from_s) / (to_s - from_s) * (WIDTH - 2.0 * MARGIN);
             let y = HEIGHT - 36.0 - value / highest * (HEIGHT - 70.0);
-            // Writing to a text cannot fail.
+            // Writing to a `String` cannot fail.
             let _ = write!(svg, "{x:.1},{y:.1} ");
         }
         let _ = writeln!(

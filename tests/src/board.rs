@@ -13,7 +13,7 @@ use flagred_flightlog::{Flight, Options};
 
 use crate::shared_data;
 
-/// The command-line arguments of profiles that fly on board: the shipped ones of one risk, and one with a signal.
+/// The command-line arguments of profiles for on-board monitors: the shipped ones with one risk, and one with a signal.
 pub const PROFILES: [&str; 3] = [
     "flagred",
     "flagred-paper",
@@ -42,7 +42,7 @@ pub fn estimator(profile: &str) -> Estimator {
             ),
         ),
     };
-    // An absolute path stands for itself.
+    // `join` returns an absolute path unchanged.
     let read = |file: &str| std::fs::read_to_string(folder.join(file)).unwrap();
     let profile = read(profile).parse::<Profile>().unwrap();
     let rules = read(rules);
@@ -59,7 +59,7 @@ pub struct Moment {
     pub motors: Vec<f64>,
     /// Whether in the air.
     pub in_air: bool,
-    /// Signals, in the order of a profile.
+    /// Signals, in the order of the profile.
     pub signals: Vec<f64>,
 }
 
@@ -75,7 +75,7 @@ impl Moment {
     }
 }
 
-/// The shipped flight, and the reference flights where they are available.
+/// The shipped flight, and the reference flights if they are available.
 ///
 /// # Panics
 ///
@@ -100,7 +100,7 @@ pub fn logs() -> Vec<PathBuf> {
     logs
 }
 
-/// The factors of the motors of a flight; without known ones, of motors on a circle.
+/// The factors of the motors of a flight; if they are unknown, those of motors on a circle.
 ///
 /// # Panics
 ///
@@ -120,8 +120,8 @@ pub fn geometry(log: &std::path::Path) -> Vec<Factors> {
     known.unwrap_or_else(|| (0..motors).map(on_a_circle).collect())
 }
 
-/// The samples of a flight with the signals of a profile, followed by samples that no log has: time stamps that repeat or
-/// jump, and motors that are unknown or at their limits, on the ground and in the air.
+/// The samples of a flight with the signals of a profile, followed by samples that no log contains: repeated timestamps,
+/// jumps, and motors that are unknown or at their limits, on the ground and in the air.
 ///
 /// # Panics
 ///
@@ -187,14 +187,14 @@ fn samples(flight: &Flight, names: &[&str]) -> Vec<Moment> {
     flight.commands.rows().map(moment).collect()
 }
 
-/// A grid over the ranges of a profile's inputs and one step beyond, with `along` points on each axis.
+/// A grid over the ranges of a profile's inputs and one step beyond them, with `along` points on each axis.
 pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
     let plan_inputs = estimator.profile().inputs.len();
     let ranges: Vec<(f64, f64)> = match estimator.plan() {
         Ok(plan) => {
             let mut ranges = vec![(0.0, 1.0); plan_inputs];
             for (input, index) in plan.rules.table.inputs.iter().zip(plan.order) {
-                // The risk does not depend on all of them.
+                // The risk may not depend on every input.
                 if let Some(range) = ranges.get_mut(*index as usize) {
                     *range = (input.low, input.high);
                 }

@@ -1,8 +1,8 @@
-//! A place for the files of one test.
+//! A folder for the files of one test.
 
 use std::{fs, path::Path};
 
-/// A folder of a test's own, gone when the test is.
+/// A temporary folder, removed at the end of the test.
 pub struct Folder(tempfile::TempDir);
 
 #[expect(
@@ -11,22 +11,22 @@ pub struct Folder(tempfile::TempDir);
     reason = "a test that has no room for its files has failed"
 )]
 impl Folder {
-    /// A new one, and empty.
+    /// Creates an empty folder.
     pub fn new() -> Self {
         Folder(tempfile::tempdir().expect("a temporary folder"))
     }
 
-    /// The folder itself.
+    /// The path of the folder.
     pub fn path(&self) -> &Path {
         self.0.path()
     }
 
-    /// Where a file of that name is or would be, as an argument for a command.
+    /// The path of a file with this name, as an argument for a command; the file need not exist.
     pub fn at(&self, name: &str) -> String {
         self.path().join(name).display().to_string()
     }
 
-    /// Writes a file; where it is, as an argument for a command.
+    /// Writes a file and returns its path, as an argument for a command.
     pub fn file(&self, name: &str, content: impl AsRef<[u8]>) -> String {
         let path = self.at(name);
         fs::write(&path, content).expect("a file in a temporary folder");

@@ -1,4 +1,4 @@
-//! What the tests across packages share; the tests themselves are in `tests/tests/`.
+//! Functions shared by the tests across packages; the tests themselves are in `tests/tests/`.
 
 pub mod board;
 mod folder;
@@ -19,14 +19,14 @@ pub use folder::Folder;
 
 use std::{path::PathBuf, process::Command, sync::OnceLock};
 
-/// The flight that is shipped: two minutes of a quadrotor in a steady wind.
+/// The shipped flight: two minutes of a quadrotor in a steady wind.
 pub const STEADY: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../examples/flights/steady.BIN"
 );
 
-/// The folder of reference data, where the environment variable `FLAGRED_SHARED` names its parent: for tests that only look at
-/// more with it.
+/// The folder of reference data, if the environment variable `FLAGRED_SHARED` names its parent: for tests that run without it
+/// as well.
 pub fn shared_data() -> Option<PathBuf> {
     std::env::var_os("FLAGRED_SHARED").map(|folder| PathBuf::from(folder).join("data"))
 }
@@ -35,7 +35,7 @@ pub fn shared_data() -> Option<PathBuf> {
 ///
 /// # Panics
 ///
-/// Where the environment variable `FLAGRED_SHARED` does not name its parent.
+/// If the environment variable `FLAGRED_SHARED` does not name its parent.
 #[expect(
     clippy::expect_used,
     reason = "a test without the data that it needs has failed"
@@ -46,15 +46,15 @@ pub fn reference_data() -> PathBuf {
     PathBuf::from(folder).join("data")
 }
 
-/// The `flagred` binary of this workspace, built as the tests are, ready to be given arguments.
+/// A command for the `flagred` binary of this workspace, built with the profile of the tests.
 ///
-/// Cargo gives a path to a binary only to tests of its own package; these are in another, so the binary is built
-/// here, as one of the package's own tests has it built: `cargo test --workspace` has done so already, with these very
-/// features of all dependencies, and nothing is left to do.
+/// Cargo provides the path of a binary only to tests of the same package. These tests are in another package, so the binary is
+/// built here, with the same features as for tests of its own package: after `cargo test --workspace` there is nothing left to
+/// build.
 ///
 /// # Panics
 ///
-/// Where the binary does not build.
+/// If the binary does not build.
 #[expect(
     clippy::panic,
     reason = "a test that cannot build what it tests has failed"

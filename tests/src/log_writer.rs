@@ -1,9 +1,9 @@
-//! Small writers of flight logs, for layouts of which there is no log that may be shipped.
+//! Small writers of flight logs, for layouts without a log that may be redistributed.
 
 /// A value of a field.
 #[derive(Debug, Clone, Copy)]
 pub enum Value<'a> {
-    /// A number, in the unit that is logged.
+    /// A number, in the logged unit.
     Number(f64),
     /// A text.
     Text(&'a str),
@@ -21,7 +21,7 @@ impl<'a> From<&'a str> for Value<'a> {
     }
 }
 
-/// An ArduPilot DataFlash log, in both its forms at once.
+/// An ArduPilot DataFlash log, in both binary and text form.
 #[derive(Debug, Default)]
 pub struct DataFlash {
     /// The binary log.
@@ -32,7 +32,7 @@ pub struct DataFlash {
 }
 
 impl DataFlash {
-    /// A log that defines FMT, as all do.
+    /// A log that defines FMT, like every log.
     pub fn new() -> Self {
         let mut log = Self::default();
         log.define(128, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns");
@@ -55,7 +55,7 @@ impl DataFlash {
     ///
     /// # Panics
     ///
-    /// When the message was not defined.
+    /// If the message was not defined.
     pub fn write<'a>(&mut self, name: &str, values: impl IntoIterator<Item = Value<'a>>) {
         let (type_id, kinds) = self.kinds[name].clone();
         self.bytes.extend([0xa3, 0x95, type_id]);
@@ -75,7 +75,7 @@ impl DataFlash {
         self.text += "\n";
     }
 
-    /// Writes a parameter, for which PARM is defined as `QNf`.
+    /// Writes a parameter; PARM must be defined as `QNf`.
     pub fn parameter(&mut self, time_us: f64, name: &str, value: f64) {
         self.write("PARM", [time_us.into(), name.into(), value.into()]);
     }
@@ -121,7 +121,7 @@ pub struct ULog {
 }
 
 impl ULog {
-    /// A file whose log began at that time.
+    /// A file of a log that began at this time.
     pub fn new(start_us: u64) -> Self {
         let mut bytes = b"ULog\x01\x12\x35\x01".to_vec();
         bytes.extend(start_us.to_le_bytes());
@@ -149,7 +149,7 @@ impl ULog {
         self.message(b'P', &body);
     }
 
-    /// Announces a topic under a number.
+    /// Subscribes to a topic under a number.
     pub fn announce(&mut self, instance: u8, id: u16, name: &str) {
         let mut body = vec![instance];
         body.extend(id.to_le_bytes());
@@ -157,7 +157,7 @@ impl ULog {
         self.message(b'A', &body);
     }
 
-    /// Writes data of a topic that has floats behind its time.
+    /// Writes data of a topic that consists of its time and floats.
     pub fn floats(&mut self, id: u16, time_us: u64, values: &[f32]) {
         let mut body = id.to_le_bytes().to_vec();
         body.extend(time_us.to_le_bytes());
@@ -165,7 +165,7 @@ impl ULog {
         self.message(b'D', &body);
     }
 
-    /// Writes data of a topic that has bytes behind its time.
+    /// Writes data of a topic that consists of its time and bytes.
     pub fn flags(&mut self, id: u16, time_us: u64, values: &[u8]) {
         let mut body = id.to_le_bytes().to_vec();
         body.extend(time_us.to_le_bytes());
@@ -245,7 +245,7 @@ pub fn packet(
         }
     };
     packet.extend(&payload);
-    // The checksum bit by bit, as its definition has it.
+    // The checksum bit by bit, as in its definition.
     let mut sum = 0xffff_u16;
     for byte in packet[1..].iter().chain([&extra]) {
         sum ^= u16::from(*byte);

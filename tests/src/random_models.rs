@@ -27,7 +27,7 @@ const OR: [Disjunction; 7] = [
     Disjunction::NilpotentMaximum,
 ];
 
-/// The commonest more often.
+/// Implications; the most common ones are repeated.
 const IMPLICATION: [Conjunction; 11] = [
     Conjunction::Minimum,
     Conjunction::Minimum,
@@ -81,7 +81,7 @@ fn shape(rng: &mut Rng, low: f64, high: f64) -> MembershipFunction {
     let inside = between(rng, low, high);
     let spread = width * between(rng, 0.02, 0.4);
     let other = width * between(rng, 0.02, 0.4);
-    // Steeper ones are level to the last digit, and maxima hang on rounding.
+    // Steeper ones are flat to the last digit, and their maxima would depend on rounding.
     let steep = between(rng, 4.0, 25.0) / width * if rng.bool() { 1.0 } else { -1.0 };
     match rng.u8(0..21) {
         0 => MembershipFunction::Triangle {
@@ -166,7 +166,7 @@ fn shape(rng: &mut Rng, low: f64, high: f64) -> MembershipFunction {
     }
 }
 
-/// A variable of a random range with so many terms.
+/// A variable with a random range and this many terms.
 fn variable(rng: &mut Rng, name: &str, terms: usize) -> Variable {
     let scale = 10f64.powi(rng.i32(-3..4));
     let low = between(rng, -2.0, 2.0) * scale;
@@ -200,7 +200,7 @@ fn condition(rng: &mut Rng, inputs: &[Variable]) -> Condition {
     })
 }
 
-/// The model of a seed; `None` where the terms that it draws are refused.
+/// The model of a seed; `None` if its random terms are rejected.
 fn model(seed: u64) -> Option<Model> {
     let rng = &mut Rng::with_seed(seed);
     let inputs: Vec<Variable> = (0..rng.usize(1..4))
@@ -265,7 +265,7 @@ fn point(rng: &mut Rng, model: &Model) -> Vec<f64> {
     inputs.map(|v| between(rng, v.low, v.high)).collect()
 }
 
-/// So many models with three points each, from a seed on.
+/// This many models with three points each, from a first seed on.
 pub fn models(first: u64, count: usize) -> impl Iterator<Item = (u64, Model, Vec<Vec<f64>>)> {
     let models = (first..).filter_map(|seed| Some((seed, model(seed)?)));
     models.take(count).map(|(seed, model)| {

@@ -1,6 +1,6 @@
-//! A check of JSON against the schemas that `flagred schema` prints.
+//! Validation of JSON against the schemas that `flagred schema` prints.
 //!
-//! It knows the keywords that these use and fails on any other. A validator of all of JSON Schema costs some fifty packages.
+//! It supports the keywords that these use and fails on any other. A validator of all of JSON Schema needs some fifty packages.
 #![expect(
     clippy::unwrap_used,
     clippy::panic,
@@ -31,13 +31,13 @@ pub fn printed(name: &str) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The same with its references resolved.
+/// The schema of a document with its references resolved.
 pub fn schema(name: &str) -> Value {
     let schema = printed(name);
     resolved(&schema, &schema)
 }
 
-/// A part of a schema with what its references name in their place.
+/// A part of a schema with its references resolved.
 fn resolved(root: &Value, part: &Value) -> Value {
     match part {
         Value::Object(fields) => {
@@ -57,7 +57,7 @@ fn resolved(root: &Value, part: &Value) -> Value {
     }
 }
 
-/// Where a value is not what its schema says, as `path: what`.
+/// The differences between a value and its schema, as `path: difference`.
 pub fn errors(schema: &Value, value: &Value) -> Vec<String> {
     let mut found = Vec::new();
     check(schema, value, "$", &mut found);
@@ -184,7 +184,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn what_a_schema_does_not_say_is_found() {
+    fn keys_that_a_schema_does_not_describe_are_found() {
         let schema = json!({
             "type": "object",
             "properties": {

@@ -1,4 +1,4 @@
-//! The simulated flights of the reference data, and what a profile says of them.
+//! The simulated flights of the reference data, and the results of a profile for them.
 
 use std::{
     collections::HashMap,
@@ -19,62 +19,62 @@ use flagred::{
 use flagred_evaluation::{ErrorRecord, Span};
 use flagred_flightlog::{ATTITUDE, Flight};
 
-/// How far apart steps are, and how far they look ahead, in seconds.
+/// The interval of steps, and their horizon, in seconds.
 const STEP_S: f64 = 0.5;
 const HORIZON_S: f64 = 5.0;
 
-/// A flight in changing conditions, with what became of it.
+/// A flight in changing conditions, with its outcome.
 pub struct Simulated {
-    /// Such as `f000`.
+    /// The identifier, such as `f000`.
     pub id: String,
-    /// The vehicle, two that are the same craft under one name.
+    /// The vehicle; two names of one craft are merged.
     pub vehicle: String,
     /// `gusts`, `rising`, `calm`, `fault` or `manoeuvre`.
     pub kind: String,
-    /// When the flight counts.
+    /// The assessed time.
     pub judged: Span,
     /// The attitude error.
     pub errors: ErrorRecord,
-    /// When it ended in the air.
+    /// When the flight ended by a loss of control in the air.
     pub lost_s: Option<f64>,
-    /// Its steps, with whether the error becomes critical after them.
+    /// Its steps, and whether the error becomes critical after them.
     pub steps: Vec<(f64, bool)>,
-    /// What was done to it and when: time in seconds, event, time constant of the wind in seconds.
+    /// The events during the flight: time in seconds, event, time constant of the wind in seconds.
     pub events: Vec<(f64, String, f64)>,
     flight: Flight,
 }
 
-/// How a flight is replayed.
+/// Settings of a replay.
 #[derive(Clone, Copy)]
 pub struct Replay {
-    /// Only every so manyth motor sample is seen.
+    /// Use only every n-th motor sample.
     pub every: usize,
-    /// By how much the lower and upper end of the effective range are taken wrongly.
+    /// Errors of the lower and upper limit of the effective range.
     pub wrong_by: (f64, f64),
 }
 
-/// As it was flown.
+/// The unchanged flight.
 pub const AS_FLOWN: Replay = Replay {
     every: 1,
     wrong_by: (0.0, 0.0),
 };
 
-/// What a profile says of a flight.
+/// The results of a profile for a flight.
 pub struct Said {
     /// At each step: the inputs, and the risk in %; NaN is unknown.
     pub steps: Vec<(Vec<f64>, f64)>,
-    /// The risk over time, where it is known: seconds and %.
+    /// The known risk over time: seconds and %.
     pub risks: Vec<(f64, f64)>,
-    /// When it warned.
+    /// The times of warnings.
     pub warnings: Vec<Span>,
 }
 
-/// The vehicle a name stands for: one craft goes by two.
+/// The vehicle of a name: one craft has two names.
 pub fn vehicle(name: &str) -> String {
     name.replace("lin_tw125_z12", "lin_c80_z12")
 }
 
-/// Works on all items on all cores; the results are in the order of the items.
+/// Processes all items on all cores; the results have the order of the items.
 pub fn on_all_cores<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let done = Mutex::new(Vec::new());
@@ -154,14 +154,14 @@ fn read(path: &Path) -> Simulated {
 }
 
 impl Simulated {
-    /// The largest error after a time, over the horizon of the steps, in degrees.
+    /// The largest error after a time, within the horizon of the steps, in degrees.
     pub fn error_ahead_deg(&self, t_s: f64) -> f64 {
         self.errors
             .largest_within(t_s, HORIZON_S)
             .unwrap_or(f64::NAN)
     }
 
-    /// Sends the flight through a monitor.
+    /// Passes the flight through a monitor.
     pub fn replay(&self, estimator: &Estimator, replay: Replay) -> Said {
         let flight = &self.flight;
         let (low, high) = (

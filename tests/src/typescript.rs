@@ -1,4 +1,4 @@
-//! TypeScript declarations from the types of JSON Schemas.
+//! TypeScript declarations from JSON Schemas.
 #![expect(
     clippy::unwrap_used,
     clippy::panic,

@@ -1,4 +1,4 @@
-//! A stand-in vehicle: flies a log again, as MAVLink.
+//! A stand-in vehicle that replays a log over MAVLink.
 
 mod answers;
 mod heard;
@@ -25,7 +25,7 @@ use flagred_flightlog::{
 
 use crate::wire::{Link, Speed, Wire};
 
-/// A vehicle that flies a log again.
+/// A vehicle that replays a log.
 pub struct StandIn {
     wire: Wire,
     link: Link,
@@ -34,35 +34,35 @@ pub struct StandIn {
     parameters: Vec<(String, f64)>,
     kind: MavType,
     sender: Sender,
-    /// What becomes of the flight's packets, and of all others: how often somebody asks changes nothing of the flight.
+    /// Random states for the packets of the flight and for all others, so that the number of requests does not affect the flight.
     random: [u64; 2],
     stream: Stream,
     /// A second link.
     other: Option<(Wire, Stream)>,
     late: VecDeque<(u32, Vec<u8>)>,
-    /// What came from the other side.
+    /// Messages received from the other side.
     pub heard: Heard,
-    /// What came on the second link.
+    /// Messages received on the second link.
     pub heard_elsewhere: Heard,
-    /// When the motor commands of a time, in ms of the vehicle's clock, were sent.
+    /// When the motor commands of each time, in ms of the vehicle's clock, were sent.
     pub sent: Vec<(u32, Instant)>,
-    /// How far the other side is. A flight that goes as fast as it can waits for it, or the machine's own buffers would
-    /// lose packets.
+    /// The progress of the other side. A flight at full speed waits for it, because the buffers of the machine would lose
+    /// packets.
     pub progress: Option<Arc<Progress>>,
-    /// How many ends of flights were marked so far.
+    /// The number of ends of flights marked so far.
     marks: u8,
-    /// What the vehicle's clock says when the log's says 0, in seconds.
+    /// The vehicle's clock at time 0 of the log, in seconds.
     pub clock_s: f64,
     /// Whether requests are answered.
     pub answers: bool,
-    /// How often it looks for what came while it waits for its next command.
+    /// How often it reads incoming packets while it waits for its next command.
     pub look_every: Duration,
     asked: bool,
-    /// It sends motor commands no more often than this.
+    /// The minimum interval of motor commands.
     pub every: Duration,
-    /// Whether it sends motor commands as often as it is asked to.
+    /// Whether it sends motor commands at the requested rate.
     pub obeys: bool,
-    /// How far its motors are from the outputs of the log.
+    /// The offset of its motors from the outputs of the log.
     shift: usize,
 }
 
@@ -73,7 +73,7 @@ const TALK: usize = 1;
 /// Half the time between two commands of a log.
 const HALF_A_SAMPLE_S: f64 = 0.02;
 
-/// The other side gets so much time for anything: machines that run many tests are slow.
+/// The time-out for any reaction of the other side: machines that run many tests are slow.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 impl StandIn {
@@ -110,7 +110,7 @@ impl StandIn {
         }
     }
 
-    /// Beats until the other side knows the motors; where nobody reads what it says, until it has asked.
+    /// Sends heartbeats until the other side knows the motors; without a reader of its output, until it has sent a request.
     pub fn meet(&mut self) {
         let start = Instant::now();
         let is_met = |vehicle: &StandIn| match &vehicle.progress {
@@ -124,13 +124,13 @@ impl StandIn {
         }
     }
 
-    /// Flies the part of a log between two of its times, until the other side has followed to the end.
+    /// Replays the part of a log between two times, and waits until the other side has followed to the end.
     pub fn fly(&mut self, flight: &Flight, speed: Speed, from_s: f64, to_s: f64) {
         self.fly_on(flight, speed, from_s, to_s);
         self.settle();
     }
 
-    /// Flies the part of a log between two of its times.
+    /// Replays the part of a log between two times.
     pub fn fly_on(&mut self, flight: &Flight, speed: Speed, from_s: f64, to_s: f64) {
         let outputs: Vec<usize> = flight.motors.iter().map(|m| output(&m.output)).collect();
         let mut state = None;
@@ -178,7 +178,7 @@ impl StandIn {
             }
             self.sent
                 .push(((clock_s * 1e3).round() as u32, Instant::now()));
-            // The microseconds start over after 71 minutes.
+            // The microseconds wrap around after 71 minutes.
             let time_usec = (clock_s * 1e6).round() as u64 as u32;
             let ports = if self.shift == 0 { 1 } else { 2 };
             for (port, pulses) in (0..ports).zip(&pulses) {
@@ -198,7 +198,7 @@ impl StandIn {
         }
     }
 
-    /// Waits until the other side has followed to the end: packets stay in order, and it tells of another vehicle.
+    /// Waits until the other side has followed to the end: packets stay in order, and it reports a marker vehicle.
     pub fn settle(&mut self) {
         let Some(progress) = self.progress.clone() else {
             self.linger(Duration::from_millis(200));
@@ -214,11 +214,11 @@ impl StandIn {
             assert!(start.elapsed() < PATIENCE, "the flight is not followed");
             self.linger(Duration::from_millis(2));
         }
-        // What was said of it is on its way.
+        // The last messages are still on their way.
         self.linger(Duration::from_millis(20));
     }
 
-    /// At most two seconds of commands are on their way at once.
+    /// Waits so that at most two seconds of commands are in transit.
     fn wait_for_the_other_side(&mut self, t_s: f64, in_air: bool) {
         self.wire.flush();
         let Some(progress) = self.progress.clone().filter(|_| in_air) else {
@@ -233,7 +233,7 @@ impl StandIn {
         }
     }
 
-    /// Listens for a while.
+    /// Receives packets for some time.
     pub fn linger(&mut self, time: Duration) {
         let start = Instant::now();
         while start.elapsed() < time {
@@ -249,23 +249,23 @@ impl StandIn {
         self.say(&beat);
     }
 
-    /// Signs what it sends, and takes only what is signed.
+    /// Signs its packets, and accepts only signed ones.
     pub fn sign(&mut self, key: &Key) {
         self.sender = Sender::new(1).signed(key.clone());
         self.stream = Stream::with_key(key.clone());
     }
 
-    /// What of the other side's packets it could not take.
+    /// The packets of the other side that it could not decode.
     pub fn skipped(&self) -> Skipped {
         self.stream.skipped()
     }
 
-    /// Sends on another wire what came on its own, and back: an autopilot forwards between its links.
+    /// Forwards packets between its own wire and another, as an autopilot does between its links.
     pub fn forward_to(&mut self, wire: Wire) {
         self.other = Some((wire, Stream::new()));
     }
 
-    /// Goes on from another address.
+    /// Continues from another address.
     pub fn move_to(&mut self, wire: Wire) {
         self.wire = wire;
     }
@@ -283,12 +283,12 @@ impl StandIn {
         }
     }
 
-    /// Sends bytes as they are, past the link.
+    /// Sends bytes directly, without the losses of the link.
     pub fn raw(&mut self, bytes: &[u8]) {
         self.wire.send(bytes);
     }
 
-    /// Sends a message that is none of the flight: it is lost or it is not.
+    /// Sends a message that is not part of the flight; the link may lose it.
     fn say(&mut self, message: &MavMessage) {
         let packet = self.sender.packet(self.version, self.system, message);
         if !self.chance(TALK, self.link.loss) {
@@ -296,7 +296,7 @@ impl StandIn {
         }
     }
 
-    /// Sends a message of a flight over the link, with what the link does to it.
+    /// Sends a message of a flight over the link, with its losses, repetitions and reordering.
     pub fn send(&mut self, message: &MavMessage) {
         let packet = self.sender.packet(self.version, self.system, message);
         if self.chance(FLIGHT, self.link.loss) {
@@ -329,7 +329,7 @@ impl StandIn {
         ((*random >> 11) as f64 / (1_u64 << 53) as f64) < share
     }
 
-    /// Takes in what came, and answers requests.
+    /// Receives packets, and answers requests.
     pub fn listen(&mut self) {
         self.forward();
         while self.wire.receive(&mut self.stream) {
@@ -350,7 +350,7 @@ impl StandIn {
         }
     }
 
-    /// Brings what came on the second link to the first.
+    /// Forwards packets of the second link to the first.
     fn forward(&mut self) {
         let Some((other, stream)) = &mut self.other else {
             return;
@@ -370,11 +370,11 @@ impl StandIn {
     }
 }
 
-/// The flight of a log, with what a stand-in needs of it.
+/// The flight of a log, for a stand-in.
 ///
 /// # Panics
 ///
-/// Where it cannot be read.
+/// If it cannot be read.
 pub fn flight(log: &Path) -> Flight {
     let signals = Some(Vec::new());
     let mut options = flagred_flightlog::Options::default();

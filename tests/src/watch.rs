@@ -1,4 +1,4 @@
-//! A running `flagred watch`, and what it said.
+//! A running `flagred watch`, and its output.
 #![expect(
     clippy::unwrap_used,
     clippy::missing_panics_doc,
@@ -24,22 +24,22 @@ use crate::{
     wire::{Link, Speed, Wire},
 };
 
-/// A process that goes with the test, also where that fails.
+/// A process that is killed at the end of the test, even if the test fails.
 struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // Neither can be told to anybody: it has ended already, or the test has failed.
+        // Errors are ignored: the process has ended already, or the test has failed.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// A running watch, and where it listens.
+/// A running watch, and its address.
 pub struct Watch {
     child: Running,
     address: Option<SocketAddr>,
-    /// Reads along: a watch whose output nobody takes would have to wait.
+    /// The reader of its output, without which the watch would block.
     reader: JoinHandle<Vec<Value>>,
     progress: Arc<Progress>,
 }
@@ -49,12 +49,12 @@ impl Watch {
         Watch::start_keeping(endpoint, options, |_| true)
     }
 
-    /// One whose events are kept where they are worth it.
+    /// Starts a watch and keeps the events that satisfy `keep`.
     pub fn start_keeping(endpoint: &str, options: &[&str], keep: fn(&Value) -> bool) -> Watch {
         Watch::run(flagred(), endpoint, options, keep)
     }
 
-    /// One that a command runs, to which the arguments are added.
+    /// Starts a watch by a command, to which the arguments are added.
     pub fn of(command: Command, endpoint: &str, options: &[&str]) -> Watch {
         Watch::run(command, endpoint, options, |_| true)
     }
@@ -118,7 +118,7 @@ impl Watch {
         self.address.unwrap()
     }
 
-    /// How much memory it takes, in kB.
+    /// Its resident memory, in kB.
     pub fn resident_kb(&self) -> u64 {
         let status =
             std::fs::read_to_string(format!("/proc/{}/status", self.child.0.id())).unwrap();
@@ -127,7 +127,7 @@ impl Watch {
         kb.parse().unwrap()
     }
 
-    /// A vehicle that sends it datagrams.
+    /// A vehicle that sends datagrams to it.
     pub fn vehicle(&self, flight: &Flight, link: Link) -> StandIn {
         self.vehicle_on(flight, Wire::udp(self.address()), link, Version::V2)
     }
@@ -139,9 +139,9 @@ impl Watch {
         vehicle
     }
 
-    /// Interrupts it; gives all it said.
+    /// Interrupts it and returns its output.
     pub fn end(mut self) -> Said {
-        // The shell's own: the program of that name is not on every machine.
+        // The `kill` of the shell: the program of that name is not on every machine.
         let interrupted = Command::new("sh")
             .args(["-c", &format!("kill -INT {}", self.child.0.id())])
             .status();
@@ -153,7 +153,7 @@ impl Watch {
 }
 
 pub struct Said {
-    /// Its lines.
+    /// The events that it printed.
     pub events: Vec<Value>,
     /// Its exit code.
     pub code: Option<i32>,
@@ -173,7 +173,7 @@ impl Said {
         all[0]
     }
 
-    /// The worst verdict of its flights; that one is all there is to say where it is `NA`.
+    /// The worst verdict of its flights; `NA` only if no flight has another.
     pub fn verdict(&self) -> String {
         let order = ["NA", "GOOD", "WARN", "FAIL"];
         let is_end = |event: &&Value| {
@@ -201,7 +201,7 @@ pub fn assess(log: &Path) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Flies a log over UDP; gives what the watch and the vehicle heard.
+/// Replays a log over UDP; returns the output of the watch and the messages to the vehicle.
 pub fn fly_udp(flight: &Flight, link: Link, options: &[&str], speed: Speed) -> (Said, StandIn) {
     let watch = Watch::udp(options);
     let mut vehicle = watch.vehicle(flight, link);
@@ -210,7 +210,7 @@ pub fn fly_udp(flight: &Flight, link: Link, options: &[&str], speed: Speed) -> (
     (watch.end(), vehicle)
 }
 
-/// The share of samples whose risk was told, and the largest difference to what `assess` says of them.
+/// The share of samples with a reported risk, and the largest difference from the results of `assess`.
 pub fn compare(said: &Said, assessed: &Value) -> (f64, f64) {
     let steps = assessed["steps"].as_array().unwrap();
     let mut watched = said
@@ -236,7 +236,7 @@ pub fn compare(said: &Said, assessed: &Value) -> (f64, f64) {
     (f64::from(matched) / f64::from(known), largest)
 }
 
-/// One text for each change of state, none of them on the ground, all as ground stations want them.
+/// Checks that there is one text for each change of state, none on the ground, and all in the form that ground stations require.
 pub fn check_texts(said: &Said, heard: &Heard) {
     let texts = heard.texts();
     let levels: Vec<(String, u8)> = said
@@ -244,7 +244,7 @@ pub fn check_texts(said: &Said, heard: &Heard) {
         .map(|event| {
             let severity = match event["level"].as_str() {
                 Some("GOOD") => 6,
-                // Unknown since an alarm stood.
+                // The risk is unknown and an alarm was raised before.
                 Some("WARN") | None => 4,
                 _ => 2,
             };

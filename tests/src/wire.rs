@@ -1,4 +1,4 @@
-//! The wire between a stand-in vehicle and the other side, and what becomes of packets on it.
+//! The wire between a stand-in vehicle and the other side, with losses.
 
 use std::{
     io::{ErrorKind, Read, Write},
@@ -8,23 +8,23 @@ use std::{
 
 use flagred_flightlog::mavlink::Stream;
 
-/// What a link does to packets, both ways for what it loses, and to those of the vehicle else.
+/// The behaviour of a link. Losses apply in both directions, the rest to packets of the vehicle.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Link {
-    /// The share that is lost.
+    /// The share of lost packets.
     pub loss: f64,
-    /// The share that arrives after later ones.
+    /// The share of packets that arrive after later ones.
     pub reordered: f64,
-    /// The share that arrives twice.
+    /// The share of packets that arrive twice.
     pub repeated: f64,
 }
 
-/// How fast a flight is flown again.
+/// The speed of a replay.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Speed {
-    /// As fast as it goes.
+    /// As fast as possible.
     Fastest,
-    /// So many times as fast as it was.
+    /// This many times the original speed.
     Times(f64),
 }
 
@@ -32,11 +32,11 @@ pub enum Speed {
 pub enum Wire {
     /// Datagrams.
     Udp(UdpSocket),
-    /// A connection, and what is still to be written to it: a radio sends many small packets at once too.
+    /// A connection, and the bytes still to be written: a radio too sends many small packets at once.
     Tcp(TcpStream, Vec<u8>),
 }
 
-/// So many bytes are written at once.
+/// The number of bytes written at once.
 const SEGMENT: usize = 1200;
 
 impl Wire {
@@ -44,7 +44,7 @@ impl Wire {
     ///
     /// # Panics
     ///
-    /// Where the machine has no loopback.
+    /// If the machine has no loopback interface.
     pub fn udp(address: SocketAddr) -> Wire {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         socket.connect(address).unwrap();
@@ -56,15 +56,15 @@ impl Wire {
     ///
     /// # Panics
     ///
-    /// Where it cannot be set up.
+    /// If it cannot be configured.
     pub fn tcp(stream: TcpStream) -> Wire {
         stream.set_nodelay(true).unwrap();
-        // The shortest time-out of a read is a tick of the kernel: milliseconds for every look.
+        // The shortest read time-out is a tick of the kernel: milliseconds for every read.
         stream.set_nonblocking(true).unwrap();
         Wire::Tcp(stream, Vec::new())
     }
 
-    /// Sends some bytes as they are. A link may fail; what comes of it is what is tested.
+    /// Sends bytes unchanged. The link may fail; the tests check the consequences.
     pub fn send(&mut self, bytes: &[u8]) {
         match self {
             Wire::Udp(socket) => drop(socket.send(bytes)),
@@ -77,7 +77,7 @@ impl Wire {
         }
     }
 
-    /// Writes what waits.
+    /// Writes the pending bytes.
     pub(crate) fn flush(&mut self) {
         let Wire::Tcp(stream, waiting) = self else {
             return;

@@ -1,4 +1,4 @@
-//! Every command that writes files, with small inputs: for tests of what becomes of these files.
+//! Every command that writes files, with small inputs, for tests of these files.
 #![expect(
     clippy::unwrap_used,
     clippy::missing_panics_doc,
@@ -22,7 +22,7 @@ pub struct Writing {
     pub files: Vec<String>,
 }
 
-/// A flight of so many seconds at 10 Hz whose motors go from one limit to the other: FAIL, as long as it is not short.
+/// A flight of this many seconds at 10 Hz whose motors alternate between their limits: FAIL, unless it is short.
 pub fn wild_flight(length_s: u32) -> String {
     let mut log = "t_s,motor1,motor2,motor3,motor4,in_air\n".to_owned();
     for i in 0..length_s * 10 {
@@ -90,7 +90,7 @@ pub fn commands(folder: &Folder) -> Vec<Writing> {
 }
 
 impl Writing {
-    /// The command, silent.
+    /// The command, without output.
     pub fn command(&self) -> Command {
         let mut command = flagred();
         command.args(&self.arguments);
@@ -101,14 +101,14 @@ impl Writing {
         command
     }
 
-    /// The command where no file can grow over so many blocks of 512 bytes.
+    /// The command with a limit on the size of files, in blocks of 512 bytes.
     pub fn limited(&self, blocks: u64) -> Command {
         let mut command = limited(blocks);
         command.args(&self.arguments);
         command
     }
 
-    /// What is in its files.
+    /// The contents of its files.
     pub fn contents(&self) -> Vec<Vec<u8>> {
         self.files
             .iter()
@@ -117,7 +117,7 @@ impl Writing {
     }
 }
 
-/// The binary where no file can grow over so many blocks of 512 bytes, as on a full disk.
+/// The binary with a limit on the size of files, in blocks of 512 bytes, as on a full disk.
 pub fn limited(blocks: u64) -> Command {
     let mut command = Command::new("sh");
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
@@ -125,7 +125,7 @@ pub fn limited(blocks: u64) -> Command {
     command
 }
 
-/// The names of drafts that are left in a folder.
+/// The names of temporary files left in a folder.
 pub fn drafts(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());

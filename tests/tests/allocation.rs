@@ -1,4 +1,4 @@
-//! Evaluation does not allocate: an allocator that counts says so.
+//! Evaluation does not allocate, according to an allocator that counts.
 
 use fuzzy::Engine;
 use fuzzy::engine::Outcome;
@@ -17,10 +17,10 @@ fn models() -> Vec<Model> {
     models
 }
 
-/// Evaluates points along the diagonal of the inputs' ranges and beyond.
+/// Evaluates points on the diagonal of the ranges of the inputs and beyond.
 fn assert_no_allocation(model: &Model) {
     let engine = Engine::new(model).unwrap();
-    // A clone has as much room as the scratch it is of.
+    // A clone has the same capacity as the original scratch.
     let mut scratch = engine.scratch().clone();
     let mut outcomes = vec![Outcome::default(); model.outputs.len()];
     let mut point = vec![0.0; model.inputs.len()];
@@ -38,7 +38,7 @@ fn assert_no_allocation(model: &Model) {
 }
 
 #[test]
-fn the_counter_counts() {
+fn the_allocation_counter_counts() {
     let counted = allocation_counter::measure(|| drop(std::hint::black_box(vec![0u8; 10])));
     assert_eq!(counted.count_total, 1);
 }
@@ -75,7 +75,7 @@ fn no_evaluation_allocates() {
             model.operators.aggregation = aggregation;
             assert_no_allocation(&model);
         }
-        // Weighted numbers have no maxima, and singletons no area to halve.
+        // Weighted numbers have no maxima, and singletons have no area to bisect.
         let is_set = |output: &fuzzy::model::Output| {
             let is_singleton = |term: &fuzzy::model::Term| {
                 matches!(
@@ -100,7 +100,7 @@ fn no_evaluation_allocates() {
     }
 }
 
-/// 5000 rules with 200 ANDs each have a million edges in their trie; the nodes that wait at once are few.
+/// 5000 rules with 200 ANDs each have a million edges in their trie, but few nodes are queued at once.
 #[test]
 fn many_long_rules_need_little_memory() {
     use fuzzy::model::{Output, Variable};

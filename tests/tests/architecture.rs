@@ -1,4 +1,4 @@
-//! What ARCHITECTURE.md says of where things are: floors, circles, and who knows what.
+//! The statements of ARCHITECTURE.md about packages, modules and their dependencies.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -23,7 +23,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The source files below a folder, by their path from the repository's root.
+/// The source files below a folder, with their paths from the root of the repository.
 fn sources(folder: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut folders = vec![root().join(folder)];
@@ -42,7 +42,7 @@ fn sources(folder: &str) -> Vec<(String, String)> {
     found
 }
 
-/// What is compiled into the package: no tests and no comments.
+/// The code compiled into the package, without tests and comments.
 fn code(folder: &str) -> Vec<(String, String)> {
     let is_test = |name: &str| name.ends_with("tests.rs") || name.contains("/tests/");
     let files = sources(folder).into_iter().filter(|(n, _)| !is_test(n));
@@ -56,13 +56,13 @@ fn code(folder: &str) -> Vec<(String, String)> {
     code.collect()
 }
 
-/// The words of a text that could be names.
+/// The words of a text that can be identifiers.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_alphanumeric() && c != '_')
 }
 
 #[test]
-fn every_package_stands_on_those_below_it_alone() {
+fn every_package_depends_only_on_those_below_it() {
     for (package, below) in [
         ("fuzzy", ""),
         ("crates/flightlog", ""),
@@ -104,7 +104,8 @@ fn every_package_stands_on_those_below_it_alone() {
     }
 }
 
-/// Ground truth and how well a risk predicts it are measured outside the method: on board and in an assessment nobody knows them.
+/// Ground truth, and how well a risk predicts it, are measured outside the method: they are unknown on board and in an
+/// assessment.
 #[test]
 fn the_method_does_not_measure_how_good_its_risks_are() {
     const SUBJECTS: [&str; 6] = ["attitude", "baseline", "bootstrap", "learn", "roc", "upset"];
@@ -115,7 +116,7 @@ fn the_method_does_not_measure_how_good_its_risks_are() {
     }
 }
 
-/// The modules at the top of a package that a text names: `crate::a`, or `crate::{a, b::{..}}`.
+/// The top modules of a package that a text names: `crate::a`, or `crate::{a, b::{..}}`.
 fn named(text: &str) -> BTreeSet<&str> {
     let mut found = BTreeSet::new();
     for (at, start) in text.match_indices("crate::") {
@@ -140,7 +141,7 @@ fn named(text: &str) -> BTreeSet<&str> {
 }
 
 #[test]
-fn no_circle_runs_between_the_modules_of_a_package() {
+fn the_modules_of_a_package_form_no_cycle() {
     for package in PACKAGES {
         let files = code(&format!("{package}/src"));
         let module = |name: &str| {
@@ -149,7 +150,7 @@ fn no_circle_runs_between_the_modules_of_a_package() {
             first.trim_end_matches(".rs").to_owned()
         };
         let modules: BTreeSet<String> = files.iter().map(|(name, _)| module(name)).collect();
-        // What is exported at the front counts as its module.
+        // Re-exported items count as their modules.
         let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         for (name, text) in &files {
             let here = module(name);
@@ -162,7 +163,7 @@ fn no_circle_runs_between_the_modules_of_a_package() {
             let others: Vec<String> = others.map(str::to_owned).collect();
             uses.entry(here).or_default().extend(others);
         }
-        // Modules that use none but those taken away already are taken away, until none is left.
+        // Remove modules that use only removed ones until none is left.
         while !uses.is_empty() {
             let left: Vec<String> = uses.keys().cloned().collect();
             uses.retain(|_, used| used.iter().any(|name| left.contains(name)));
@@ -172,11 +173,11 @@ fn no_circle_runs_between_the_modules_of_a_package() {
 }
 
 #[test]
-fn the_engine_does_no_input_or_output_and_knows_no_drone() {
+fn the_engine_does_no_io_and_contains_nothing_about_drones() {
     const SUBJECTS: [&str; 7] = [
         "drone", "copter", "motor", "pwm", "mavlink", "flight", "flagred",
     ];
-    // Comments and examples too, apart from the names of packages; the examples of these are about the paper's rules still.
+    // Includes comments and examples, except the names of packages; some examples still use the rules of the paper.
     let paper = ["map/", "learn/", "table/", "table.rs", "engine/batch.rs"];
     for (name, text) in sources("fuzzy/src") {
         let is_test = name.ends_with("tests.rs");
@@ -240,9 +241,9 @@ fn one_folder_names_the_yaml_library_and_one_package_the_bytes_of_logs() {
     }
 }
 
-/// ARCHITECTURE.md lists no modules, because each file says what it is.
+/// ARCHITECTURE.md does not list modules, because each file describes its content.
 #[test]
-fn every_file_begins_with_what_it_is() {
+fn every_file_begins_with_a_description() {
     for (name, text) in PACKAGES
         .iter()
         .flat_map(|package| sources(&format!("{package}/src")))
@@ -253,7 +254,7 @@ fn every_file_begins_with_what_it_is() {
 }
 
 #[test]
-fn the_map_of_the_house_names_nothing_that_is_gone() {
+fn architecture_md_names_only_files_that_exist() {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let spans: BTreeSet<&str> = text.split('`').skip(1).step_by(2).collect();
     let known: String = PACKAGES
@@ -282,9 +283,9 @@ fn the_map_of_the_house_names_nothing_that_is_gone() {
     }
 }
 
-/// An invariant that nothing holds is a wish.
+/// An invariant without a test or lint is not enforced.
 #[test]
-fn every_invariant_names_what_holds_it() {
+fn every_invariant_names_its_tests() {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let (_, invariants) = text.split_once("\n## Invariants\n").unwrap();
     let invariants: Vec<&str> = invariants.split("\n- **").skip(1).collect();

@@ -1,4 +1,4 @@
-//! `flagred assess` as its users meet it: on the shipped flight, on what is no log, on damaged logs.
+//! `flagred assess` from a user's point of view: on the shipped flight, other files and damaged logs.
 
 use std::{fs, path::Path, process::Output};
 
@@ -41,7 +41,7 @@ fn the_shipped_flight_as_json() {
     assert_eq!(document["verdict"], "GOOD");
     assert_eq!(document["vehicle"]["motors"][2]["output"], "C3");
     let steps = document["steps"].as_array().unwrap();
-    // 129 s in the air, a step every 0.1 s, and the log's samples are 0.04 s apart.
+    // 129 s in the air with a step every 0.1 s; the samples of the log are 0.04 s apart.
     assert!((1250..1300).contains(&steps.len()), "{}", steps.len());
     let step = &steps[600];
     for key in [
@@ -69,7 +69,7 @@ fn csv_has_a_row_for_each_step_of_the_json() {
     let (_, document) = json(STEADY);
     let steps = document["steps"].as_array().unwrap();
     assert_eq!(rows.lines().count(), steps.len());
-    // An input has a column of its own beside that of the summary: the names are those of the JSON.
+    // An input has its own column beside that of the summary; the names are those of the JSON document.
     let names: Vec<&str> = head.split(',').collect();
     let step = &steps[800];
     let of_csv = |name: &str| {
@@ -87,7 +87,7 @@ fn csv_has_a_row_for_each_step_of_the_json() {
     assert!((of_csv("spread") - step["spread"].as_f64().unwrap()).abs() < 1e-12);
     for (row, step) in rows.lines().zip(steps) {
         let risk = row.split(',').nth(5).unwrap();
-        // The last digit is JSON's to round.
+        // JSON rounds the last digit.
         match (risk.parse::<f64>().ok(), step["risk"].as_f64()) {
             (Some(a), Some(b)) => assert!((a - b).abs() < 1e-12, "{row}"),
             (a, b) => assert_eq!(a, b, "{row}"),
@@ -96,7 +96,7 @@ fn csv_has_a_row_for_each_step_of_the_json() {
 }
 
 #[test]
-fn several_logs_are_told_apart_and_one_that_fails_stops_no_other() {
+fn several_logs_are_named_and_a_failure_does_not_stop_the_others() {
     let output = assess(&["--csv", STEADY, "/nowhere.BIN", STEADY]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(3));
@@ -106,7 +106,7 @@ fn several_logs_are_told_apart_and_one_that_fails_stops_no_other() {
 }
 
 #[test]
-fn several_logs_are_a_line_each_and_a_finding_counts_more_than_no_answer() {
+fn each_log_is_one_line_and_a_finding_decides_the_exit_code_before_no_answer() {
     let folder = Folder::new();
     let row = |i: u32, low: f64| format!("{},{low},1,{low},1\n", f64::from(i) * 0.04);
     let head = "t_s,motor1,motor2,motor3,motor4\n";
@@ -161,7 +161,7 @@ fn standard_input_is_read_like_a_file() {
 }
 
 #[test]
-fn what_is_no_log_is_named_for_what_it_is() {
+fn a_file_that_is_not_a_log_is_identified() {
     let folder = Folder::new();
     let picture = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR and so on";
     for (name, bytes, said) in [
@@ -187,7 +187,7 @@ fn what_is_no_log_is_named_for_what_it_is() {
 }
 
 #[test]
-fn a_log_cut_in_the_middle_is_assessed_as_far_as_it_goes() {
+fn a_truncated_log_is_assessed_to_its_end() {
     let bytes = fs::read(STEADY).unwrap();
     let folder = Folder::new();
     let cut = folder.file("cut.bin", &bytes[..bytes.len() / 2]);
@@ -198,10 +198,10 @@ fn a_log_cut_in_the_middle_is_assessed_as_far_as_it_goes() {
     assert!((400..1000).contains(&steps.len()), "{}", steps.len());
 }
 
-/// Overwriting may hit what defines the messages: then there is no answer, and the reason. Where it does not, the
-/// flight is assessed from the messages that are left.
+/// Overwriting may hit the definitions of messages: then there is no verdict, with a reason. Otherwise the flight is assessed
+/// from the remaining messages.
 #[test]
-fn a_log_with_one_byte_in_a_hundred_overwritten_is_assessed_as_far_as_it_goes_or_says_why_not() {
+fn a_log_with_1_percent_of_its_bytes_overwritten_is_assessed_or_refused_with_a_reason() {
     let intact = fs::read(STEADY).unwrap();
     let folder = Folder::new();
     let mut assessed = 0;
@@ -242,7 +242,7 @@ fn a_log_with_one_byte_in_a_hundred_overwritten_is_assessed_as_far_as_it_goes_or
 }
 
 #[test]
-fn a_rate_too_low_for_a_spread_is_no_answer_and_no_good() {
+fn a_rate_too_low_for_a_spread_gives_no_verdict() {
     let mut rows = String::from("t_s,motor1,motor2,motor3,motor4\n");
     for t in 0..120 {
         rows += &format!("{t},0.4,0.41,0.42,0.4\n");
@@ -255,7 +255,7 @@ fn a_rate_too_low_for_a_spread_is_no_answer_and_no_good() {
 }
 
 #[test]
-fn a_signal_that_the_profile_needs_and_the_log_lacks_is_no_answer() {
+fn a_missing_signal_that_the_profile_needs_gives_no_verdict() {
     let folder = Folder::new();
     let profile = folder.file(
         "wind.yaml",
@@ -278,7 +278,7 @@ fn a_signal_that_the_profile_needs_and_the_log_lacks_is_no_answer() {
     assert!(text.contains("`anemometer_m_s`"), "{text}");
 }
 
-/// Every flight that comes with a record of what happened in it.
+/// Every flight with a record of its events.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_simulated_flights_are_all_assessed() {
@@ -334,7 +334,7 @@ fn tlog_without_parameters(to_us: u16) -> Vec<u8> {
 }
 
 #[test]
-fn a_given_range_replaces_the_assumed_one_and_no_other() {
+fn a_given_range_replaces_only_an_assumed_one() {
     let folder = Folder::new();
     let log = folder.file("flight.tlog", tlog_without_parameters(1510));
     let range = |arguments: &[&str]| {
@@ -394,7 +394,7 @@ fn a_given_range_replaces_the_assumed_one_and_no_other() {
 }
 
 #[test]
-fn what_was_given_as_the_range_is_still_said_of_the_converted_log() {
+fn a_converted_log_still_names_the_range_as_given() {
     let folder = Folder::new();
     let log = folder.file("flight.tlog", tlog_without_parameters(1510));
     let csv = folder.at("flight.csv");

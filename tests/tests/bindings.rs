@@ -1,7 +1,7 @@
-//! The types that the bindings have for documents are those of their schemas.
+//! The types of documents in the bindings agree with the schemas.
 //!
 //! `UPDATE_DOCUMENTS=1 cargo test --workspace --test bindings` writes those of the npm package. The records of Python are
-//! written by hand, since they have methods, and words of their own.
+//! written by hand, since they have methods and their own docstrings.
 
 use std::{collections::BTreeMap, env, fs, path::PathBuf};
 
@@ -30,7 +30,7 @@ fn the_npm_package_has_the_types_of_the_documents() {
     );
 }
 
-/// A record in Python, and the type of a document that it repeats.
+/// A record in Python, and the type of a document to which it corresponds.
 const RECORDS: [(&str, &str, &str, &str); 34] = [
     ("_data.py", "Range", "assess", "Range"),
     ("_data.py", "Vehicle", "inspect", "Vehicle"),
@@ -83,7 +83,7 @@ const RECORDS: [(&str, &str, &str, &str); 34] = [
     ("_core.pyi", "Share", "explain", "Share"),
 ];
 
-/// The fields of a class, each with whether it may be None. In a stub of a native class they are properties.
+/// The fields of a class, each with whether it may be None. In a stub of a native class, they are properties.
 fn fields(text: &str, is_stub: bool, class: &str) -> BTreeMap<String, bool> {
     let mut lines = text.lines();
     let head = format!("class {class}");
@@ -110,7 +110,7 @@ fn fields(text: &str, is_stub: bool, class: &str) -> BTreeMap<String, bool> {
     body.filter_map(field).collect()
 }
 
-/// The properties of a type, each with whether it may be null or left out.
+/// The properties of a type, each with whether it may be null or missing.
 fn properties(schema: &Value, name: &str) -> BTreeMap<String, bool> {
     let of = &schema["$defs"][name];
     let required = of["required"].as_array().unwrap();
@@ -140,12 +140,12 @@ fn the_records_of_python_have_the_fields_of_the_documents() {
             .or_insert_with(|| schema::printed(document));
         let mut expected = properties(schema, name);
         match class {
-            // `false` is not a name in Python.
+            // `false` cannot be a name in Python.
             "WarningTime" => {
                 let is_false = expected.remove("false").unwrap();
                 expected.insert("is_false".to_owned(), is_false);
             }
-            // Those by kind are a field of the estimator.
+            // The warnings by kind are a field of the estimator.
             "Warnings" => assert!(expected.remove("by_kind").is_some()),
             _ => {}
         }

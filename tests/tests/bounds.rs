@@ -1,4 +1,4 @@
-//! Inputs of any size: memory and time stay bounded, and what is left out is told. Inputs are made as they are read; nothing
+//! Inputs of any size: memory and time are bounded, and omissions are reported. Inputs are generated while they are read; nothing
 //! large is stored.
 
 use std::{
@@ -14,11 +14,11 @@ use flagred_tests::{
 };
 use serde_json::Value as Json;
 
-/// Virtual memory of a call, in kB; most of it is address space of threads and libraries that is never touched.
+/// Virtual memory of a call, in kB; most of it is address space of threads and libraries that is never used.
 #[cfg(unix)]
 const MEMORY_KB: u64 = 1_200_000;
 
-/// Runs the binary within bounded memory on what `write` gives to its standard input.
+/// Runs the binary with bounded memory; `write` writes its standard input.
 #[cfg(unix)]
 fn run(arguments: &[&str], memory_kb: u64, write: impl FnOnce(&mut dyn Write) + Send) -> Output {
     let binary = flagred();
@@ -47,7 +47,7 @@ fn json(command: &str, write: impl FnOnce(&mut dyn Write) + Send) -> Json {
         .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&output.stderr)))
 }
 
-/// A copter that is defined, with its first messages.
+/// A copter with its definitions and first messages.
 fn copter() -> DataFlash {
     let mut log = DataFlash::new();
     log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
@@ -65,7 +65,7 @@ fn copter() -> DataFlash {
     log
 }
 
-/// What `more` adds to a log.
+/// The bytes that `more` adds to a log.
 fn added(log: &mut DataFlash, more: impl FnOnce(&mut DataFlash)) -> Vec<u8> {
     log.bytes.clear();
     more(log);
@@ -74,7 +74,7 @@ fn added(log: &mut DataFlash, more: impl FnOnce(&mut DataFlash)) -> Vec<u8> {
 
 #[cfg(unix)]
 #[test]
-fn texts_modes_and_parameters_of_a_log_are_counted_beyond_the_first() {
+fn texts_modes_and_parameters_beyond_the_limit_are_counted() {
     let log = json("inspect", |out| {
         let mut log = copter();
         out.write_all(&log.bytes).unwrap();
@@ -127,7 +127,7 @@ fn flights(out: &mut dyn Write, count: u32) {
 
 #[cfg(unix)]
 #[test]
-fn take_offs_end_the_flight_that_is_kept_and_all_outputs_say_so() {
+fn too_many_take_offs_end_the_flight_and_all_outputs_report_it() {
     let folder = Folder::new();
     let html = folder.at("report.html");
     let log = json("assess", |out| flights(out, 4_000));
@@ -145,7 +145,7 @@ fn take_offs_end_the_flight_that_is_kept_and_all_outputs_say_so() {
     let html = fs::read_to_string(html).unwrap();
     assert!(html.contains(&said));
     assert!(html.len() < 3_000_000, "{}", html.len());
-    // What is left out must not be learned from.
+    // An incomplete flight must not be learned from.
     let log = folder.at("flights.bin");
     flights(&mut fs::File::create(&log).unwrap(), 4_000);
     let rows = flagred().args(["dataset", &log]).output().unwrap();
@@ -154,10 +154,10 @@ fn take_offs_end_the_flight_that_is_kept_and_all_outputs_say_so() {
     assert!(told.contains("not all of it is kept"), "{told}");
 }
 
-/// Without events the commands tell, and may do so at every row.
+/// Without events, the commands indicate take-offs, possibly at every row.
 #[cfg(unix)]
 #[test]
-fn changes_that_only_the_commands_tell_are_counted() {
+fn take_offs_seen_only_in_the_commands_are_counted() {
     let log = json("inspect", |out| {
         let mut log = copter();
         out.write_all(&log.bytes).unwrap();
@@ -186,7 +186,7 @@ fn a_line_of_a_text_log_is_bounded() {
         for _ in 0..50 {
             out.write_all(&[b'a'; 1_000_000]).unwrap();
         }
-        // What follows in the same line is no message of its own.
+        // A continuation line is not a message of its own.
         out.write_all(b"\nMSG, 1000000, the next line\n").unwrap();
     });
     assert_eq!(log["read"]["bad_messages"], 1);
@@ -220,7 +220,7 @@ fn texts_and_definitions_of_a_ulog_are_bounded() {
         log["read"]["reason"],
         "definitions of more than 1 MB in all"
     );
-    // Those of 8 definitions and of all announcements but the first 4096.
+    // Messages of 8 definitions, and of all announcements but the first 4096.
     assert_eq!(log["read"]["bad_messages"], 8 + 904);
 }
 
@@ -241,7 +241,7 @@ fn texts_of_a_telemetry_log_are_bounded() {
     assert_eq!(log["messages"].as_array().unwrap().len(), 10_000);
 }
 
-/// A flight of which a step is asked for at every sample.
+/// A flight with a step at every sample.
 #[cfg(unix)]
 fn long_flight(out: &mut dyn Write, rows: u32) {
     out.write_all(b"# pwm_low_us: 1000\n# pwm_high_us: 2000\nt_s,pwm1,pwm2,pwm3,pwm4\n")
@@ -292,9 +292,9 @@ fn rows_at_one_time_end_the_flight_that_is_kept() {
     }
 }
 
-/// Spin limits that are none are told: with the whole range a motor at its limit may go unseen.
+/// Invalid spin limits are reported: with the full range, a motor at its limit may be missed.
 #[test]
-fn limits_that_are_none_are_told() {
+fn invalid_limits_are_reported() {
     let folder = Folder::new();
     for (low, high) in [(0.9, 0.2), (0.5, 0.55)] {
         let mut log = copter();
@@ -309,7 +309,7 @@ fn limits_that_are_none_are_told() {
     }
 }
 
-/// A rule set with so many inputs, terms of each and rules, each rule about two inputs.
+/// A rule set with these numbers of inputs, terms of each and rules, each rule about two inputs.
 fn rule_set(
     inputs: usize,
     terms: usize,
@@ -340,7 +340,7 @@ const VARIABLES: &str = "fuzzy: 1\nname: large\n\
     inputs: {x: {range: [0, 1], partition: [low, high]}}\n\
     outputs: {y: {range: [0, 1], partition: [small, large]}}\n";
 
-/// A rule set whose output has so many terms of so many points.
+/// A rule set whose output has this many terms with this many points.
 fn piecewise(terms: usize, points: usize) -> String {
     let mut text = "fuzzy: 1\nname: large\ninputs: {x: {range: [0, 1], partition: [low, high]}}\n\
                     outputs: {y: {range: [0, 1], terms: {"
@@ -364,7 +364,7 @@ fn piecewise(terms: usize, points: usize) -> String {
     text
 }
 
-/// A rule set of so many rules with so many conclusions each.
+/// A rule set of this many rules with this many conclusions each.
 fn conclusions(rules: usize, count: usize) -> String {
     let conclusions = vec!["y IS large"; count].join(" AND ");
     let rule = format!("  - IF x IS low THEN {conclusions} AND y IS small\n");
@@ -388,7 +388,7 @@ fn formula(start: &str) -> String {
     ) + "rules: [IF x IS low THEN y IS small]\n"
 }
 
-/// Files of other programs, below 4 MB, in which something is repeated without end.
+/// Files of other programs, below 4 MB, in which a part is repeated many times.
 #[test]
 fn files_of_other_programs_are_refused_in_time() {
     let folder = Folder::new();
@@ -406,7 +406,7 @@ fn files_of_other_programs_are_refused_in_time() {
         .map(|i| format!("InputVariable: x{i}\n range: 0 1\n"))
         .collect();
     let outputs: String = (0..60).map(output).collect();
-    // Each rule repeats the one before twice.
+    // Each rule contains the previous one twice.
     let doubled: String = (1..60)
         .map(|i| format!(" rule: if o{0} is t or o{0} is t then o{i} is t\n", i - 1))
         .collect();
@@ -553,7 +553,7 @@ fn a_long_chain_is_drawn_in_time() {
 }
 
 #[test]
-fn wide_tables_are_no_candidates_for_inputs() {
+fn tables_with_too_many_columns_are_not_searched_for_inputs() {
     let folder = Folder::new();
     let names: Vec<String> = (0..50_000).map(|i| format!("c{i}")).collect();
     let row = |i: usize| format!("{i}{}\n", format!(",{}", i * i).repeat(names.len()));
@@ -676,7 +676,7 @@ fn large_rule_sets_are_checked_in_time() {
         let path = folder.file("large.yaml", text);
         let started = Instant::now();
         let output = flagred().args(["check", &path]).output().unwrap();
-        // A debug build on a busy machine; where the time was quadratic these took from minutes to hours.
+        // A debug build on a busy machine; with quadratic time these would take minutes to hours.
         assert!(
             started.elapsed() < Duration::from_secs(30),
             "{name}: {:?}",
@@ -718,7 +718,7 @@ fn large_rule_sets_are_used_in_time() {
     }
 }
 
-/// A coefficient for the same input again and again, and a topic of names that are all the same.
+/// Many coefficients for the same input, and a topic with equal names.
 #[test]
 fn names_that_repeat_are_found_in_time() {
     let folder = Folder::new();
@@ -740,7 +740,7 @@ fn names_that_repeat_are_found_in_time() {
     );
 }
 
-/// Every reader of tables: one cell without end, and a header of many columns.
+/// Every reader of tables: one cell without end, and a header with many columns.
 #[cfg(unix)]
 #[test]
 fn tables_are_bounded() {
@@ -754,7 +754,7 @@ fn tables_are_bounded() {
     ] {
         for start in ["x0,y\n0.5,", "x0,y\n0.5,\"", "x0"] {
             let output = run(arguments, 600_000, |out| {
-                // The reader may end before all is written.
+                // The reader may stop before everything is written.
                 let _ = out.write_all(start.as_bytes());
                 for _ in 0..1000 {
                     if out.write_all(&[b'5'; 1_000_000]).is_err() {

@@ -1,17 +1,17 @@
-//! The command line as its users meet it: exit codes, and what is said where.
+//! The command line from a user's point of view: exit codes and messages.
 
 use flagred_tests::{STEADY, flagred};
 
 #[test]
-fn wrong_usage_is_2_and_says_what_is_right() {
+fn wrong_usage_exits_with_2_and_suggests_a_correction() {
     let output = flagred().arg("asses").output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("assess"));
 }
 
-/// What a user has in mind is nearly there: what is said leads to it.
+/// The messages for arguments that are nearly right lead to the correct command.
 #[test]
-fn what_stands_in_the_wrong_place_is_told_where_it_belongs() {
+fn misplaced_arguments_are_reported_with_their_correct_position() {
     let rules = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred.yaml");
     let profile = concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -72,7 +72,7 @@ fn help_names_every_command() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("assess"));
 }
 
-/// Both are made of the same definitions as the help, so each names every command.
+/// Both are generated from the definitions of the help, so each names every command.
 #[test]
 fn completions_and_manual_name_every_command() {
     let commands = [

@@ -1,8 +1,8 @@
-//! One meaning, many paths: the corpus in `tests/conformance` through every way of evaluating.
+//! One meaning, many paths: the corpus in `tests/conformance` with every way of evaluation.
 //!
-//! A file holds a rule set and, behind `---`, its cases: operators that differ from those of the rule set,
+//! A file contains a rule set and, after `---`, its cases: operators that differ from those of the rule set,
 //! a point, and the values there. The values come from the integration in `flagred_tests::reference` with
-//! very many samples; to write those of new cases, leave `is` out and run
+//! very many samples; to write those of new cases, omit `is` and run
 //! `FLAGRED_BLESS=1 cargo test --release -p flagred-tests --test conformance`.
 
 use std::path::{Path, PathBuf};
@@ -13,8 +13,8 @@ use fuzzy::engine::Outcome;
 use fuzzy::map::{DecisionMap, Grid};
 use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Model};
 
-/// How far from the value the engine may be, and the plain integration with few samples, as a part of the
-/// output's range. Maxima are as good as the samples of the integration are dense.
+/// Tolerances of the engine, and of the plain integration with few samples, relative to the range of the
+/// output. The precision of maxima is the distance of the samples of the integration.
 const ENGINE: f64 = 1e-9;
 const ENGINE_MAXIMA: f64 = 1e-5;
 const FEW: usize = 4_000;
@@ -39,7 +39,7 @@ fn files() -> Vec<PathBuf> {
     files
 }
 
-/// Rule set and the lines of the cases.
+/// A rule set and the lines of its cases.
 fn parts(file: &Path) -> (Model, String) {
     let text = std::fs::read_to_string(file).unwrap();
     let (rule_set, cases) = text.split_once("\n---\n").unwrap();
@@ -157,7 +157,7 @@ fn is_maxima(defuzzifier: Defuzzifier) -> bool {
     )
 }
 
-/// Compares values with those of a case; `tolerances` are of integrals and of maxima.
+/// Compares values with those of a case; `tolerances` are those of integrals and of maxima.
 fn compare(case: &Case, values: &[Option<f64>], tolerances: (f64, f64)) {
     assert_eq!(values.len(), case.values.len(), "{}", case.place);
     for ((output, value), expected) in case.model.outputs.iter().zip(values).zip(&case.values) {
@@ -184,7 +184,7 @@ fn values(outcomes: &[Outcome]) -> Vec<Option<f64>> {
     outcomes.iter().map(Outcome::value).collect()
 }
 
-/// Everything that an outcome says, to the bit.
+/// All parts of an outcome, bit for bit.
 fn bits(outcomes: &[Outcome]) -> Vec<String> {
     let bits = |x: Option<f64>| x.map(f64::to_bits);
     outcomes
@@ -252,9 +252,9 @@ fn bless() {
     }
 }
 
-/// Each outcome of the corpus to the bit, a line a case: its file, its number there from 0, and for each output the bits of
+/// The outcomes of the corpus, bit for bit, one line per case: its file, its index in the file, and for each output the bits of
 /// value and coverage, the index of the dominant rule, and whether an input was clamped. Libraries for other languages are
-/// held against it. `UPDATE_BITS=1 cargo test -p flagred-tests --test conformance` writes it.
+/// compared with it. `UPDATE_BITS=1 cargo test -p flagred-tests --test conformance` writes it.
 #[test]
 fn the_bits_of_the_corpus_are_those_on_file() {
     let mut lines = String::new();
@@ -292,7 +292,7 @@ fn the_bits_of_the_corpus_are_those_on_file() {
     assert_eq!(known.len(), lines.len());
 }
 
-/// A batch of many rows, so that blocks, tasks and threads all come to their ends somewhere.
+/// A batch of many rows, with incomplete blocks, tasks and threads.
 #[test]
 fn batches_on_one_and_many_threads_have_the_bits_of_single_calls() {
     let pools = [1, 4].map(|threads| {
@@ -320,7 +320,7 @@ fn batches_on_one_and_many_threads_have_the_bits_of_single_calls() {
     }
 }
 
-/// A map of one fixed point and one axis that begins at the point.
+/// A map with one fixed point and one axis that begins at the point.
 #[test]
 fn decision_maps_have_the_bits_of_single_calls() {
     for case in corpus() {

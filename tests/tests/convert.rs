@@ -1,4 +1,4 @@
-//! `flagred convert`: what is written is read back the same.
+//! `flagred convert`: written flights are read back the same.
 
 use std::path::Path;
 
@@ -28,7 +28,7 @@ fn converted(log: &Path) -> Flight {
     open(Path::new(&csv))
 }
 
-/// Commands, ranges and statistics are the same to the last bit; signals are held.
+/// Commands, ranges and statistics are the same to the last bit; signals keep their latest value between rows.
 fn compare(log: &Path) {
     let (flight, again) = (open(log), converted(log));
     assert!(again.report.is_clean(), "{:?}", again.report);
@@ -68,7 +68,7 @@ fn flights_of_other_formats_are_the_same_as_csv() {
     }
 }
 
-/// Verdict, reason, findings and summary of a log are those of its CSV.
+/// The CSV of a log has the same verdict, reason, findings and summary.
 fn compare_assessments(log: &Path) {
     let Ok(flight) = flagred_flightlog::open(log, &Options::default()) else {
         return;
@@ -79,11 +79,11 @@ fn compare_assessments(log: &Path) {
     for estimator in [shipped::flagred(), shipped::flagred_paper()] {
         let [of_log, of_csv] = [&flight, &again].map(|flight| assess(flight, &estimator, None));
         let reason = |verdict: &Verdict| match verdict {
-            // How the kind is known is told otherwise.
+            // The source of the vehicle's kind has other words.
             Verdict::NotAvailable(Reason::Log(Gap::NotAMultirotor { kind, .. })) => {
                 kind.to_string()
             }
-            // A CSV has no parameters, and so not the one that may be the cause.
+            // A CSV has no parameters, and therefore not the one that may be the cause.
             Verdict::NotAvailable(Reason::Log(Gap::NoCommands { .. })) => "no commands".into(),
             Verdict::NotAvailable(reason) => reason.to_string(),
             Verdict::Known(level) => level.to_string(),
@@ -104,7 +104,7 @@ fn the_shipped_flights_are_assessed_alike_as_csv() {
     logs.iter().for_each(|log| compare_assessments(log));
 }
 
-/// Motors that stop long before the log ends: the landing is between two rows.
+/// The motors stop long before the log ends: the landing is between two rows.
 #[test]
 fn a_landing_between_two_motor_commands_is_the_same_as_csv() {
     let mut log = ULog::new(1_000_000);
@@ -118,7 +118,7 @@ fn a_landing_between_two_motor_commands_is_the_same_as_csv() {
     for second in 0..240 {
         let us = 1_000_000 * (second + 1);
         log.flags(2, us + 500, &[u8::from(!(3..60).contains(&second))]);
-        // No commands are logged after the landing, but for the last seconds.
+        // No commands are logged after the landing, except in the last seconds.
         if !(60..230).contains(&second) {
             for row in 0..20 {
                 log.floats(1, us + 50_000 * row + 1000, &controls);
@@ -205,7 +205,7 @@ fn standard_output_and_failures() {
 }
 
 #[test]
-fn whether_in_the_air_stays_unknown() {
+fn an_unknown_flight_state_stays_unknown_in_csv() {
     let mut log = ULog::new(1_000_000);
     log.define("actuator_motors:uint64_t timestamp;float[12] control;");
     log.parameter("CA_ROTOR_COUNT", 4.0);
@@ -219,7 +219,7 @@ fn whether_in_the_air_stays_unknown() {
     flight.write_csv(&mut csv).unwrap();
     let again = flagred_flightlog::read(&csv[..], &Options::default()).unwrap();
     assert_eq!((again.in_air, again.commands.len()), (None, 50));
-    // A cell that says nothing changes nothing.
+    // An empty cell changes nothing.
     let csv = "t_s,motor1,in_air\n0,0.5,1\n1,0.5,\n2,0.5,0\n3,0.5,\n";
     let flight = flagred_flightlog::read(csv.as_bytes(), &Options::default()).unwrap();
     let in_air = [0.5, 1.5, 2.5, 3.0].map(|t_s| flight.is_in_air(t_s));

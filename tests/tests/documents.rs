@@ -1,11 +1,11 @@
 //! Every block of every document runs as printed: commands with their output, rule sets, profiles, and Rust.
 //!
-//! A `console` block holds commands behind `$ ` and what they print; a line of `...` stands for any lines. The commands
-//! of a document run one after the other in a folder that looks like the repository, so that what one writes the next
-//! can read. A YAML block whose first line is a comment with a file name is written there under that name.
+//! A `console` block contains commands after `$ ` and their output; a line of `...` matches any lines. The commands of
+//! a document run in sequence in a folder that looks like the repository, so that later commands can read files of
+//! earlier ones. A YAML block whose first line is a comment with a file name is written under that name.
 //!
-//! `UPDATE_DOCUMENTS=1 cargo test -p flagred-tests --test documents` writes what the commands print into the documents;
-//! look at the difference before you keep it.
+//! `UPDATE_DOCUMENTS=1 cargo test -p flagred-tests --test documents` writes the output of the commands into the documents;
+//! review the difference before you keep it.
 
 use std::{
     fs,
@@ -15,7 +15,7 @@ use std::{
 
 use flagred_tests::{Folder, flagred};
 
-/// What a reader types that a test has no business running: it builds the whole workspace, or installs.
+/// Commands for readers that a test does not run: they build the whole workspace, or install programs.
 const NOT_RUN: [&str; 6] = [
     "cargo test",
     "cargo install",
@@ -67,7 +67,7 @@ fn blocks(text: &str) -> Vec<Block> {
     blocks
 }
 
-/// A folder with what the repository holds, in which documents may write.
+/// A copy of the repository's files, in which documents may write.
 struct Desk(Folder);
 
 impl Desk {
@@ -88,7 +88,7 @@ impl Desk {
         }
         let binary = flagred().get_program().to_owned();
         std::os::unix::fs::symlink(&binary, desk.path().join("bin/flagred")).unwrap();
-        // `cargo run --release -- assess LOG` is the program with these arguments.
+        // `cargo run --release -- assess LOG` runs the program with these arguments.
         let cargo =
             "#!/bin/sh\nwhile [ \"$1\" != -- ]; do shift; done; shift; exec flagred \"$@\"\n";
         fs::write(desk.path().join("bin/cargo"), cargo).unwrap();
@@ -97,7 +97,7 @@ impl Desk {
         Desk(desk)
     }
 
-    /// What a command prints, standard error and all.
+    /// The output of a command, including standard error.
     fn run(&self, command: &str) -> String {
         let path = format!(
             "{}:{}",
@@ -114,7 +114,7 @@ impl Desk {
     }
 }
 
-/// Whether what was printed is what the document says, where `...` stands for any lines.
+/// Whether the printed lines match the document, where `...` matches any lines.
 fn matches(said: &[&str], printed: &[&str]) -> bool {
     match said {
         [] => printed.is_empty(),
@@ -128,7 +128,7 @@ fn matches(said: &[&str], printed: &[&str]) -> bool {
     }
 }
 
-/// Runs the commands of a block: the block as it should be, and which commands print something else.
+/// Runs the commands of a block; returns the corrected block, and the commands whose output differs.
 fn run_console(desk: &Desk, block: &Block) -> (String, Vec<String>) {
     let (mut text, mut wrong) = (String::new(), Vec::new());
     let mut lines = block.text.lines().peekable();
@@ -244,7 +244,7 @@ fn anchors(text: &str) -> Vec<String> {
     headings.map(anchor).collect()
 }
 
-/// Links within the repository lead somewhere.
+/// Links within the repository lead to existing files.
 #[test]
 fn every_link_to_a_file_leads_to_one() {
     let mut broken = Vec::new();

@@ -1,11 +1,12 @@
-//! `flagred validate` as its users meet it, and what the shipped rules are worth on the simulated flights.
+//! `flagred validate` from a user's point of view, and figures of the shipped rules on the simulated flights.
 
 use std::{fmt::Write as _, fs, process::Output};
 
 use flagred_tests::{Folder, flagred, reference_data};
 use serde_json::Value;
 
-/// A minute of flight at 25 Hz: from 30 to 40 s the motors swing ever harder, from 34 to 40 s the attitude is off.
+/// A minute of flight at 25 Hz: from 30 to 40 s the motors oscillate with growing amplitude, from 34 to 40 s the attitude is
+/// wrong.
 fn flight(kind: &str, in_trouble: bool) -> String {
     let mut text = format!(
         "# vehicle: {kind} quad\n# kind: {kind}\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n\
@@ -55,7 +56,7 @@ fn flights_are_compared_step_by_step_and_episode_by_episode() {
     folder.file("a-calm.csv", flight("calm", false));
     folder.file("b-gusts.csv", flight("gusts", true));
     folder.file("c-manoeuvre.csv", flight("manoeuvre", true));
-    // A folder may hold other things than flights.
+    // A folder may contain other files than flights.
     folder.file("README.md", "Not a flight.\n");
     let output = evaluate(&["--json", folder.path().to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(0));
@@ -82,13 +83,13 @@ fn flights_are_compared_step_by_step_and_episode_by_episode() {
             "true_wind"
         ]
     );
-    // 45 s in steps of half a second, both ends included; the manoeuvre is apart.
+    // 45 s in steps of half a second, including both ends; the manoeuvre is separate.
     assert_eq!(document["steps"], 2 * 91);
     assert_eq!(
         (&document["flights"], &document["left_out"]),
         (&2.into(), &1.into())
     );
-    // The error of a second is over the limit from 34.2 to 40.8 s: critical within 5 s from 29.5 s on.
+    // The error over a second exceeds the limit from 34.2 to 40.8 s: critical within 5 s from 29.5 s on.
     let flagred = estimator(&document, "flagred");
     assert_eq!(flagred["critical"], 23);
     assert!(flagred["auc"].as_f64().unwrap() > 0.9, "{flagred}");
@@ -130,7 +131,7 @@ fn flights_are_compared_step_by_step_and_episode_by_episode() {
     );
 }
 
-/// A minute in the air at 25 Hz without judged times in its header; from `upset_s` on it rolls over.
+/// A minute in the air at 25 Hz without assessed times in its header; from `upset_s` on it rolls over.
 fn real_flight(vehicle: &str, upset_s: Option<f64>) -> String {
     let mut text = format!(
         "# vehicle_id: {vehicle}\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n\
@@ -161,7 +162,7 @@ fn real_flight(vehicle: &str, upset_s: Option<f64>) -> String {
 }
 
 #[test]
-fn alarms_are_counted_where_nothing_happens_and_held_against_upsets() {
+fn false_alarms_and_alarms_before_upsets_are_counted() {
     let folder = Folder::new();
     fs::create_dir_all(folder.path().join("flights/deep")).unwrap();
     folder.file("flights/a.csv", real_flight("board 1", None));
@@ -184,12 +185,12 @@ fn alarms_are_counted_where_nothing_happens_and_held_against_upsets() {
     );
     assert_eq!(ordinary["share_of_time_on"], 0.0);
     assert!((ordinary["hours"].as_f64().unwrap() - 120.0 / 3600.0).abs() < 1e-4);
-    // From 5 s after take-off to the landing, and to 10 s before the error.
+    // From 5 s after take-off to the landing, or to 10 s before the error.
     let calm = &alarms["calm_stretches"];
     assert_eq!((&calm["flights"], &calm["alarms"]), (&3.into(), &0.into()));
     let calm_s = calm["hours"].as_f64().unwrap() * 3600.0;
     assert!((134.0..136.0).contains(&calm_s), "{calm_s}");
-    // The motors are at their limits for 4 s before the roll passes 60 degrees, at 40.6 s.
+    // The motors are at their limits for 4 s before the roll exceeds 60 degrees, at 40.6 s.
     let upsets = &alarms["upsets"];
     assert_eq!(
         (&upsets["before"], &upsets["within_1_s"], &upsets["never"]),
@@ -200,9 +201,9 @@ fn alarms_are_counted_where_nothing_happens_and_held_against_upsets() {
     let lead_s = upsets["lead_s_median"].as_f64().unwrap();
     assert!((2.0..4.6).contains(&lead_s), "{lead_s}");
 
-    // Steps from 2 s after take-off to 1 s before landing, and up to the upset.
+    // Steps from 2 s after take-off to 1 s before landing, or to the upset.
     assert_eq!(document["steps"], 2 * 115 + 76);
-    // The error over a second is over 5 degrees soon after 40 s: critical within 5 s from about 35.2 s on.
+    // The error over a second exceeds 5 degrees soon after 40 s: critical within 5 s from about 35.2 s on.
     let critical = flagred["critical"].as_u64().unwrap();
     assert!((10..=12).contains(&critical), "{critical}");
     assert_eq!(flagred["within_flight_flights"], 1);
@@ -274,7 +275,7 @@ fn without_a_critical_step_there_is_no_area() {
 }
 
 #[test]
-fn a_file_that_is_no_flight_stops_no_other() {
+fn a_file_that_is_not_a_flight_does_not_stop_the_others() {
     let folder = Folder::new();
     let good = folder.file("good.csv", flight("gusts", true));
     let bad = folder.file("notes.txt", "took off at noon\n");
@@ -325,14 +326,14 @@ fn whole_flights_are_evaluated_from_a_table() {
         assert_eq!(estimator["critical"], 2, "{name}");
         assert_eq!(estimator["auc"], auc, "{name}");
     }
-    // What a table of whole flights holds gives neither noise nor yaw.
+    // A table of whole flights contains neither noise nor yaw.
     assert_eq!(estimator(&document, "flagred")["auc"], Value::Null);
     assert_eq!(estimator(&document, "flagred")["warnings"], Value::Null);
 
     let bad = folder.file("bad.csv", "c_mean,att_rmse_deg\nhalf,1\n");
     let output = evaluate(&["--rows", &bad]);
     let said = String::from_utf8_lossy(&output.stderr);
-    // Nothing but the load is in it, and nobody asks for the load alone.
+    // It contains only the load, and no profile reads the load alone.
     assert!(
         said.contains("has no column for its input `unsteady_now`"),
         "{said}"
@@ -341,8 +342,8 @@ fn whole_flights_are_evaluated_from_a_table() {
     assert_eq!(output.status.code(), Some(2));
 }
 
-/// What the documentation says of the shipped rules: on the flights they were learned from; `leave_vehicles_out.rs` has
-/// the other half.
+/// The documented figures of the shipped rules, on the flights they were learned from; `leave_vehicles_out.rs` has
+/// those on held-out vehicles.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_shipped_rules_on_the_simulated_flights() {
@@ -357,7 +358,7 @@ fn the_shipped_rules_on_the_simulated_flights() {
         data.join("sitl2/timeseries").to_str().unwrap(),
     ]));
     assert_eq!(series["steps"], 44_369);
-    // The table of whole flights lacks what the inputs of the rules to fly with need.
+    // The table of whole flights lacks inputs of the default rules.
     assert!(estimator(&rows, "flagred")["auc"].is_null());
     for (document, least) in [(&series, 0.89)] {
         let flagred = estimator(document, "flagred")["auc"].as_f64().unwrap();
@@ -368,7 +369,7 @@ fn the_shipped_rules_on_the_simulated_flights() {
             }
         }
     }
-    // The same from Python (roc_auc_score over the same steps and rows).
+    // The same values from Python (roc_auc_score over the same steps and rows).
     for (document, name, auc) in [
         (&series, "true_wind", 0.801),
         (&series, "ekf_wind", 0.791),
@@ -398,7 +399,7 @@ fn the_shipped_rules_on_the_simulated_flights() {
 }
 
 /// An independent program in Python computes the areas of three baselines on the same real flights, from steps that are
-/// 0.25 s apart (docs/validation.md says where its definitions differ).
+/// 0.25 s apart (docs/validation.md lists the differences of its definitions).
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_baselines_on_the_real_flights() {
@@ -433,7 +434,7 @@ fn the_baselines_on_the_real_flights() {
     assert_eq!(flights(&alarms["ordinary_flights"]), 15);
     let calm_hours = alarms["calm_stretches"]["hours"].as_f64().unwrap();
     assert!((calm_hours - 0.61).abs() < 0.01, "{calm_hours}");
-    // The sixth is an attitude failure that only a message tells.
+    // The sixth is an attitude failure that appears only in a message.
     let upsets: usize = document["records"]
         .as_array()
         .unwrap()

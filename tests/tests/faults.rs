@@ -1,4 +1,4 @@
-//! How soon the shipped rules tell a fault or an upset: the simulated flights of `sitl3` by what was done to them.
+//! How soon the shipped rules report a fault or an upset: the simulated flights of `sitl3` by kind of fault.
 //!
 //! `FLAGRED_SHARED=... cargo test -p flagred-tests --test faults -- --ignored --nocapture` prints the table.
 
@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 use flagred_tests::{flagred, reference_data, simulated::on_all_cores};
 use serde_json::Value;
 
-/// One flight: what was done to it, and when its error was first over 5 degrees after that.
+/// One flight: its fault, its time, and when its error first exceeded 5 degrees after that.
 struct Flight {
     id: String,
     what: String,
     over_s: Option<f64>,
 }
 
-/// What the flights with one kind of fault got.
+/// The results of the flights with one kind of fault.
 #[derive(Default)]
 struct Told {
     in_time: usize,
@@ -25,7 +25,7 @@ struct Told {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn faults_and_upsets_are_told_within_a_second() {
+fn faults_and_upsets_are_reported_within_a_second() {
     let data = reference_data().join("sitl3");
     let rows = |name: &str| {
         let mut table = csv::Reader::from_path(data.join(name)).unwrap();
@@ -113,7 +113,7 @@ fn faults_and_upsets_are_told_within_a_second() {
         let late: usize = of().map(|told| told.late.len()).sum();
         in_time as f64 / (in_time + late) as f64
     };
-    // A bump is over before a window of two seconds shows it.
+    // A bump is over before it appears in a window of two seconds.
     let faults = [
         "dead_motor",
         "motor_partial",

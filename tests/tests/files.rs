@@ -1,4 +1,4 @@
-//! What becomes of the files that commands write, and of those that they must not.
+//! The files that commands write, and those that they must not write.
 #![cfg(unix)]
 
 use std::{
@@ -28,7 +28,7 @@ fn run(arguments: &[&str]) -> (Option<i32>, String) {
     (output.status.code(), told)
 }
 
-/// By its own name, a link, another spelling, another name of the same file.
+/// By its own name, through a link, by another spelling, or by a hard link.
 #[test]
 fn no_output_replaces_an_input() {
     let folder = Folder::new();
@@ -41,7 +41,7 @@ fn no_output_replaces_an_input() {
     );
     let profile = fs::read_to_string(RULES.replace("flagred-paper", "profiles/flagred-paper"));
     let profile = folder.file("profile.yaml", profile.unwrap());
-    // A log is known by its content, whatever it is called.
+    // A log is detected by its content, whatever its name is.
     let page = folder.file("page.html", wild_flight(30));
     symlink(&log, folder.at("link.csv")).unwrap();
     fs::hard_link(&page, folder.at("other.html")).unwrap();
@@ -87,9 +87,9 @@ fn no_output_replaces_an_input() {
     assert_eq!(drafts(folder.path()), [""; 0]);
 }
 
-/// `assess --html *.BIN` names the first log as the report.
+/// `assess --html *.BIN` takes the first log as the name of the report.
 #[test]
-fn a_log_in_the_place_of_a_report_is_not_replaced() {
+fn a_log_named_as_the_report_is_not_replaced() {
     let folder = Folder::new();
     let first = folder.file("first.BIN", fs::read(STEADY).unwrap());
     for arguments in [
@@ -105,7 +105,7 @@ fn a_log_in_the_place_of_a_report_is_not_replaced() {
 }
 
 #[test]
-fn no_output_replaces_another() {
+fn two_outputs_cannot_be_the_same_file() {
     let folder = Folder::new();
     let same = folder.at("same");
     symlink("same", folder.at("link")).unwrap();
@@ -126,7 +126,7 @@ fn no_output_replaces_another() {
 
 /// `flagred convert log.csv -o - >> log.csv` would never end.
 #[test]
-fn standard_output_is_no_input_and_no_other_output() {
+fn standard_output_that_is_also_an_input_or_output_is_refused() {
     let folder = Folder::new();
     let log = folder.file("log.csv", wild_flight(30));
     let html = folder.file("page.html", "");
@@ -181,7 +181,7 @@ fn a_replaced_file_keeps_its_mode_and_links_keep_leading_to_it() {
             assert!(real.len() > 3, "{file}");
         }
     }
-    // A new file is as any other new file, also behind a link.
+    // A new file has the mode of any new file, also through a link.
     symlink("target.csv", folder.at("dangling.csv")).unwrap();
     let (code, told) = run(&["convert", &log, "-o", &folder.at("dangling.csv")]);
     assert_eq!(code, Some(0), "{told}");
@@ -191,7 +191,7 @@ fn a_replaced_file_keeps_its_mode_and_links_keep_leading_to_it() {
 }
 
 #[test]
-fn special_files_are_written_to_and_stay() {
+fn special_files_are_written_to_and_not_replaced() {
     let folder = Folder::new();
     let fifo = folder.at("fifo");
     assert!(
@@ -234,9 +234,9 @@ fn special_files_are_written_to_and_stay() {
     );
 }
 
-/// Rule sets may be written by hand: `new` and `learn` replace none unless told to.
+/// Rule sets may be written by hand: `new` and `learn` do not replace them without an option.
 #[test]
-fn what_may_be_written_by_hand_is_replaced_by_force_alone() {
+fn files_that_may_be_edited_are_replaced_only_with_force() {
     let folder = Folder::new();
     for writing in commands(&folder) {
         if !writing
@@ -262,9 +262,9 @@ fn what_may_be_written_by_hand_is_replaced_by_force_alone() {
     }
 }
 
-/// The old file is whole, what is wrong is said, and no draft is left.
+/// The old file is intact, the error is reported, and no temporary file is left.
 #[test]
-fn a_full_disk_leaves_the_old_file_and_is_2() {
+fn a_full_disk_leaves_the_old_file_and_exits_with_2() {
     let folder = Folder::new();
     for writing in commands(&folder) {
         for file in &writing.files {
@@ -293,9 +293,9 @@ fn a_full_disk_leaves_the_old_file_and_is_2() {
     }
 }
 
-/// A table that ends in the middle must not pass for a whole one.
+/// An incomplete table must not pass for a complete one.
 #[test]
-fn a_full_disk_behind_standard_output_is_2() {
+fn a_full_disk_behind_standard_output_exits_with_2() {
     for arguments in [
         vec!["convert", STEADY, "-o", "-"],
         vec!["assess", STEADY],
@@ -324,7 +324,7 @@ fn a_full_disk_behind_standard_output_is_2() {
 }
 
 #[test]
-fn a_watch_whose_recording_fails_says_so_and_goes_on() {
+fn a_watch_reports_a_failed_recording_and_continues() {
     let folder = Folder::new();
     let file = folder.at("recorded.tlog");
     let flight = flight(Path::new(STEADY));
@@ -344,14 +344,14 @@ fn a_watch_whose_recording_fails_says_so_and_goes_on() {
     let risks = risks.filter(|event| event["event"] == "risk").count();
     assert!(risks > 100, "{risks}");
     assert_eq!(said.code, Some(0));
-    // It ends with a whole packet.
+    // It ends with a complete packet.
     let read = assess(Path::new(&file));
     assert_eq!(read["read"]["truncated"], false, "{}", read["read"]);
     assert_eq!(read["read"]["skipped_bytes"], 0);
     assert!((10_000..=51_200).contains(&fs::metadata(&file).unwrap().len()));
 }
 
-/// What can go wrong while a file is written.
+/// Faults during the writing of a file.
 #[derive(Debug)]
 enum Fault {
     Kill(Duration),
@@ -361,7 +361,7 @@ enum Fault {
 
 struct Round {
     writing: Writing,
-    /// What the files hold in the end, and how long that takes.
+    /// The final contents of the files, and the duration.
     new: Vec<Vec<u8>>,
     code: Option<i32>,
     time: Duration,
@@ -384,7 +384,7 @@ fn rounds(folder: &Folder) -> Vec<Round> {
     commands.map(round).collect()
 }
 
-/// Whatever happens, each file is the old one or the new one, whole.
+/// After any fault, each file is completely the old one or the new one.
 fn old_or_new(seed: u64, count: usize) {
     let folder = Folder::new();
     let rounds = rounds(&folder);
@@ -428,7 +428,7 @@ fn old_or_new(seed: u64, count: usize) {
         let is_new = now == *new;
         match fault {
             Fault::Kill(_) => {}
-            // Of the manual only some pages are looked at, and another one may not fit.
+            // Only some pages of the manual are compared, and another one may not fit.
             Fault::FullDisk(_) if is_new && writing.arguments[0] == "man" => {}
             Fault::FullDisk(_) => {
                 assert_eq!(code, if is_new { round.code } else { Some(2) }, "{what}");
@@ -443,19 +443,19 @@ fn old_or_new(seed: u64, count: usize) {
 }
 
 #[test]
-fn whatever_fails_a_file_is_the_old_one_or_the_new_one() {
+fn a_failed_write_leaves_the_old_or_the_new_file() {
     old_or_new(16, 40);
 }
 
 #[test]
 #[ignore = "takes half a minute"]
-fn whatever_fails_a_file_is_the_old_one_or_the_new_one_many_times() {
+fn a_failed_write_leaves_the_old_or_the_new_file_many_times() {
     for seed in 0..4 {
         old_or_new(seed, 250);
     }
 }
 
-/// The same on a disk that is full in earnest.
+/// The same on a disk that is really full.
 #[test]
 #[ignore = "mounts a small file system, which not every machine allows"]
 fn a_full_file_system_leaves_the_old_file() {
@@ -467,7 +467,7 @@ fn a_full_file_system_leaves_the_old_file() {
     for writing in commands(&folder) {
         let file = &writing.files[0];
         if writing.arguments[0] == "man" || writing.arguments[0] == "new" {
-            // Pages go to a folder of their own, and a template fits in.
+            // Pages are written to their own folder, and a template fits on the disk.
             continue;
         }
         let output = Command::new("unshare")

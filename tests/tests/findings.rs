@@ -1,4 +1,4 @@
-//! What a pilot reads of findings, and that docs/findings.md has it.
+//! The findings that a pilot reads, and their list in docs/findings.md.
 
 use std::collections::BTreeSet;
 
@@ -42,7 +42,7 @@ fn row(words: &Words) -> String {
 }
 
 #[test]
-fn the_document_has_the_words_of_every_finding() {
+fn the_document_lists_the_words_of_every_finding() {
     let document = include_str!("../../docs/findings.md");
     let expected: BTreeSet<String> = estimators().iter().flat_map(all).map(|w| row(&w)).collect();
     let missing: Vec<&String> = expected
@@ -54,7 +54,7 @@ fn the_document_has_the_words_of_every_finding() {
     assert!(missing.is_empty(), "docs/findings.md lacks:\n{missing}");
 }
 
-/// Its words are chosen: none falls back to the name of an input.
+/// Every input has its own words; none falls back to its name.
 #[test]
 fn every_input_of_a_shipped_rule_set_has_words() {
     for estimator in estimators() {
@@ -81,8 +81,8 @@ fn every_short_text_fits_with_the_largest_numbers() {
     }
 }
 
-/// The reliability of the shipped profiles is of vehicles left out; `scripts/learn-flagred` measures it in another way than
-/// `flagred validate`, which has the rules that know these vehicles. The shares are within 10 points of each other.
+/// The reliability of the shipped profiles is measured on held-out vehicles by `scripts/learn-flagred`, in another way than by
+/// `flagred validate`, whose rules know these vehicles. The shares differ by at most 10 points.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_reliability_is_near_that_of_rules_that_know_the_vehicles() {

@@ -1,4 +1,4 @@
-//! What a flight CSV says that cannot be: refused where it stands, never a shorter or another flight.
+//! Impossible contents of a flight CSV: refused at their position, never a shorter or another flight.
 
 use std::fmt::Write as _;
 
@@ -41,7 +41,7 @@ fn verdict(csv: &str) -> String {
 }
 
 #[test]
-fn the_flight_that_is_changed_is_good() {
+fn the_flight_is_good_before_it_is_changed() {
     assert_eq!(verdict(&flight("", |_, _| None)), "GOOD");
 }
 
@@ -73,7 +73,7 @@ fn a_frame_with_fewer_motors_than_columns_is_refused() {
         "line 1: `frame` is `QUAD/X`, which has 4 motors",
         "correct it",
     );
-    // Factors of every motor replace the table of the frame.
+    // Factors of all motors replace the table of the frame.
     let factors: String = (1..=6)
         .map(|motor| format!("# motor{motor}_factors: 1 1 1\n"))
         .collect();
@@ -81,7 +81,7 @@ fn a_frame_with_fewer_motors_than_columns_is_refused() {
 }
 
 #[test]
-fn a_row_without_a_time_is_refused_and_not_left_out() {
+fn a_row_without_a_time_is_refused() {
     for (time, said) in [
         ("", "line 1004: `t_s` is empty"),
         ("inf", "line 1004: `t_s` is `inf`, not a time in seconds"),
@@ -93,7 +93,7 @@ fn a_row_without_a_time_is_refused_and_not_left_out() {
         });
         refused(&csv, said, "give every row a time");
     }
-    // Spreadsheets leave rows of empty cells at the end.
+    // Spreadsheets append rows of empty cells.
     let csv = flight("", |_, _| None) + ",,,,,\n,,,,,\n";
     assert_eq!(verdict(&csv), "GOOD");
     assert_eq!(read(&csv).unwrap().report.bad_messages, 2);
@@ -125,15 +125,15 @@ fn a_row_with_too_few_cells_is_refused() {
         "line 14: 3 of 6 columns",
         "give every row a cell",
     );
-    // The last row is that of a file that is cut off.
+    // The last row is that of a truncated file.
     let flight = read(&short(1499)).unwrap();
     assert!(flight.report.truncated);
     assert_eq!(flight.report.bad_messages, 1);
 }
 
-/// Without the column, idle motors end a flight; with it, they are a fall. The flight says so when it is written again.
+/// Without the column, idle motors end a flight; with it, they are a fall. A written flight keeps this.
 #[test]
-fn a_time_in_the_air_that_is_assumed_is_not_believed_over_idle_motors() {
+fn idle_motors_override_an_assumed_time_in_the_air() {
     let idle = |i: usize, t_s: f64, air: &str| {
         let pwm = if i > 1300 { 1030 } else { 1500 + i % 7 };
         format!("{t_s},{pwm},{pwm},{pwm},{pwm}{air}")
@@ -152,7 +152,7 @@ fn a_time_in_the_air_that_is_assumed_is_not_believed_over_idle_motors() {
 }
 
 #[test]
-fn a_vehicle_is_in_the_air_or_not() {
+fn the_column_for_in_the_air_accepts_only_0_and_1() {
     for state in ["2", "0.5", "-1", "True", "inf"] {
         let csv = flight("", |i, t_s| {
             (i == 10).then(|| format!("{t_s},1500,1500,1500,1500,{state}"))
@@ -179,7 +179,7 @@ fn pulse_widths_in_another_unit_are_refused() {
         let csv = flight("", |_, t_s| Some(format!("{t_s},1500,1500,{third},1500,1")));
         let said = format!("line 4: `pwm3` is {shown}, not a pulse width in us");
         refused(&csv, &said, "name fractions from 0 to 1 `motor1`");
-        // Without limits there is no verdict in any case; `convert` writes such commands.
+        // Without limits there is no verdict anyway; `convert` writes such commands.
         assert!(read(csv.strip_prefix(HEAD).unwrap()).is_ok());
     }
     // Outputs that are off, and a damaged cell.
@@ -213,7 +213,7 @@ fn a_clock_of_whole_numbers_is_named() {
             Some(format!("{},1500,1500,1500,1500,1", time(i)))
         })
     };
-    // 1 kHz in milliseconds, with the jitter of the clock, and a clock of seconds.
+    // 1 kHz in milliseconds, with jitter of the clock, and a clock of seconds.
     for csv in [
         at(&|i| format!("{}", i * 10 / 11)),
         at(&|i| format!("{}", i / 25)),
@@ -230,14 +230,14 @@ fn a_clock_of_whole_numbers_is_named() {
         "line 7: `t_s` goes from 0 to 5 in one row",
         "divide milliseconds by 1000",
     );
-    // Fractions that repeat are judged.
+    // Repeated fractions are assessed.
     let csv = at(&|i| format!("{}", i / 3 * 2) + "e-2");
     assert_eq!(verdict(&csv), "GOOD");
 }
 
-/// A damaged log may hold what no flight CSV of a user may; it is converted and read back.
+/// A damaged log may contain values that a flight CSV of a user may not; it is converted and read back.
 #[test]
-fn what_convert_wrote_is_read_whatever_it_holds() {
+fn files_of_convert_are_read_whatever_they_contain() {
     let rows = "t_s,pwm1,pwm2,pwm3,pwm4,in_air\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n\
                 1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n1,32,1500,1500,1500,1\n";
     let head = "# pwm_low_us: 1000\n# pwm_high_us: 2000\n";
@@ -259,7 +259,7 @@ fn what_convert_wrote_is_read_whatever_it_holds() {
 }
 
 #[test]
-fn quotes_around_names_are_dropped_however_many() {
+fn any_number_of_quotes_around_names_is_dropped() {
     let text = "t_s, \"\"\"a\"\"\",motor1\n0,1,0.5\n0.1,2,0.5\n";
     let flight =
         flagred_flightlog::read(text.as_bytes(), &flagred_flightlog::Options::default()).unwrap();
@@ -267,7 +267,7 @@ fn quotes_around_names_are_dropped_however_many() {
 }
 
 #[test]
-fn times_of_a_clock_that_starts_again_far_below_never_go_back() {
+fn times_stay_in_order_after_a_clock_restarts_far_below() {
     let row = |t_s: &str| format!("{t_s},0.5,0.5,0.5,0.5\n");
     let rows: String = ["-1e9", "0.0158", "-1e9", "-1e9", "0.5", "1"]
         .map(row)

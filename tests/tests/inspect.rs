@@ -1,4 +1,4 @@
-//! `flagred inspect` as its users meet it.
+//! `flagred inspect` from a user's point of view.
 
 use std::io::Write;
 use std::process::Stdio;
@@ -42,7 +42,7 @@ fn inspect(arguments: &[&str], log: &str) -> (Option<i32>, String, String) {
 }
 
 #[test]
-fn the_document_tells_values_and_where_they_came_from() {
+fn the_document_contains_values_and_their_sources() {
     let (code, stdout, _) = inspect(&["--json"], LOG);
     assert_eq!(code, Some(0));
     let document: Value = serde_json::from_str(&stdout).unwrap();
@@ -55,7 +55,7 @@ fn the_document_tells_values_and_where_they_came_from() {
     assert_eq!(document["in_air"]["spans"][0]["start_s"], 0.04);
     assert_eq!(document["signals"][0]["unit"], "deg");
     assert_eq!(document["read"]["messages"], 4);
-    // In the air the commands on the effective range are 0.5, 0.5, 1 and 0.
+    // In the air, the commands on the effective range are 0.5, 0.5, 1 and 0.
     let statistics = &document["statistics"];
     for (name, expected) in [
         ("margin_mean", 0.25),
@@ -71,7 +71,7 @@ fn the_document_tells_values_and_where_they_came_from() {
 }
 
 #[test]
-fn what_is_missing_is_said_with_its_reason() {
+fn missing_values_are_reported_with_the_reason() {
     let (code, stdout, _) = inspect(&[], "t_s,pwm1\n0,1500\n1,1500\n");
     assert_eq!(code, Some(0));
     assert!(
@@ -85,7 +85,7 @@ fn what_is_missing_is_said_with_its_reason() {
 }
 
 #[test]
-fn what_is_no_log_is_3() {
+fn a_file_that_is_not_a_log_exits_with_3() {
     for (log, said) in [
         ("", "`standard input` is empty"),
         ("hello\n", "is a text file, not a flight log"),
@@ -97,7 +97,7 @@ fn what_is_no_log_is_3() {
     }
 }
 
-/// Terminal commands in the texts of a log do not reach the terminal.
+/// Control sequences in the texts of a log do not reach the terminal.
 #[test]
 fn control_characters_are_shown_as_such() {
     let (code, stdout, _) = inspect(&[], &format!("# note: \u{1b}[31mred\u{202e}\u{7}\n{LOG}"));
@@ -110,7 +110,7 @@ fn control_characters_are_shown_as_such() {
 
 /// Limits that no vehicle has would hide a motor at its limit.
 #[test]
-fn limits_that_cannot_be_are_refused() {
+fn impossible_limits_are_refused() {
     for (header, said) in [
         (
             "# effective_low: -3\n# effective_high: 7\n",
@@ -155,10 +155,10 @@ fn limits_that_cannot_be_are_refused() {
     }
 }
 
-/// Half a number is a number too: a last row without its line end is not believed. Every command
-/// says that the end is missing.
+/// A truncated number is a number too: a last row without its line end is not used. Every command
+/// reports that the end is missing.
 #[test]
-fn a_torn_or_short_last_row_is_truncation() {
+fn an_incomplete_last_row_counts_as_truncation() {
     let whole =
         "# pwm_low_us: 1000\n# pwm_high_us: 2000\nt_s,roll_deg,pwm1\n0,1,1500\n0.1,1,1600\n";
     let read = |log: &str, signals: Option<Vec<String>>| {
@@ -170,7 +170,7 @@ fn a_torn_or_short_last_row_is_truncation() {
         let flight = read(whole, signals.clone());
         assert!(flight.report.is_clean());
         assert_eq!(flight.commands.len(), 2);
-        // A comment without a line end, and carriage returns, cut no row.
+        // A comment without a line end, and carriage returns, do not truncate a row.
         for log in [format!("{whole}# end"), whole.replace('\n', "\r\n")] {
             assert!(read(&log, signals.clone()).report.is_clean());
         }
@@ -192,7 +192,7 @@ fn a_torn_or_short_last_row_is_truncation() {
 }
 
 #[test]
-fn a_plane_is_shown_and_is_3() {
+fn a_plane_is_shown_and_exits_with_3() {
     let (code, stdout, _) = inspect(&[], &format!("# vehicle_kind: plane\n{LOG}"));
     assert_eq!(code, Some(3));
     assert!(

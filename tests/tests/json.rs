@@ -1,4 +1,4 @@
-//! What commands print as JSON is what the schemas of `flagred schema` describe, which are derived from the same types.
+//! The JSON output of commands matches the schemas of `flagred schema`, which are derived from the same types.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use serde_json::Value;
 
 const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml");
 
-/// Fails where a document is not of its schema.
+/// Fails if a document does not match its schema.
 fn valid(name: &str, document: &Value) {
     let errors = schema::errors(&schema::schema(name), document);
     assert!(errors.is_empty(), "{name}: {}", errors.join("\n"));
@@ -24,7 +24,7 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {told}"))
 }
 
-/// A minute at 25 Hz with motors at their limits from 30 s on and the attitude off from 32 s on.
+/// A minute at 25 Hz with motors at their limits from 30 s on and a wrong attitude from 32 s on.
 fn trouble() -> String {
     let mut text = String::from(
         "## pwm_low_us: 1000\n## pwm_high_us: 2000\n\
@@ -42,7 +42,7 @@ fn trouble() -> String {
     text
 }
 
-/// A name that a schema does not describe is an error in every document.
+/// In every document, a name that its schema does not describe is an error.
 #[test]
 fn every_object_of_a_schema_is_closed() {
     fn open(schema: &Value, path: &str, found: &mut Vec<String>) {
@@ -318,7 +318,7 @@ fn check_as_sarif() {
         2
     );
 
-    // As many lines on GitHub.
+    // The same number of lines for GitHub.
     let output = flagred()
         .args(["check", "--format", "github", PAPER, &broken])
         .output()

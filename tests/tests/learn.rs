@@ -1,4 +1,4 @@
-//! `flagred dataset` and `flagred learn` as their users meet them, and the rule set that they made.
+//! `flagred dataset` and `flagred learn` from a user's point of view, and the learned rule set.
 
 use std::{
     collections::BTreeMap,
@@ -26,9 +26,9 @@ fn learn(arguments: &[&str]) -> Output {
     flagred().arg("learn").args(arguments).output().unwrap()
 }
 
-/// Each reason why rules cannot be learned has a help of its own.
+/// Each reason why rules cannot be learned has its own help.
 #[test]
-fn a_rule_set_that_cannot_be_learned_into_is_refused_with_what_to_do() {
+fn an_unsuitable_template_is_refused_with_help() {
     let folder = Folder::new();
     let data = folder.file("data.csv", "margin,spread,risk\n0.1,0.2,50\n");
     let output = "  risk: {range: [0, 100], partition: [very_low, low, medium, high, very_high]}";
@@ -59,9 +59,9 @@ fn a_rule_set_that_cannot_be_learned_into_is_refused_with_what_to_do() {
     }
 }
 
-/// A column without a name is none that an option or a message can name.
+/// No option and no message can name a column without a name.
 #[test]
-fn columns_without_a_name_are_not_taken() {
+fn columns_without_a_name_are_ignored() {
     let folder = Folder::new();
     let model = folder.file("model.yaml", VARIABLES);
     let data = folder.file("data.csv", "margin,,spread\n0.1,5,0.2\n");
@@ -115,7 +115,7 @@ fn weights_whose_sums_overflow_are_refused_as_by_tune() {
     }
 }
 
-/// A profile may have an input `spread`, which is not the spread of the motor commands of the summary.
+/// A profile may have an input `spread` that is not the spread of the motor commands in the summary.
 #[test]
 fn a_column_of_a_dataset_is_one_quantity_with_and_without_a_profile() {
     let folder = Folder::new();
@@ -134,7 +134,7 @@ rules: [IF spread IS even THEN risk IS low, IF spread IS uneven THEN risk IS hig
         assert!(output.status.success(), "{output:?}");
         String::from_utf8(output.stdout).unwrap()
     };
-    // By the time of a row: profiles judge flights from different times on.
+    // By the time of a row: profiles assess flights from different times on.
     let column = |rows: &str, name: &str| -> BTreeMap<String, String> {
         let mut lines = rows.lines().map(|line| line.split(',').collect::<Vec<_>>());
         let head = lines.next().unwrap();
@@ -193,13 +193,13 @@ fn rows_become_a_rule_set_with_its_provenance() {
     assert_eq!(report["missing"]["count"], 9);
     let written = fs::read_to_string(&out).unwrap();
     insta::assert_snapshot!(written);
-    // What was written is a rule set again.
+    // The written file is a valid rule set.
     let check = flagred().args(["check", &out]).output().unwrap();
     assert_ne!(check.status.code(), Some(3));
 }
 
 #[test]
-fn bad_data_is_told_with_its_place_and_nothing_is_written() {
+fn bad_data_is_reported_with_its_position_and_nothing_is_written() {
     let folder = Folder::new();
     let model = folder.file("model.yaml", VARIABLES);
     let out = folder.at("out.yaml");
@@ -262,12 +262,12 @@ fn bad_data_is_told_with_its_place_and_nothing_is_written() {
         assert!(said.contains("help: "), "{name}: {said}");
         assert!(!Path::new(&out).exists(), "{name}");
     }
-    // The rows themselves are not to be lost.
+    // The file of rows itself must not be lost.
     let data = folder.file("rows.csv", "margin,spread,risk\n0.1,0.1,5\n");
     let output = learn(&[&model, &data, "-o", &data]);
     assert_eq!(output.status.code(), Some(2));
     assert!(fs::read_to_string(&data).unwrap().starts_with("margin"));
-    // A single row is enough for a rule, and bad ones can be left out.
+    // A single row is enough for a rule, and invalid rows can be skipped.
     let data = folder.file("one.csv", "margin,spread,risk\n0.1,0.1,5\n0.1,NaN,5\n");
     let output = learn(&[&model, &data, "-o", &out, "--skip-bad-rows"]);
     let said = String::from_utf8_lossy(&output.stdout);
@@ -350,7 +350,7 @@ fn a_flight_becomes_rows() {
     for row in &ahead {
         let [air_s, t_s, last_5, last_10] = [3, 4, 7, 8].map(|column| number(&row[column]));
         assert!(t_s >= air_s + 2.0 && last_5 <= last_10, "{row:?}");
-        // What comes within 5 s is behind 5 s later.
+        // The next 5 s are the last 5 s, 5 s later.
         let later = ahead
             .iter()
             .find(|later| (number(&later[4]) - t_s - 5.0).abs() < 1e-6);
@@ -360,7 +360,7 @@ fn a_flight_becomes_rows() {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn the_shipped_rules_are_what_the_documented_command_learns() {
+fn the_documented_command_learns_the_shipped_rules() {
     let data = reference_data();
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let folder = Folder::new();
@@ -402,7 +402,7 @@ fn the_shipped_rules_are_what_the_documented_command_learns() {
 
 #[cfg(unix)]
 #[test]
-fn the_battery_adds_to_the_shipped_rules_and_changes_nothing_of_them() {
+fn the_battery_rules_extend_the_shipped_rules_unchanged() {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let output = Command::new(workspace.join("scripts/add-battery"))
         .arg(workspace.join("rules/flagred.yaml"))
@@ -416,9 +416,9 @@ fn the_battery_adds_to_the_shipped_rules_and_changes_nothing_of_them() {
     );
 }
 
-/// What `learn` says of the directions is what `check --rising` finds.
+/// The directions that `learn` reports agree with `check --rising`.
 #[test]
-fn directions_hold_or_are_refuted_with_the_place() {
+fn directions_are_confirmed_or_refuted_at_a_position() {
     let folder = Folder::new();
     let rows = "margin,spread,risk\n0,0.2,90\n0,0,20\n0.1,0.1,75\n0.1,0.2,25\n0.2,0,60\n0.3,0,0\n0.3,0.2,30\n";
     let data = folder.file("data.csv", rows);
@@ -473,9 +473,9 @@ fn directions_hold_or_are_refuted_with_the_place() {
     }
 }
 
-/// A map of 20 inputs has more cells than any memory.
+/// A map of 20 inputs has too many cells for any memory.
 #[test]
-fn many_inputs_are_learned_without_their_map() {
+fn rules_of_many_inputs_are_learned_without_a_map() {
     let folder = Folder::new();
     let names = |format: &dyn Fn(usize) -> String| (0..20).map(format).collect::<String>();
     let inputs = names(&|i| format!("  x{i}: {{range: [0, 1], partition: [low, high]}}\n"));
@@ -506,10 +506,10 @@ fn many_inputs_are_learned_without_their_map() {
 }
 
 #[test]
-fn an_error_on_no_rows_is_unknown_and_not_nought() {
+fn an_error_over_no_rows_is_unknown() {
     let folder = Folder::new();
     let model = folder.file("model.yaml", VARIABLES);
-    // One row makes one rule, and without that one there is nothing to fill its gap from.
+    // One row gives one rule; without that rule, there is nothing to fill its gap from.
     let data = folder.file("data.csv", "margin,spread,risk\n0.1,0.1,50\n");
     let out = folder.at("out.yaml");
     let output = learn(&[&model, &data, "-o", &out, "--compare-gaps", "--json"]);
@@ -526,7 +526,7 @@ fn an_error_on_no_rows_is_unknown_and_not_nought() {
     assert_eq!(figures, ["NA"; 4], "{text}");
 }
 
-/// Rows of the fan that `flagred new` writes: it turns faster the hotter and damper it is.
+/// Rows of the fan that `flagred new` writes: its speed rises with heat and humidity.
 fn fan_rows() -> String {
     let mut rows = String::from("temperature,humidity,fan\n");
     for i in 0..400 {
@@ -540,7 +540,7 @@ fn fan_rows() -> String {
     rows
 }
 
-/// Its output is of constants. With each way to resolve the rules are those for the same terms as triangles.
+/// Its output has constants. With each way to resolve conflicts, the rules equal those for the same terms as triangles.
 #[test]
 fn rules_are_learned_for_the_constants_of_the_template() {
     let folder = Folder::new();

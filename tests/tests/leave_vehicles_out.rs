@@ -1,9 +1,9 @@
-//! What tuned rules are worth on vehicles they were not tuned on.
+//! Figures of tuned rules on held-out vehicles.
 //!
-//! Each real vehicle is a fold, and the simulated ones are dealt out to these folds. For each fold the rules are tuned on
-//! the rows of all others, exactly as `scripts/learn-flagred` tunes them on all, and say what they think of the vehicles left
-//! out. The inputs, the windows and the thresholds of the verdict stay the same: they were chosen on these vehicles, so the
-//! figures are a little kinder than those of other vehicles would be.
+//! Each real vehicle is a fold, and the simulated ones are distributed over these folds. For each fold, the rules are tuned on
+//! the rows of all others, exactly as `scripts/learn-flagred` tunes them on all, and compute the risks of the held-out vehicles.
+//! The inputs, the windows and the thresholds of the verdict stay the same: they were chosen on these vehicles, so the figures
+//! are slightly optimistic.
 //!
 //! `FLAGRED_SHARED=... cargo test -p flagred-tests --test leave_vehicles_out -- --ignored --nocapture` prints the figures.
 
@@ -19,7 +19,7 @@ use flagred_tests::{
     },
 };
 
-/// What each of [`AREAS`] must reach.
+/// The minimum of each of [`AREAS`].
 const LEAST: [f64; 8] = [0.86, 0.70, 0.87, 0.73, 0.83, 0.69, 0.85, 0.84];
 
 #[test]
@@ -129,7 +129,7 @@ fn warnings(judged: &[(&Simulated, &Judged)]) -> Figures {
     let calm = but_manoeuvres.iter().filter(|(f, _)| f.kind == "calm");
     let of_calm = calm.map(|(_, judged)| judged.warnings.len()).sum();
 
-    // Ramps: a flight in rising wind, or the last that was done was a ramp.
+    // Ramps: a flight in rising wind, or a flight whose last event was a ramp.
     let (mut ramps, mut firsts) = (Vec::new(), Vec::new());
     let (mut answers, mut from_good) = (Vec::new(), Vec::new());
     for (flight, judged) in &but_manoeuvres {
@@ -210,7 +210,7 @@ fn warnings(judged: &[(&Simulated, &Judged)]) -> Figures {
     figures
 }
 
-/// The last thing that was done to a flight before a time.
+/// The last event of a flight before a time.
 fn last_event(flight: &Simulated, before_s: f64) -> Option<&(f64, String, f64)> {
     const DONE: [&str; 8] = [
         "wind_step",

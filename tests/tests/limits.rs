@@ -1,4 +1,4 @@
-//! Every bound of docs/limits.md, at the command line: what is beyond it ends soon, with a message.
+//! Every limit of docs/limits.md, on the command line: larger inputs are rejected soon, with a message.
 
 use std::{
     fs,
@@ -23,7 +23,7 @@ fn run(arguments: &[&str]) -> Output {
     let mut command = flagred();
     let started = Instant::now();
     let output = command.args(arguments).output().unwrap();
-    // A debug build on a busy machine; without bounds these take minutes or all memory.
+    // A debug build on a busy machine; without limits these would take minutes or all memory.
     assert!(
         started.elapsed() < Duration::from_secs(20),
         "{arguments:?} took {:?}",
@@ -32,7 +32,7 @@ fn run(arguments: &[&str]) -> Output {
     output
 }
 
-/// Whether a call ends with 3 and says this on standard error.
+/// Asserts that a call ends with 3 and prints this on standard error.
 fn refused(arguments: &[&str], said: &str) {
     let output = run(arguments);
     let told = String::from_utf8(output.stderr).unwrap();
@@ -65,7 +65,7 @@ fn rule_sets_and_profiles_have_a_size_limit() {
     refused(&["check", &folder.file("larger.yaml", largest + "#")], said);
 }
 
-/// A profile may come from somebody else.
+/// A profile may come from an untrusted source.
 #[test]
 fn many_rules_are_not_simplified_and_many_inputs_not_mapped() {
     let folder = Folder::new();
@@ -132,7 +132,7 @@ fn a_profile_names_rule_sets_of_its_own_folder() {
     }
     folder.file("own/profile.yaml", profile("beside.yaml"));
     assert!(run(&export).status.success());
-    // A profile that is named without its folder.
+    // A profile named without its folder.
     let here = flagred()
         .args(["export", "--c", "profile.yaml"])
         .current_dir(folder.at("own"))
@@ -141,7 +141,7 @@ fn a_profile_names_rule_sets_of_its_own_folder() {
     assert!(here.status.success(), "{here:?}");
 }
 
-/// A small compressed file can hold a row that fills the memory.
+/// A small compressed file can contain a row that fills the memory.
 #[test]
 fn rows_headers_and_columns_of_a_flight_csv_are_bounded() {
     let folder = Folder::new();
@@ -207,9 +207,9 @@ fn rows_headers_and_columns_of_a_flight_csv_are_bounded() {
     refused(&["inspect", &twice], "the column `a` is there twice");
 }
 
-/// One damaged time must not make all later ones go back.
+/// One damaged time must not make all later times go back.
 #[test]
-fn a_time_of_another_millennium_costs_its_row_alone() {
+fn a_time_of_another_millennium_loses_only_its_row() {
     let folder = Folder::new();
     let log = folder.file(
         "far.csv",
@@ -280,7 +280,7 @@ fn a_report_shows_the_first_flight_modes_and_counts_the_rest() {
 }
 
 #[test]
-fn a_file_that_is_no_rule_set_is_not_quoted() {
+fn a_file_that_is_not_a_rule_set_is_not_quoted() {
     let folder = Folder::new();
     folder.file(
         "secret.txt",
@@ -298,7 +298,7 @@ fn a_file_that_is_no_rule_set_is_not_quoted() {
         !told.contains("root:") && !told.contains("hunter2"),
         "{told}"
     );
-    // Nor where it is named itself, as a rule set or as a profile.
+    // Nor if it is named itself, as a rule set or as a profile.
     let texts = [
         "root:x:0:0:root:/root:/bin/sh\npassword: {hunter2\n",
         "root:x:0:0:root:/root:/bin/sh\nhunter2",
@@ -325,14 +325,14 @@ fn a_file_that_is_no_rule_set_is_not_quoted() {
             );
         }
     }
-    // What is meant as a rule set is quoted, so that its author finds the mistake.
+    // A file that looks like a rule set is quoted, so that its author finds the mistake.
     folder.file("secret.txt", RULE_SET.replace("IS calm", "IS clam"));
     refused(&["export", "--c", &named], "did you mean `calm`?");
 }
 
 #[cfg(unix)]
 #[test]
-fn a_rule_set_comes_through_a_pipe_and_waiting_for_one_can_be_interrupted() {
+fn a_rule_set_is_read_from_a_pipe_and_waiting_can_be_interrupted() {
     let folder = Folder::new();
     let pipe = folder.at("pipe");
     let made = std::process::Command::new("mkfifo").arg(&pipe).status();

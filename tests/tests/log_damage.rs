@@ -1,4 +1,4 @@
-//! Damaged logs are read as far as they go. `mutations.rs` damages many more.
+//! Damaged logs are read as far as possible. `mutations.rs` damages many more.
 
 use flagred::{flight::Verdict, log::assess, shipped};
 use flagred_flightlog::Options;
@@ -8,9 +8,9 @@ use flagred_tests::{
     reference_data,
 };
 
-/// What is damaged is whole before.
+/// The logs are intact before the tests damage them.
 #[test]
-fn the_logs_that_are_damaged_are_whole() {
+fn the_logs_are_intact_before_they_are_damaged() {
     for log in seeds::logs() {
         let flight = flagred_flightlog::read(&log[..], &Options::default()).unwrap();
         assert!(flight.report.is_clean(), "{:?}", flight.report);
@@ -19,7 +19,7 @@ fn the_logs_that_are_damaged_are_whole() {
     }
 }
 
-/// Real logs hold messages and definitions that the written ones do not.
+/// Real logs contain messages and definitions that the generated ones do not.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn damaged_real_logs() {
@@ -46,9 +46,9 @@ fn damaged_real_logs() {
     }
 }
 
-/// What a tenth of the damage leaves must still be read: a hole costs the records it hits.
+/// The rows that damage to a tenth of the file leaves intact must be read: a hole loses only the records in it.
 #[test]
-fn a_hole_costs_what_it_hits() {
+fn a_hole_loses_only_the_rows_in_it() {
     let logs = [
         seeds::data_flash().bytes,
         seeds::ulog(),
@@ -71,15 +71,15 @@ fn a_hole_costs_what_it_hits() {
         );
         let report = &flight.report;
         assert!(report.skipped_bytes + report.bad_messages > 0, "{report:?}");
-        // Cut in the middle, all rows before are there.
+        // Of a log cut in the middle, all rows before the cut are read.
         let flight = flagred_flightlog::read(&log[..middle], &Options::default()).unwrap();
         assert!(flight.commands.len() >= rows / 3, "{}", flight.format);
     }
 }
 
-/// They would be a flight of 292,000 years, on whose clock seconds are too small to be told apart.
+/// They would be a flight of 292,000 years, in which seconds are below the precision of the clock.
 #[test]
-fn seconds_of_wild_time_stamps_are_left_out() {
+fn seconds_of_invalid_timestamps_are_skipped() {
     let log = |wild_us: Option<f64>| {
         let mut log = seeds::hovering();
         for row in 0..1000 {

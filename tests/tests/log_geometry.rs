@@ -1,4 +1,4 @@
-//! The motor geometry of the flights of the maintainers' data.
+//! The motor geometry of the flights of the reference data.
 
 use std::{fs, io::Read, path::Path};
 
@@ -19,7 +19,7 @@ fn declared(path: &Path, frame: &str) -> Flight {
     flagred_flightlog::read(log.as_bytes(), &Options::default()).unwrap()
 }
 
-/// What a log tells of its geometry: the frame, how well that is known, and the source.
+/// The geometry of a log: the frame, how certain it is, and its source.
 fn told(flight: &Flight) -> Option<(Option<&str>, Basis, &str)> {
     let geometry = flight.geometry.as_ref()?;
     Some((
@@ -31,7 +31,7 @@ fn told(flight: &Flight) -> Option<(Option<&str>, Basis, &str)> {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn logs_tell_their_geometry() {
+fn the_geometry_of_logs_is_read() {
     let data = reference_data();
     for (log, frame, source) in [
         (
@@ -88,7 +88,7 @@ fn logs_tell_their_geometry() {
         let geometry = flight.geometry.unwrap();
         assert_eq!(geometry.doubt, None, "{log}");
         assert_eq!(geometry.factors.len(), flight.motors.len(), "{log}");
-        // Front right, rear left, front left, rear right, in either autopilot's words.
+        // Front right, rear left, front left, rear right, in the terms of either autopilot.
         let signs = |f: &[f64; 3]| f.map(|x| if x.abs() < 0.5 { 0.0 } else { x.signum() });
         if flight.motors.len() == 4 && frame != Some("QUAD/PLUS") {
             let found: Vec<[f64; 3]> = geometry.factors.iter().map(signs).collect();
@@ -104,11 +104,11 @@ fn logs_tell_their_geometry() {
     assert_eq!(open(&data.join("logs/tl_vtol.tlog")).geometry, None);
 }
 
-/// Of the simulated hexarotors and octorotors, whose layout their files do not name, none is
-/// taken for another one, and where a wrong frame is declared, that is told.
+/// The simulated hexarotors and octorotors do not declare their layouts: none is mistaken for another, and a wrong declared
+/// frame is reported.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn layouts_of_six_and_eight_motors_are_found_and_wrong_ones_told() {
+fn layouts_of_six_and_eight_motors_are_found_and_contradictions_reported() {
     let data = reference_data();
     let (mut found, mut all, mut told_wrong) = (0, 0, 0);
     for folder in ["sitl2/timeseries", "sitl3/timeseries"] {
@@ -140,10 +140,10 @@ fn layouts_of_six_and_eight_motors_are_found_and_wrong_ones_told() {
     assert!(all > 60 && 10 * found >= 9 * all && 10 * told_wrong >= 9 * all);
 }
 
-/// On quadrotors only the attitude tells: a right frame is not doubted, a wrong one often is.
+/// On quadrotors, only the attitude indicates the frame: a correct frame is not doubted, a wrong one often is.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn frames_of_quadrotors_are_doubted_by_their_attitude() {
+fn wrong_frames_of_quadrotors_are_detected_by_their_attitude() {
     let data = reference_data();
     let (mut all, mut told) = (0, 0);
     for entry in fs::read_dir(data.join("sitl2/timeseries")).unwrap() {

@@ -1,4 +1,4 @@
-//! Layouts of flight logs that pilots have and that cannot be shipped, written here.
+//! Layouts of real flight logs that cannot be redistributed, generated here.
 
 use flagred_flightlog::{Flight, Format, Options, VehicleKind};
 use flagred_tests::log_writer::{
@@ -10,7 +10,7 @@ fn read(bytes: &[u8]) -> Flight {
     flagred_flightlog::read(bytes, &Options::default()).unwrap()
 }
 
-/// Both forms of a DataFlash log must say the same.
+/// Both forms of a DataFlash log must contain the same flight.
 fn read_both(log: &DataFlash) -> Flight {
     let binary = read(&log.bytes);
     let text = read(log.text.as_bytes());
@@ -146,7 +146,7 @@ fn a_function_that_changes_in_flight_does_not_move_the_motor() {
 }
 
 #[test]
-fn a_second_boot_goes_on_with_the_clock() {
+fn a_second_boot_continues_the_clock() {
     let mut log = quad("C", "TimeUS", &RADIO);
     let second = quad("C", "TimeUS", &RADIO);
     log.bytes.extend(second.bytes);
@@ -194,7 +194,7 @@ fn motors_beyond_output_14_and_motor_8() {
 }
 
 #[test]
-fn definitions_that_cannot_be_are_no_trap() {
+fn impossible_definitions_do_not_cause_a_panic() {
     let good = quad("C", "TimeUS", &RADIO);
     for length in [0, 1, 2, 3, 255] {
         let mut bytes = good.bytes.clone();
@@ -213,7 +213,7 @@ fn definitions_that_cannot_be_are_no_trap() {
     }
 }
 
-/// Instance 0 of the outputs is there but idle; the motors are UAVCAN ESCs in instance 1.
+/// Instance 0 of the outputs exists but is idle; the motors are UAVCAN ESCs in instance 1.
 #[test]
 fn uavcan_escs_in_the_second_instance() {
     let mut log = ULog::new(1_000_000);
@@ -274,9 +274,9 @@ fn parameter(name: &str, value: f32) -> Vec<u8> {
 }
 
 /// Versions 1 and 2 mixed, parameters stored under component 190, a ground station whose
-/// heartbeat carries the armed bit, and a gimbal on the vehicle's system.
+/// heartbeat has the armed bit, and a gimbal on the vehicle's system.
 #[test]
-fn telemetry_of_one_vehicle_among_others() {
+fn telemetry_of_other_vehicles_is_ignored() {
     const QUAD: (u8, u8) = (7, 1);
     const START_US: u64 = 1_700_000_000_000_000;
     let heartbeat = |mav_type: u8, armed: bool, status: u8| {
@@ -367,7 +367,7 @@ fn telemetry_of_one_vehicle_among_others() {
     assert!((flight.statistics().unwrap().margin_mean - 0.25).abs() < 1e-9);
 }
 
-/// A PX4 quadrotor of 1.13 or later with two motors on MAIN and two on AUX, which come in port 1 of SERVO_OUTPUT_RAW.
+/// A PX4 quadrotor of 1.13 or later with two motors on MAIN and two on AUX, which are in port 1 of SERVO_OUTPUT_RAW.
 #[test]
 fn tlog_with_motors_on_both_ports() {
     const START_US: u64 = 1_700_000_000_000_000;
@@ -422,7 +422,7 @@ fn tlog_with_motors_on_both_ports() {
     assert_eq!(row, [1500.0, 1600.0, 1600.0, 1900.0]);
 }
 
-/// The example of the documentation is what it says it is.
+/// The example of the documentation has the documented values.
 #[test]
 fn the_documented_flight_csv() {
     let page = include_str!("../../docs/flight-csv.md");

@@ -1,4 +1,4 @@
-//! What the logs of old firmware leave out, and limits that only it has.
+//! Missing data in the logs of old firmware, and limits that only it has.
 
 use flagred_flightlog::{Basis, Flight, Options, ReadError};
 use flagred_tests::log_writer::{DataFlash, ULog, Value};
@@ -8,7 +8,7 @@ fn read(bytes: &[u8]) -> Flight {
 }
 
 /// ArduCopter 3.2 with six outputs, `moving` of which follow the throttle from 1200 to `to_us`;
-/// the others stay or swing on their own.
+/// the others are constant or move independently.
 fn copter(moving: usize, to_us: f64, parameters: &[(&str, f64)]) -> DataFlash {
     let mut log = DataFlash::new();
     log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
@@ -27,7 +27,7 @@ fn copter(moving: usize, to_us: f64, parameters: &[(&str, f64)]) -> DataFlash {
         let time = Value::Number(2e6 + 1e5 * f64::from(row));
         let event = match row {
             5 => Some(10.0),
-            // The land detector tells 0.2 s of landing in the middle of the flight.
+            // The land detector reports 0.2 s of landing in the middle of the flight.
             10 | 52 => Some(28.0),
             50 | 90 => Some(18.0),
             95 => Some(11.0),
@@ -64,12 +64,12 @@ fn without_a_frame_the_outputs_that_move_together_are_the_motors() {
         assert_eq!(geometry.basis, Basis::Declared);
         assert_eq!(geometry.frame.as_deref(), Some(frame));
     }
-    // Two outputs that move together drive no multirotor.
+    // Two outputs that move together are not a multirotor.
     assert!(read(&copter(2, 1800.0, &[]).bytes).motors.is_empty());
 }
 
 #[test]
-fn landings_of_less_than_a_second_are_chatter() {
+fn landings_of_less_than_a_second_are_ignored() {
     let flight = read(&copter(4, 1800.0, &[]).bytes);
     let in_air = flight.in_air.unwrap();
     let spans: Vec<_> = in_air.spans.iter().map(|s| (s.start_s, s.end_s)).collect();
@@ -89,7 +89,7 @@ fn the_upper_limit_is_that_of_the_generation_unless_the_commands_go_beyond() {
         let flight = read(&copter(4, to_us, &[low, limit]).bytes);
         let effective = flight.effective_range;
         assert_eq!(effective.low, 0.13, "{}", effective.source);
-        // Parameters are single precision.
+        // Parameters have single precision.
         assert!((effective.high - high).abs() < 1e-7, "{}", effective.source);
     }
 }
@@ -129,7 +129,7 @@ fn static_mixers_have_the_range_of_their_bank() {
 }
 
 #[test]
-fn a_log_of_px4_before_ulog_is_told_as_what_it_is() {
+fn a_px4_log_older_than_ulog_is_identified() {
     let mut log = DataFlash::new();
     log.define(129, "TIME", "Q", "StartTime");
     log.define(2, "ATT", "ffff", "qw,qx,qy,qz");
@@ -140,9 +140,9 @@ fn a_log_of_px4_before_ulog_is_told_as_what_it_is() {
     assert!(error.help().unwrap().contains("ULog"));
 }
 
-/// What is counted as bad does not depend on which signals are kept.
+/// The number of bad messages does not depend on the selected signals.
 #[test]
-fn the_report_is_the_same_whatever_is_kept() {
+fn the_report_does_not_depend_on_the_kept_signals() {
     let mut log = copter(4, 1800.0, &[]);
     log.define(133, "ATT", "Qcccc", "TimeUS,DesRoll,Roll,DesPitch,Pitch");
     for time_us in [12.0e6, 12.1e6, 12.2e6, 12.05e6, 12.07e6, 12.3e6] {
@@ -166,7 +166,7 @@ fn the_report_is_the_same_whatever_is_kept() {
 
 /// ArduCopter 3.1 describes MOT messages in every log, and writes them where bit 10 of LOG_BITMASK is set.
 #[test]
-fn motors_that_were_not_logged_are_told_by_the_bitmask() {
+fn the_bitmask_reports_motors_that_were_not_logged() {
     let gap = |mask: f64| {
         let mut log = DataFlash::new();
         log.define(129, "PARM", "Nf", "Name,Value");
@@ -190,7 +190,7 @@ fn motors_that_were_not_logged_are_told_by_the_bitmask() {
     assert!(help.contains("is set"), "{help}");
 }
 
-/// A quadrotor of PX4 1.14 or later, of which set points are logged, but neither motors nor outputs.
+/// A quadrotor of PX4 1.14 or later, with logged set points but neither motors nor outputs.
 #[test]
 fn motor_commands_of_px4_are_computed_from_set_points() {
     let mut log = ULog::new(1_000_000);

@@ -1,4 +1,4 @@
-//! A telemetry log and a live link understand a vehicle alike: the same messages, given to both.
+//! A telemetry log and a live link interpret a vehicle alike: both receive the same messages.
 
 use flagred_flightlog::{
     Flight, Options,
@@ -11,17 +11,17 @@ const AUTOPILOT_VERSION: Message = (148, 178, 60);
 const ARDUPILOT: u8 = 3;
 const PX4: u8 = 12;
 const START_US: u64 = 1_700_000_000_000_000;
-/// Bytes of the time stamp before each packet of a telemetry log.
+/// Bytes of the timestamp before each packet of a telemetry log.
 const STAMP: usize = 8;
 
-/// A vehicle's messages, as a log and one by one.
+/// The messages of a vehicle, as a log and one by one.
 #[derive(Default)]
 struct Vehicle {
     log: Tlog,
     packets: Vec<(f64, Vec<u8>)>,
 }
 
-/// What a live link tells with a row of commands.
+/// A row of commands from a live link.
 struct Row {
     t_s: f64,
     commands: [f64; 4],
@@ -66,7 +66,7 @@ impl Vehicle {
         flagred_flightlog::read(&self.log.bytes[..], &Options::default()).unwrap()
     }
 
-    /// Live: the vehicle, and its rows of commands.
+    /// The vehicle and its rows of commands according to a live link.
     fn live(&self) -> (Telemetry, Vec<Row>) {
         let mut telemetry: Option<Telemetry> = None;
         let mut rows = Vec::new();
@@ -94,7 +94,7 @@ impl Vehicle {
     }
 }
 
-/// Holds what a recording tells against what the link told.
+/// Compares a recording with the link.
 fn compare(vehicle: &Vehicle) -> Flight {
     let flight = vehicle.recorded();
     assert!(flight.report.is_clean(), "{:?}", flight.report);
@@ -107,7 +107,7 @@ fn compare(vehicle: &Vehicle) -> Flight {
     assert_eq!(setup.geometry, flight.geometry);
     assert_eq!(telemetry.vehicle().kind, flight.vehicle.kind);
     assert_eq!(telemetry.vehicle().motors, flight.vehicle.motors);
-    // The clock of a link believes the first time stamp with the second.
+    // The clock of a link accepts the first timestamp together with the second.
     let recorded: Vec<_> = flight.commands.rows().skip(1).collect();
     assert_eq!(live.len(), recorded.len());
     for (live, (row_s, row)) in live.into_iter().zip(recorded) {
@@ -151,21 +151,21 @@ fn ardupilot() -> Vehicle {
         ("SERVO4_FUNCTION", 36.0),
         ("MOT_PWM_MIN", 1100.0),
         ("MOT_PWM_MAX", 1900.0),
-        // Damaged limits are not believed.
+        // Damaged limits are ignored.
         ("MOT_SPIN_MIN", 65_535.0),
         ("MOT_SPIN_MIN", 0.125),
         ("MOT_SPIN_MAX", 0.875),
         ("FRAME_CLASS", 1.0),
         ("FRAME_TYPE", 0.0),
     ] {
-        // ArduPilot sends integers as floats, whatever their type.
+        // ArduPilot sends integers as floats, whatever their type is.
         vehicle.parameter(name, value.to_le_bytes(), 2);
     }
     vehicle
 }
 
 #[test]
-fn an_ardupilot_vehicle_by_its_heartbeats() {
+fn an_ardupilot_vehicle_is_found_by_its_heartbeats() {
     let mut vehicle = ardupilot();
     // Standby, active, critical, emergency, terminating, standby, disarmed.
     let states = [
@@ -191,17 +191,17 @@ fn an_ardupilot_vehicle_by_its_heartbeats() {
         (0.125, 0.875)
     );
     assert_eq!(spans(&flight), [(2.0, 6.0)]);
-    // From the first row of commands on.
+    // From the first row of commands.
     assert!((flight.armed.unwrap().duration_s() - 5.95).abs() < 1e-6);
-    // Of a recording the first value counts, of a link the latest one.
+    // In a recording, the first value applies; on a link, the latest one.
     vehicle.parameter("MOT_SPIN_MAX", 0.5_f32.to_le_bytes(), 2);
     assert_eq!(vehicle.recorded().effective_range.high, 0.875);
     assert_eq!(vehicle.live().0.parameter("MOT_SPIN_MAX"), Some(0.5));
 }
 
-/// The id of the board is that which PX4 writes into its own logs.
+/// The id of the board is the one that PX4 writes into its own logs.
 #[test]
-fn a_vehicle_is_told_from_others() {
+fn packets_of_other_vehicles_are_ignored() {
     let mut vehicle = Vehicle::default();
     vehicle.heartbeat(0.0, PX4, false, 3);
     vehicle.parameter("STAT_BOOTCNT", 81_i32.to_le_bytes(), 6);
@@ -224,10 +224,10 @@ fn a_vehicle_is_told_from_others() {
 }
 
 #[test]
-fn the_landed_state_wins_over_the_heartbeat_while_it_is_known() {
+fn the_landed_state_takes_precedence_over_the_heartbeat_while_it_is_known() {
     let mut vehicle = ardupilot();
     vehicle.heartbeat(1.0, ARDUPILOT, true, 4);
-    // On the ground, taking off, in the air, landing, not known (the heartbeat is active), on the ground.
+    // On the ground, taking off, in the air, landing, unknown (the heartbeat is active), on the ground.
     for (second, state) in (1_u32..).zip([1, 3, 2, 4, 0, 1]) {
         let start_s = f64::from(second);
         vehicle.landed_state(start_s + 0.01, state);

@@ -1,5 +1,5 @@
-//! Flight logs against reference values made with pymavlink and pyulog, which stand beside
-//! the developers' checkout: `FLAGRED_SHARED` is the folder that holds `data/`.
+//! Flight logs compared with reference values from pymavlink and pyulog, which are part of the reference data:
+//! `FLAGRED_SHARED` is the folder that contains `data/`.
 
 use std::collections::HashMap;
 use std::io::Read;
@@ -80,14 +80,14 @@ fn compare_range(log: &str, range: &Range, low: &Value, high: &Value) {
     );
 }
 
-/// Where rows have no time of their own, the reference gives them that of the GPS message
-/// before, in UTC; ours are spread up to the next one, on the clock since boot.
+/// For rows without their own time, the reference uses the time of the preceding GPS message,
+/// in UTC; ours are interpolated up to the next one, on the clock since boot.
 fn has_times(log: &str) -> bool {
     log != "aptxt_mechanical_fail.log"
 }
 
-/// Takes the one row out of the time in the air that the reference, which knows no shortest
-/// landing, has on the ground.
+/// Removes the single row from the time in the air that is on the ground in the reference, which
+/// has no minimum duration of landings.
 fn leave_chatter_out(flight: &mut Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
     let t_s = flight.commands.t_s().to_vec();
     let is_other = |row: &usize| {
@@ -109,7 +109,7 @@ fn leave_chatter_out(flight: &mut Flight, truth: &HashMap<String, Vec<Option<f64
     });
 }
 
-/// Row by row: times and raw values.
+/// Compares times and raw values row by row.
 fn compare_rows(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
     assert_eq!(flight.commands.len(), truth["t_s"].len(), "{log}: rows");
     let (zero_s, tolerance_s) = match has_times(log) {
@@ -123,7 +123,7 @@ fn compare_rows(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Option<f
             "{log}, row {row}: {t_s}"
         );
         for (motor, &ours) in raw.iter().enumerate() {
-            // A motor that is told to stop is NaN in PX4 logs, and 0 here.
+            // A motor that is commanded to stop is NaN in PX4 logs, and 0 here.
             let theirs = truth[&format!("u{}", motor + 1)][row].filter(|u| u.is_finite());
             let theirs = theirs.unwrap_or(0.0);
             let tolerance = 1e-6 * theirs.abs().max(1e-9);
@@ -135,7 +135,7 @@ fn compare_rows(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Option<f
     }
 }
 
-/// Attitude row by row, in degrees.
+/// Compares the attitude row by row, in degrees.
 fn compare_attitude(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
     for name in ["roll_deg", "pitch_deg", "roll_des_deg", "pitch_des_deg"] {
         let theirs = &truth[name.trim_end_matches("_deg")];
@@ -160,7 +160,7 @@ fn compare_attitude(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Opti
 }
 
 /// Logs that pause while disarmed. The reference counts a pause after a last row in the air
-/// as flown, 628 s and 55 s of them; the events say that the craft stood on the ground.
+/// as flight time, 628 s and 55 s; according to the events, the craft was on the ground.
 const PAUSES_ON_THE_GROUND: &[&str] = &["ap_beast_sample.bin", "ap_maik17.bin"];
 
 fn seconds_by_rows(flight: &Flight) -> f64 {
@@ -175,7 +175,7 @@ fn compare(folder: &Path, log: &str) {
     let summary = std::fs::read_to_string(truth_of("summary.json")).unwrap();
     let summary: Value = serde_json::from_str(&summary).unwrap();
 
-    // The reference has only a number for builds that are no release.
+    // The reference has only a number for builds that are not releases.
     let firmware = summary["firmware"].as_str().unwrap();
     if !firmware.starts_with("PX4 1") {
         assert_eq!(flight.vehicle.firmware.as_deref(), Some(firmware), "{log}");
@@ -205,7 +205,7 @@ fn compare(folder: &Path, log: &str) {
         None => compare_range(log, range, &summary["out_min"], &summary["out_max"]),
     }
     if log == "aptxt_mechanical_fail.log" {
-        // The reference knows no upper limit before 3.4; its margins on the full range end at 0.07.
+        // The reference has no upper limit before 3.4; its margins on the full range end at 0.07.
         assert_eq!(flight.effective_range.high, 0.93);
         assert!((flight.full_range_statistics().unwrap().margin_min - 0.07).abs() < 1e-3);
         flight.effective_range.high = 1.0;
@@ -279,10 +279,10 @@ fn public_logs_are_as_in_their_reference() {
     }
 }
 
-/// Every row that pyulog recovers from the damaged log is there, and more.
+/// The rows contain every row that pyulog recovers from the damaged log, and more.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn a_damaged_log_gives_at_least_what_its_reference_does() {
+fn a_damaged_log_gives_at_least_as_much_as_its_reference() {
     let data = reference_data();
     let log = data.join("logs/x_corrupt_px_quadlocal.ulg");
     let flight = open(&log);
@@ -314,10 +314,10 @@ fn a_damaged_log_gives_at_least_what_its_reference_does() {
     assert!(flight.report.skipped_bytes > 0 && flight.report.reason.is_some());
 }
 
-/// Each log that cannot be assessed says why, and none of them gives a number.
+/// Each log that cannot be assessed has a reason, and none has a number.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn logs_without_an_answer_say_why() {
+fn logs_without_a_verdict_report_the_reason() {
     let data = reference_data();
     for (log, why) in [
         (
@@ -349,11 +349,11 @@ fn logs_without_an_answer_say_why() {
     }
 }
 
-/// Numbers that pymavlink 2.4.50 reads from the log, on the vehicle's clock: one packet of each message comes 1.2 s late, and
-/// with it go two rows that are not later than those before.
+/// Numbers that pymavlink 2.4.50 reads from the log, on the vehicle's clock: one packet of each message comes 1.2 s late, so two
+/// rows that are not later than the preceding ones are missing.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn telemetry_is_as_pymavlink_reads_it() {
+fn telemetry_agrees_with_the_pymavlink_reference() {
     let data = reference_data();
     let flight = open(&data.join("logs/tl_vtol.tlog"));
     assert!(flight.report.is_clean());
@@ -382,7 +382,7 @@ fn telemetry_is_as_pymavlink_reads_it() {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn flight_csv_series_are_read_whole() {
+fn flight_csv_series_are_read_completely() {
     let data = reference_data();
     let flight = open(&data.join("sitl2/timeseries/f000.csv.gz"));
     assert!(flight.report.is_clean(), "{:?}", flight.report);
@@ -399,8 +399,8 @@ fn flight_csv_series_are_read_whole() {
     flight.statistics().unwrap();
 }
 
-/// Commands computed from torque and thrust set points, against those that PX4 recorded: the topics of motors get other
-/// names in a copy of the log.
+/// Commands computed from torque and thrust set points, compared with those that PX4 recorded: in a copy of the log, the topics
+/// of motors have other names.
 #[test]
 #[ignore = "needs FLAGRED_SHARED, the folder with reference data"]
 fn computed_motor_commands_are_those_of_px4() {
@@ -437,7 +437,7 @@ fn computed_motor_commands_are_those_of_px4() {
             while let Some(next) = rows.next_if(|(next_s, _)| *next_s <= t_s) {
                 latest = Some(next.1);
             }
-            // PX4 stops a motor that failed, which no set point shows.
+            // PX4 stops a failed motor, which no set point shows.
             let is_driven = row.iter().all(|&command| command > 0.0);
             if is_driven
                 && recorded.is_in_air(t_s) == Some(true)

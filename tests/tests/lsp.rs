@@ -1,4 +1,4 @@
-//! `flagred lsp` as an editor meets it: messages over a pipe.
+//! `flagred lsp` from an editor's point of view: messages over a pipe.
 
 use std::{
     io::{BufRead, BufReader, Read, Write},
@@ -94,7 +94,7 @@ impl Editor {
         serde_json::from_slice(&text).unwrap()
     }
 
-    /// Opens a text, and gives the messages of its diagnostics.
+    /// Opens a text and returns the messages of its diagnostics.
     fn open(&mut self, uri: &str, text: &str) -> Vec<String> {
         let document = json!({"uri": uri, "languageId": "yaml", "version": 1, "text": text});
         self.tell("textDocument/didOpen", json!({"textDocument": document}));
@@ -119,7 +119,7 @@ impl Editor {
         found.iter().map(shown).collect()
     }
 
-    /// What is offered where `|` stands in a text.
+    /// The completions at `|` in a text.
     fn offered(&mut self, text: &str) -> Vec<String> {
         let offset = text.find('|').unwrap();
         let (uri, text) = ("file:///tmp/offered.yaml", text.replacen('|', "", 1));
@@ -145,7 +145,7 @@ fn place(uri: &str, line: usize, character: usize) -> Value {
 }
 
 #[test]
-fn mistakes_are_told_as_one_types() {
+fn mistakes_are_reported_while_typing() {
     let mut editor = Editor::new(&["utf-16"]);
     let uri = "file:///tmp/fan.yaml";
     let found = editor.open(uri, RULES);
@@ -194,7 +194,7 @@ fn a_profile_is_checked_with_the_rule_set_beside_it() {
 }
 
 #[test]
-fn what_can_be_written_is_offered() {
+fn completions_are_offered() {
     let mut editor = Editor::new(&[]);
     let with = |rule: &str| format!("{}  - {rule}", RULES);
     for (text, expected) in [
@@ -344,7 +344,7 @@ fn the_layout_is_that_of_fmt() {
 }
 
 #[test]
-fn an_editor_that_leaves_without_a_word_leaves_nothing_behind() {
+fn the_server_ends_when_the_editor_disconnects() {
     let Editor {
         mut server,
         to,
@@ -355,9 +355,9 @@ fn an_editor_that_leaves_without_a_word_leaves_nothing_behind() {
     server.wait().unwrap();
 }
 
-/// Findings alone: nothing changes the text of another program.
+/// Only findings: nothing changes the text of another program.
 #[test]
-fn a_rule_set_of_another_program_has_findings_and_stays_as_it_is() {
+fn a_rule_set_of_another_program_has_findings_and_is_not_formatted() {
     let text = "FUNCTION_BLOCK fan\nVAR_INPUT\n  heat : REAL;\nEND_VAR\nVAR_OUTPUT\n  speed : REAL;\nEND_VAR\n\
         FUZZIFY heat\n  RANGE := (0 .. 100);\n  TERM low := (0, 1) (100, 0);\nEND_FUZZIFY\n\
         DEFUZZIFY speed\n  RANGE := (0 .. 9);\n  TERM slow := (0, 0) (2, 1) (4, 0);\n  METHOD : COGG;\nEND_DEFUZZIFY\n\
@@ -385,9 +385,9 @@ fn a_rule_set_of_another_program_has_findings_and_stays_as_it_is() {
     editor.end();
 }
 
-/// A length that no memory holds, a message that is too long, one that is none: the next one is read all the same.
+/// A length that exceeds any memory, a message that is too long, and an invalid one: the next message is read anyway.
 #[test]
-fn a_message_that_is_too_long_is_passed_over() {
+fn a_message_that_is_too_long_is_skipped() {
     let mut editor = Editor::new(&[]);
     let long = format!("Content-Length: 20000000\r\n\r\n{}", " ".repeat(20_000_000));
     editor.to.write_all(long.as_bytes()).unwrap();

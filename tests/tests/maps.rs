@@ -1,4 +1,4 @@
-//! Decision maps: a picture of every rule set in `rules/`, and `flagred map` as its users meet it.
+//! Decision maps: a picture of every rule set in `rules/`, and `flagred map` from a user's point of view.
 
 use std::fs;
 
@@ -9,14 +9,14 @@ use fuzzy::{
 };
 
 const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml");
-/// The paper's profile: it interpolates where no rule applies.
+/// The paper's profile, which interpolates where no rule fires.
 const PROFILE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../rules/profiles/flagred-paper.yaml"
 );
 const FLAGRED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred.yaml");
 
-/// A rule set that changes what it decides changes its picture, and someone has to look at it.
+/// A changed decision of a rule set changes its picture, which must then be reviewed.
 #[test]
 fn a_picture_of_every_rule_set() {
     insta::glob!("../../rules", "*.yaml", |path| {
@@ -24,8 +24,8 @@ fn a_picture_of_every_rule_set() {
             .unwrap()
             .model;
         let engine = Engine::new(&model).unwrap();
-        // A picture has two axes; the other inputs are held.
-        // The rules to fly with are decided near the lower ends of their inputs.
+        // A picture has two axes; the other inputs are fixed.
+        // The default rules vary most near the lower ends of their inputs.
         let (points, held): (usize, &[(&str, f64)]) = match model.name.as_str() {
             "flagred" | "flagred-battery" => (
                 201,
@@ -65,7 +65,7 @@ fn map(arguments: &[&str]) -> (Option<i32>, String, String) {
 }
 
 #[test]
-fn a_map_in_the_terminal_marks_what_was_filled() {
+fn a_map_in_the_terminal_marks_filled_cells() {
     let (code, text, _) = map(&[PROFILE]);
     assert_eq!(code, Some(0));
     insta::assert_snapshot!(text);
@@ -73,14 +73,14 @@ fn a_map_in_the_terminal_marks_what_was_filled() {
     assert_eq!(same, text);
 }
 
-/// The middles of all ranges lie where every motor is at a limit: a picture of nothing but danger.
+/// In the middles of all ranges, every motor is at a limit: the picture would be all danger.
 #[test]
-fn without_a_word_the_picture_shows_where_the_rules_to_fly_with_decide() {
+fn the_default_picture_is_that_of_the_default_rule_set() {
     let (code, text, notes) = map(&[FLAGRED, "--points", "26"]);
     assert_eq!(code, Some(0));
     insta::assert_snapshot!(format!("{text}\n{notes}"));
 
-    // What was asked for needs no note.
+    // Explicitly chosen points need no note.
     let asked = [
         "--hold=throttle_activity=0.008",
         "--hold=swing_per_room=0.03",
@@ -115,7 +115,7 @@ fn a_table_of_all_cells() {
         })
         .collect();
     assert_eq!(rows.len(), 51 * 51);
-    // Below 0.15 and 0.05 no rule covers.
+    // Below 0.15 and 0.05, no rule fires.
     assert_eq!(rows.iter().filter(|row| row[5] == 1.0).count(), 15 * 5);
     assert!(rows[0][2] >= 75.0 && rows[0][5] == 1.0 && rows[0][6] > 0.0);
     let at = |margin: f64, spread: f64| {
@@ -130,9 +130,9 @@ fn a_table_of_all_cells() {
     assert_eq!((code, text.lines().count()), (Some(0), 1 + 5usize.pow(5)));
 }
 
-/// Without a profile a map is what `flagred eval` gives, cell by cell, also where the rules hardly fire.
+/// Without a profile, a map has the values of `flagred eval`, cell by cell, also where the rules hardly fire.
 #[test]
-fn the_map_of_a_rule_set_is_what_eval_gives() {
+fn the_map_of_a_rule_set_agrees_with_eval() {
     let shown = map(&[PAPER, "--csv"]).1;
     let points: String = shown
         .lines()
@@ -263,7 +263,7 @@ fn impossible_maps_are_refused() {
     }
 }
 
-/// A rule set of seven inputs with long names: five of them are held.
+/// A rule set of seven inputs with long names: five of them are fixed.
 #[test]
 fn long_headings_stay_within_the_picture() {
     let folder = flagred_tests::Folder::new();
@@ -317,7 +317,7 @@ fn long_headings_stay_within_the_picture() {
     assert_eq!(held, 5, "every held input is named");
 }
 
-/// A rule set of three inputs and a chain: the output that is read comes first.
+/// A rule set of three inputs and a chain: the intermediate output comes first.
 const CHAIN: &str = "fuzzy: 1
 name: fan
 inputs:
@@ -336,7 +336,7 @@ rules:
 ";
 
 #[test]
-fn values_are_tables_of_each_slice_of_what_the_last_output_reads() {
+fn map_values_prints_a_table_for_each_slice() {
     let folder = flagred_tests::Folder::new();
     let model = folder.file("chain.yaml", CHAIN);
     let (code, text, notes) = map(&[&model, "--values", "--points", "3"]);
@@ -361,7 +361,7 @@ fn values_are_tables_of_each_slice_of_what_the_last_output_reads() {
 }
 
 #[test]
-fn a_table_written_before_is_compared_with_the_outputs_now() {
+fn an_earlier_table_is_compared_with_the_current_outputs() {
     let folder = flagred_tests::Folder::new();
     let model = folder.file("chain.yaml", CHAIN);
     let changed = folder.file(
@@ -380,7 +380,7 @@ fn a_table_written_before_is_compared_with_the_outputs_now() {
         let (code, told, _) = map(&[&model, "--check", &table]);
         let (changed_code, change, errors) = map(&[&changed, "--check", &table]);
         if written.contains(&"--hold") {
-            // Inputs that were held have no column.
+            // Fixed inputs have no column.
             assert_eq!(changed_code, Some(3), "{change}");
             assert!(errors.contains("has no column `noise`"), "{errors}");
             continue;

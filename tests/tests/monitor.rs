@@ -1,11 +1,11 @@
-//! The monitor over minutes of flight: a sample allocates nothing.
+//! The monitor over minutes of flight: processing a sample does not allocate.
 
 use flagred::{
     monitor::{Craft, Monitor, Sample},
     shipped,
 };
 
-/// Eight motors that fight gusts at 50 Hz, take off and land, lose their link and send garbage.
+/// Eight motors that compensate gusts at 50 Hz, take off and land, lose their link and send garbage.
 fn sample(i: u32, motors: &mut [f64; 8]) -> (f64, bool) {
     let t_s = f64::from(i) * 0.02 + if i > 6000 { 60.0 } else { 0.0 };
     for (n, motor) in motors.iter_mut().enumerate() {
@@ -19,7 +19,7 @@ fn sample(i: u32, motors: &mut [f64; 8]) -> (f64, bool) {
 }
 
 #[test]
-fn a_sample_allocates_nothing_whatever_happens() {
+fn a_sample_never_allocates() {
     for estimator in [shipped::flagred(), shipped::flagred_paper()] {
         let name = &estimator.profile().name;
         let mut monitor = Monitor::new(&estimator, Craft::new(8)).unwrap();
@@ -39,7 +39,7 @@ fn a_sample_allocates_nothing_whatever_happens() {
             }
         });
         assert_eq!(counted.count_total, 0, "{name}");
-        // Something happened: the paper's rules call this flight harmless, ours do not.
+        // The flight is eventful: the paper's rules call it harmless, ours do not.
         assert!(known > 9000, "{name}: {known}");
         assert_eq!(changes > 1, name == "flagred", "{name}: {changes}");
     }

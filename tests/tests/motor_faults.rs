@@ -1,4 +1,4 @@
-//! Lasting motor faults: reported until landing, with the right motor; and no weak motor where none is.
+//! Lasting motor faults are reported until landing, with the right motor; healthy motors are not reported as weak.
 //!
 //! `FLAGRED_SHARED=... cargo test -p flagred-tests --test motor_faults -- --ignored --nocapture` prints a line for each flight.
 
@@ -13,7 +13,7 @@ use flagred::{
 };
 use flagred_tests::{reference::flight::samples, reference_data, simulated::on_all_cores};
 
-/// A flight as a monitor sees it.
+/// The results of a monitor for a flight.
 struct Followed {
     id: String,
     findings: Vec<Finding>,
@@ -75,7 +75,7 @@ fn line(flight: &Followed) -> String {
     text
 }
 
-/// Faults of sitl5: the flight, the motor (from 1), when, and until when it lasts in the air.
+/// Faults of sitl5: the flight, the motor (from 1), and the times in the air at which the fault begins and ends.
 const FAULTS: [(&str, usize, f64, f64); 9] = [
     ("motor_quad_m1_75", 1, 94.6, 154.0),
     ("motor_quad_m3_50", 3, 94.7, 120.0),
@@ -117,7 +117,7 @@ fn a_lasting_fault_stays_reported_and_its_motor_is_named() {
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn wind_and_manoeuvres_are_no_weak_motor() {
+fn wind_and_manoeuvres_are_not_reported_as_a_weak_motor() {
     for id in [
         "batt_quad",
         "calm_quad",
@@ -141,8 +141,9 @@ fn wind_and_manoeuvres_are_no_weak_motor() {
     }
 }
 
-/// Flights with a weak motor that is not one of their faults: one with an upset of another kind, the landing whose motors work on
-/// for seconds on the ground, a craft that leans into rising wind and then, after FAIL, no longer does (8 %, for 8 s), and a real one that a
+/// Flights with a weak motor that is not one of their faults: one with an upset of another kind; the landing whose motors run on
+/// for seconds on the ground; a craft that leans into rising wind and then, after FAIL, no longer does (8 %, for 8 s); and a
+/// real one that a pilot turns over in ACRO, 6 s before its end and already FAIL.
 /// pilot turns over in ACRO, 6 s before its end and already FAIL.
 const NOT_FAULTS: [&str; 4] = ["f240", "n240", "f068", "dronekit_test_01"];
 
@@ -180,7 +181,7 @@ fn no_weak_motor_in_flights_without_a_motor_fault() {
     }
 }
 
-// Made flights, with the commands of ArduPilot's simulator.
+// Generated flights, with the commands of ArduPilot's simulator.
 
 const QUAD: [Factors; 4] = [
     [-1.0, 1.0, 1.0],
@@ -188,7 +189,7 @@ const QUAD: [Factors; 4] = [
     [1.0, 1.0, -1.0],
     [-1.0, -1.0, -1.0],
 ];
-/// A plus: front, rear, and clockwise from the left rear one.
+/// Plus layout: front, rear, then clockwise from the left rear motor.
 const HEXA: [Factors; 6] = [
     [0.0, 1.0, -1.0],
     [0.0, -1.0, 1.0],
@@ -197,7 +198,7 @@ const HEXA: [Factors; 6] = [
     [1.0, 0.5, 1.0],
     [-1.0, -0.5, -1.0],
 ];
-/// A plus: motors 1 and 6 in front, 2 and 5 left, 3 and 8 behind, 4 and 7 right.
+/// Plus layout: motors 1 and 6 in front, 2 and 5 left, 3 and 8 behind, 4 and 7 right.
 const OCTAQUAD: [Factors; 8] = [
     [0.0, 1.0, 1.0],
     [1.0, 0.0, -1.0],
@@ -209,10 +210,10 @@ const OCTAQUAD: [Factors; 8] = [
     [0.0, -1.0, -1.0],
 ];
 
-/// From a time on, in seconds, how far the motors are above 0.55.
+/// A start time in seconds, and from then on the commands relative to 0.55.
 type Phase<'a> = (f64, &'a [f64]);
 
-/// Flies phases at 50 Hz until a time, with a little noise, and lands; `gap` leaves samples out. The same on board.
+/// Flies phases at 50 Hz until a time, with a little noise, and lands; samples in `gap` are omitted. Also on board.
 fn fly(
     factors: &[Factors],
     phases: &[Phase<'_>],
@@ -257,13 +258,13 @@ fn levels(updates: &[Update], span_s: core::ops::Range<f64>) -> Vec<Option<Level
 }
 
 #[test]
-fn a_weak_motor_is_the_one_above_its_trim_and_stays_reported() {
+fn a_weak_motor_is_the_one_above_its_trim_and_remains_reported() {
     let faults: [(&[Factors], &[f64], usize); 4] = [
         // 75 % of the thrust.
         (&QUAD, &[0.24, 0.0, 0.0, 0.0], 0),
         // 60 %; the healthy one opposite is as far below.
         (&HEXA, &[0.07, 0.07, 0.24, -0.15, 0.07, 0.07], 2),
-        // Dead: the other one of the arm is motor 8, the one opposite is motor 6.
+        // Stopped: the other one of the arm is motor 8, the opposite one is motor 6.
         (
             &OCTAQUAD,
             &[-0.02, 0.01, 0.32, 0.01, 0.15, -0.16, 0.15, 0.18],
@@ -299,7 +300,7 @@ fn a_weak_motor_is_the_one_above_its_trim_and_stays_reported() {
 }
 
 #[test]
-fn a_turn_and_a_lean_are_no_weak_motor() {
+fn a_turn_and_a_lean_are_not_reported_as_a_weak_motor() {
     let others: [(&[Factors], &[f64]); 4] = [
         // Turning.
         (&QUAD, &[0.2, 0.2, -0.2, -0.2]),
@@ -309,7 +310,7 @@ fn a_turn_and_a_lean_are_no_weak_motor() {
         (&HEXA, &[-0.07, 0.07, 0.14, -0.14, 0.07, -0.07]),
     ];
     for (factors, shifts) in others {
-        // Slowly: a step is unsteady.
+        // Slowly, because a step is unsteady.
         let mut phases: Vec<(f64, Vec<f64>)> = vec![];
         for step in 1..=100 {
             let share = f64::from(step) / 100.0;
@@ -324,7 +325,7 @@ fn a_turn_and_a_lean_are_no_weak_motor() {
     }
 }
 
-/// Shaken for two seconds; then the motors stay where they were not before, until 80 s.
+/// The commands oscillate for two seconds; then they stay at new values until 80 s.
 const SHAKEN: [&[f64]; 3] = [
     &[0.4, -0.4, 0.4, -0.4],
     &[-0.4, 0.4, -0.4, 0.4],
@@ -351,14 +352,14 @@ fn an_alarm_ends_when_the_motors_work_as_before() {
 }
 
 #[test]
-fn a_gap_ends_no_alarm() {
+fn a_gap_does_not_end_an_alarm() {
     let shifts = [0.24, 0.0, 0.0, 0.0];
     let (_, updates) = fly(&QUAD, &[(40.0, &shifts)], 55.0..61.0, 120.0);
     let after = levels(&updates, 60.0..120.0);
     assert_eq!(after[0], None);
     assert!(!after.contains(&Some(Level::Good)));
     assert!(after.iter().flatten().all(|level| *level >= Level::Warn));
-    // The next flight begins anew.
+    // The next flight starts without the state of the first.
     let (_, updates) = fly(&QUAD, &[], 0.0..0.0, 20.0);
     assert_eq!(
         updates.iter().filter_map(|update| update.level).max(),
@@ -366,7 +367,7 @@ fn a_gap_ends_no_alarm() {
     );
 }
 
-/// A motor that PX4 stops: the allocator takes the one opposite to 0, too, a moment later.
+/// A motor that PX4 stops: the allocator also sets the opposite one to 0, a moment later.
 #[test]
 fn a_motor_that_stopped_is_named_and_not_the_one_opposite() {
     let alone = [0.0, 0.0, -0.55, 0.0, 0.0, 0.0];
@@ -379,7 +380,7 @@ fn a_motor_that_stopped_is_named_and_not_the_one_opposite() {
         .unwrap();
     let motor = found.motor.unwrap();
     assert_eq!((motor.number, motor.or_number), (3, None));
-    // At the same time nothing tells them apart.
+    // If both stop at the same time, they cannot be distinguished.
     let (flown, _) = fly_clipped(&HEXA, &[(40.0, &both)]);
     let mut found = flown.findings.iter();
     let found = found
@@ -411,7 +412,7 @@ fn fly_clipped(factors: &[Factors], phases: &[Phase<'_>]) -> (Assessment, Vec<Up
     (assessor.finish(), updates)
 }
 
-/// Pulses of a quadrotor of PX4's simulator in us, 25 a second, from when its motor 2 stops.
+/// Pulses of a quadrotor in PX4's simulator in us, 25 per second, from the stop of its motor 2 on.
 const FALL: [[u16; 4]; 48] = [
     [1436, 900, 1498, 1486],
     [1323, 900, 1489, 1506],
@@ -464,7 +465,7 @@ const FALL: [[u16; 4]; 48] = [
 ];
 
 #[test]
-fn a_fall_is_not_the_ground() {
+fn a_fall_is_not_taken_for_a_landing() {
     let estimator = shipped::flagred();
     let craft = Craft::new(4).with_geometry(&QUAD);
     let mut assessor = Assessor::new(&estimator, craft, None).unwrap();
@@ -495,7 +496,7 @@ fn a_fall_is_not_the_ground() {
     assert!(failed_s.is_some_and(|s| s < 1.8), "{failed_s:?}");
 }
 
-/// Landings with a weak motor: until when FAIL may stand, in seconds of the vehicle's clock. The throttle is closed later.
+/// Landings with a weak motor: the end of FAIL, in seconds of the vehicle's clock. The throttle is closed later.
 const LANDINGS: [(&str, f64); 4] = [
     ("motor_y6_m2_0.BIN.gz", 162.5),
     ("motor_hexa_m3_60.BIN.gz", 182.5),
@@ -505,7 +506,7 @@ const LANDINGS: [(&str, f64); 4] = [
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn a_touch_down_raises_no_fail() {
+fn a_touchdown_raises_no_fail() {
     for (name, from_s) in LANDINGS {
         let flight = follow(&reference_data().join("sitl5").join(name));
         let late = flight.levels.iter().filter(|(t_s, _)| *t_s >= from_s);

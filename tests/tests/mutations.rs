@@ -1,6 +1,6 @@
-//! Damaged inputs of every reader, every writer and the live session: none makes a panic, is slow or takes much memory.
+//! Damaged inputs of every reader, every writer and the live session: none causes a panic, is slow or uses much memory.
 //!
-//! `cargo test --release -p flagred-tests --test mutations -- --ignored --nocapture` takes a million of them.
+//! `cargo test --release -p flagred-tests --test mutations -- --ignored --nocapture` runs a million of them.
 
 use std::{
     io::Write,
@@ -13,10 +13,10 @@ use flagred_tests::fuzzing::{TARGETS, Target, mutation::damaged};
 use flate2::{Compression, write::GzEncoder};
 use rayon::prelude::*;
 
-/// The most memory that an input may take, and all of the process.
+/// The maximum memory of an input, and of the whole process.
 const MEMORY: u64 = 256 << 20;
 
-/// Tells which input it was.
+/// Prints the seed of the input if it panics.
 struct Telling<'t>(&'t Target, u64);
 
 impl Drop for Telling<'_> {
@@ -27,7 +27,7 @@ impl Drop for Telling<'_> {
     }
 }
 
-/// Time and memory that an input takes.
+/// The time and memory that an input uses.
 fn cost(target: &Target, seeds: &[Vec<u8>], seed: u64) -> (Duration, u64) {
     let _telling = Telling(target, seed);
     let mut random = Rng::with_seed(seed);
@@ -43,7 +43,7 @@ fn cost(target: &Target, seeds: &[Vec<u8>], seed: u64) -> (Duration, u64) {
     (if again { time.min(run().0) } else { time }, memory)
 }
 
-/// So many inputs, none of which takes longer.
+/// Runs this many inputs, each within the given time.
 fn survive(count: u64, longest: Duration) {
     assert_eq!(TARGETS.iter().map(|target| target.share).sum::<u64>(), 100);
     for target in &TARGETS {
@@ -66,7 +66,7 @@ fn survive(count: u64, longest: Duration) {
         assert!(slowest < longest, "{}: {slowest:?}", target.name);
         assert!(largest < MEMORY, "{}: {largest} bytes", target.name);
     }
-    // With everything that other threads and the libraries hold.
+    // Including the memory of other threads and of libraries.
     if let Ok(status) = std::fs::read_to_string("/proc/self/status") {
         let line = status.lines().find(|line| line.starts_with("VmHWM:"));
         let kb: u64 = line
@@ -82,19 +82,19 @@ fn survive(count: u64, longest: Duration) {
 }
 
 #[test]
-fn some_damaged_inputs_are_survived() {
+fn some_damaged_inputs_cause_no_panic() {
     survive(5000, Duration::from_secs(5));
 }
 
 #[test]
 #[ignore = "takes many minutes: run it with --release"]
-fn a_million_damaged_inputs_are_survived() {
+fn a_million_damaged_inputs_cause_no_panic() {
     survive(1_000_000, Duration::from_secs(1));
 }
 
-/// Zeros are compressed to a thousandth; the log of them is as large as anybody wants.
+/// Zeros are compressed to a thousandth, so a small file can contain a huge log.
 #[test]
-fn a_log_of_zeros_takes_no_memory() {
+fn a_log_of_zeros_takes_little_memory() {
     let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
     for _ in 0..200 {
         packed.write_all(&[0; 1 << 20]).unwrap();

@@ -1,5 +1,5 @@
-//! Random models over all shapes, norms, implications, aggregations and defuzzifiers, held against formulas and integrals that
-//! are not the engine's.
+//! Random models over all shapes, norms, implications, aggregations and defuzzifiers, compared with formulas and integrals that
+//! are independent of the engine.
 
 use std::process::Command;
 
@@ -12,7 +12,7 @@ use fuzzy::model::{Defuzzifier, Model};
 use fuzzy::table::{ClosedForm, Outcome, Partial, Scratch, Strongest};
 use serde_json::json;
 
-/// What was compared.
+/// Counts of the compared values.
 #[derive(Debug, Default)]
 struct Tally {
     models: usize,
@@ -33,7 +33,7 @@ fn with_rounding(model: &Model) -> Model {
     model
 }
 
-/// Compares so many models from a seed on.
+/// Compares this many models from a first seed on.
 fn compare(first: u64, count: usize) -> Tally {
     let mut tally = Tally::default();
     for (seed, model, points) in models(first, count) {
@@ -64,7 +64,7 @@ fn compare(first: u64, count: usize) -> Tally {
                     output.defuzzifier, model.operators
                 ));
             } else {
-                // Hangs on the last digit of the firing strengths.
+                // The value depends on the last digit of the firing strengths.
                 tally.ill_conditioned += 1;
             }
         }
@@ -80,7 +80,7 @@ fn compare(first: u64, count: usize) -> Tally {
     tally
 }
 
-/// The value by the arrays that exports and the C library evaluate; `None` of an output that has no closed form there.
+/// The value from the arrays that exports and the C library evaluate; `None` if the output has no closed form.
 fn by_table(engine: &Engine, point: &[f64]) -> Option<Outcome> {
     let table = engine.table()?;
     if table.outputs[0].form() == ClosedForm::Integrated {
@@ -104,7 +104,8 @@ fn by_table(engine: &Engine, point: &[f64]) -> Option<Outcome> {
     Some(outcomes[0])
 }
 
-/// Batches, explanations, exported arrays and maps give the bits of single calls. Returns whether there are exported arrays.
+/// Asserts that batches, explanations, exported arrays and maps have the bits of single calls. Returns whether arrays are
+/// exported.
 fn same_bits(model: &Model, engine: &Engine, points: &[Vec<f64>]) -> bool {
     let bits = |value: Option<f64>| value.map(f64::to_bits);
     let columns: Vec<Vec<f64>> = (0..model.inputs.len())
@@ -147,25 +148,25 @@ fn assert_right(tally: &Tally) {
         tally.wrong.join("\n")
     );
     assert!(30 * tally.exported_maxima > tally.models, "{tally:?}");
-    // Nearly all must have been compared.
+    // Nearly all values must have been compared.
     assert!(500 * tally.ill_conditioned <= tally.values, "{tally:?}");
 }
 
 #[test]
-fn two_thousand_models() {
+fn two_thousand_models_agree_with_the_reference() {
     assert_right(&compare(1_000_000, 2000));
 }
 
-/// Fails today: in 55 of 59,945 values one of the two is wrong (docs/validation.md, The engine).
+/// Fails at present: in 55 of 59,945 values, one of the two is wrong (docs/validation.md, The engine).
 #[test]
 #[ignore = "minutes, and some values differ"]
-fn twenty_thousand_models() {
+fn twenty_thousand_models_agree_with_the_reference() {
     assert_right(&compare(2_000_000, 20_000));
 }
 
 const PEER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peer/mpmath_peer.py");
 
-/// `FLAGRED_PYTHON` names a Python that has mpmath.
+/// `FLAGRED_PYTHON` names a Python with mpmath.
 #[test]
 #[ignore = "needs Python with mpmath: tests/peer/mpmath.sh"]
 fn mpmath_computes_the_values_of_two_hundred_models() {

@@ -16,7 +16,7 @@ fn membership(variable: &Variable, term: &str, x: f64) -> f64 {
     term.membership_function.membership(x) * term.height
 }
 
-/// Row 0 of Table I, for which the paper prints the memberships and the degree of the rule learned from it.
+/// Row 0 of Table I, for which the paper prints the memberships and the degree of the learned rule.
 #[test]
 fn worked_example() {
     let model = paper();
@@ -54,7 +54,7 @@ fn decision_map() {
     }
 }
 
-/// Where no rule fires the answer is undefined, never a number.
+/// Where no rule fires, the value is undefined, never a number.
 #[test]
 fn no_rule_fires_at_no_spread_and_no_margin() {
     let engine = Engine::new(&paper()).unwrap();

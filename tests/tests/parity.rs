@@ -1,11 +1,11 @@
-//! Our results against those of other programs and of a closed form, where the reference files are at hand.
+//! Our results compared with those of other programs and of a closed form, if the reference files are available.
 
 use flagred_tests::reference_data;
 use fuzzy::model::{MembershipFunction, Model, Output, Sampling, SamplingRule, Variable};
 use fuzzy::rule::{Condition, Rule};
 use fuzzy::{Engine, engine::State};
 
-/// Reads the reference systems' plain description: `input`, `term`, `output` and `rule` lines.
+/// Reads the plain description of a reference system: `input`, `term`, `output` and `rule` lines.
 fn system(text: &str) -> Model {
     let mut model = Model::builder("system").build();
     for line in text.lines() {
@@ -107,8 +107,8 @@ fn centroids_equal_the_closed_form() {
     }
 }
 
-/// With the same midpoints we are fuzzylite, but for what it drops: it takes firing strengths of 1e-6 and less
-/// as 0, and we drop nothing. What that can move is bounded by the strengths it drops.
+/// With the same midpoints, the results equal those of fuzzylite except for small firing strengths: it treats 1e-6 and less
+/// as 0. The possible difference is bounded by these strengths.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn a_thousand_midpoints_equal_fuzzylite() {

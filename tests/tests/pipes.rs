@@ -1,4 +1,4 @@
-//! A reader that goes away changes neither what is written nor the exit code.
+//! A closed output pipe changes neither the written files nor the exit code.
 #![cfg(unix)]
 
 use std::{
@@ -18,7 +18,7 @@ use flagred_tests::{
     writing::{RULES, wild_flight},
 };
 
-/// How a command ends whose reader takes so many bytes of its output, or all.
+/// The exit code and errors of a command whose reader takes this many bytes of its output, or all.
 fn ended(arguments: &[&str], read: Option<usize>) -> (Option<i32>, String) {
     let mut child = flagred()
         .args(arguments)
@@ -42,7 +42,7 @@ fn ended(arguments: &[&str], read: Option<usize>) -> (Option<i32>, String) {
 }
 
 #[test]
-fn a_closed_pipe_changes_no_exit_code() {
+fn a_closed_pipe_does_not_change_the_exit_code() {
     let folder = Folder::new();
     let log = &folder.file("log.csv", wild_flight(40));
     let still = &folder.file("still.csv", "t_s,motor1,in_air\n0,0.5,0\n1,0.5,0\n");
@@ -99,7 +99,7 @@ fn a_closed_pipe_changes_no_exit_code() {
 
 /// `flagred assess x --html report.html | true`
 #[test]
-fn a_closed_pipe_keeps_no_report_from_being_written() {
+fn reports_are_written_despite_a_closed_pipe() {
     let folder = Folder::new();
     let log = &folder.file("log.csv", wild_flight(40));
     let (html, svg) = (&folder.at("report.html"), &folder.at("risk.svg"));
@@ -132,7 +132,7 @@ fn a_closed_pipe_keeps_no_report_from_being_written() {
     }
 }
 
-/// Nobody reads, and the pipe is full: the report is there all the same.
+/// Without a reader the pipe is full, but the report is written.
 #[test]
 fn reports_are_written_before_a_full_pipe_blocks() {
     let folder = Folder::new();
@@ -156,9 +156,9 @@ fn reports_are_written_before_a_full_pipe_blocks() {
     assert!(all.len() > 70_000, "{}", all.len());
 }
 
-/// A report on standard output is a whole document: the words stand on standard error.
+/// A report on standard output is a complete document: the text goes to standard error.
 #[test]
-fn a_report_on_standard_output_stands_alone() {
+fn only_the_report_is_written_to_standard_output() {
     let output = flagred()
         .args(["assess", STEADY, "--html", "-"])
         .output()
@@ -169,9 +169,9 @@ fn a_report_on_standard_output_stands_alone() {
     assert!(words.starts_with("GOOD "), "{words}");
 }
 
-/// A stream has no end: the evaluation of one ends with its reader.
+/// A stream has no end: its evaluation ends when the reader closes the pipe.
 #[test]
-fn an_endless_evaluation_ends_with_its_reader() {
+fn an_endless_evaluation_ends_when_its_reader_closes() {
     let mut child = flagred()
         .args(["eval", RULES, "-"])
         .stdin(Stdio::piped())
@@ -190,9 +190,9 @@ fn an_endless_evaluation_ends_with_its_reader() {
     assert_eq!(child.wait().unwrap().code(), Some(0));
 }
 
-/// Who is warned, or reads the recording, still needs it.
+/// Receivers of warnings and readers of the recording still need it.
 #[test]
-fn a_watch_that_nobody_reads_goes_on_recording() {
+fn a_watch_without_a_reader_continues_recording() {
     let folder = Folder::new();
     let file = folder.at("recorded.tlog");
     let mut child = flagred()
@@ -212,7 +212,7 @@ fn a_watch_that_nobody_reads_goes_on_recording() {
         vehicle.beat(false, false);
         vehicle.linger(Duration::from_millis(10));
     }
-    // With the reader goes the pipe.
+    // The pipe is closed with the reader.
     assert!(reader.join().unwrap().is_some());
     let before = fs::metadata(&file).unwrap().len();
     let air = flight.in_air.as_ref().unwrap().spans[0];
@@ -231,7 +231,7 @@ fn a_watch_that_nobody_reads_goes_on_recording() {
 }
 
 #[test]
-fn a_watch_that_serves_nobody_ends() {
+fn a_watch_without_any_purpose_ends() {
     let mut child = flagred()
         .args(["watch", "udpin:127.0.0.1:0", "--no-send"])
         .stdout(Stdio::piped())
@@ -244,7 +244,7 @@ fn a_watch_that_serves_nobody_ends() {
     let address = address.split_once(',').unwrap().0.to_owned();
     drop(lines);
     let socket = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
-    // It has something to say of each, and notices there that nobody hears it.
+    // It prints something for each vehicle, and then notices that the pipe is closed.
     for system in (1..=250).cycle().take(1000) {
         let beat = Sender::new(1).packet(
             Version::V2,
@@ -269,7 +269,7 @@ fn wait_for(mut happened: impl FnMut() -> bool) {
     }
 }
 
-/// The columns are looked at and the rows are read from one reading of the table.
+/// Columns and rows come from a single reading of the table.
 #[test]
 fn identify_reads_standard_input_once() {
     let row = |i: i32| format!("{},{},{}\n", i % 7, i % 5, i % 7 * (i % 5));

@@ -1,4 +1,4 @@
-//! Profiles as their authors meet them: template, schema, check, and what a profile that does not fit leads to.
+//! Profiles from an author's point of view: template, schema, check, and profiles that do not fit.
 
 use std::fs;
 
@@ -70,7 +70,7 @@ fn the_shipped_profiles_and_the_template_have_no_findings() {
 }
 
 #[test]
-fn the_schema_takes_what_the_reader_takes() {
+fn the_schema_accepts_what_the_reader_accepts() {
     let schema = schema::schema("profile");
     let valid = |text: &str| {
         let profile: Value = serde_yaml::from_str(text).unwrap();
@@ -96,7 +96,7 @@ fn the_schema_takes_what_the_reader_takes() {
         assert!(text.parse::<flagred::profile::Profile>().is_err(), "{by}");
     }
 
-    // Each key of the schema is one of the reader.
+    // The reader knows each key of the schema.
     let keys = |part: &Value| -> Vec<String> {
         let fields = part["properties"].as_object().unwrap();
         fields.keys().cloned().collect()
@@ -122,7 +122,7 @@ fn the_schema_takes_what_the_reader_takes() {
 }
 
 #[test]
-fn what_does_not_fit_is_told_by_every_command_and_an_impossible_verdict_is_refused() {
+fn every_command_reports_a_profile_that_does_not_fit_and_refuses_an_impossible_verdict() {
     let folder = Folder::new();
     folder.file("rules.yaml", RULES);
     let profile = folder.file("mine.yaml", PROFILE.replace("risk: 80", "risk: 84"));
@@ -181,7 +181,7 @@ fn a_mistake_in_the_rule_set_is_shown_in_the_rule_set() {
     }
 }
 
-/// `docs/profiles.md` lists the signals that logs carry.
+/// `docs/profiles.md` lists the signals of logs.
 #[test]
 fn the_page_lists_every_signal() {
     let page = fs::read_to_string(format!("{ROOT}/docs/profiles.md")).unwrap();
@@ -233,7 +233,7 @@ fn hover(battery: impl Fn(f64) -> Option<f64>) -> String {
 }
 
 #[test]
-fn an_empty_battery_decides_with_the_shipped_profile() {
+fn an_empty_battery_determines_the_risk_of_the_shipped_profile() {
     let folder = Folder::new();
     let assess = |battery: &dyn Fn(f64) -> Option<f64>| {
         let log = folder.file("hover.csv", hover(battery));
@@ -255,13 +255,13 @@ fn an_empty_battery_decides_with_the_shipped_profile() {
             assert!(told.contains("battery_risk"), "{told}");
         }
     }
-    // It runs out on the way.
+    // The battery runs empty during the flight.
     let (_, told) = assess(&|t_s| Some((80.0 - 2.0 * t_s).max(0.0)));
     assert!(
         told.starts_with("FAIL") && told.contains("The battery had "),
         "{told}"
     );
-    // Unknown is never GOOD.
+    // An unknown level is never GOOD.
     for known_s in [0.0, 20.0] {
         let (code, told) = assess(&|t_s| (t_s < known_s).then_some(80.0));
         assert_eq!(code, Some(3), "{told}");
@@ -277,7 +277,7 @@ fn an_empty_battery_decides_with_the_shipped_profile() {
         told.contains("needs the signal `battery_remaining_pct`"),
         "{told}"
     );
-    // On board there is one risk.
+    // On board there is one risk only.
     for language in ["--rust", "--c", "--lua"] {
         let (code, out, told) = run(&["export", language, "flagred-battery"]);
         assert_eq!((code, out.as_str()), (Some(3), ""), "{language}");
@@ -305,7 +305,7 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
     };
     let is_known = |from_s: f64| move |t_s: f64| (t_s < from_s).then_some(80.0);
 
-    // The motors say FAIL, whatever is known of the battery.
+    // The motors cause FAIL, whatever is known of the battery.
     let without = |log: String| log.replace("battery_remaining_pct", "x");
     for log in [
         flight(failing, |_| None),
@@ -317,7 +317,7 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
         assert!(told.starts_with("FAIL"), "{told}");
         assert!(!told.contains("battery_risk"), "{told}");
     }
-    // Calm motors are not GOOD, and the reason is the battery.
+    // Calm motors alone are not GOOD, and the reason is the battery.
     for (log, why) in [
         (flight(calm, |_| None), "input `battery` has no known value"),
         (
@@ -333,7 +333,7 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
         assert_eq!(code, Some(3), "{told}");
         assert!(told.starts_with("NA") && told.contains(why), "{told}");
     }
-    // The battery says FAIL, whatever is known of the motors.
+    // The battery causes FAIL, whatever is known of the motors.
     let (code, told) = assess(flight(lost, |_| Some(0.0)));
     assert_eq!(code, Some(1), "{told}");
     assert!(
@@ -360,7 +360,7 @@ fn voting(folder: &Folder, rule: &str) -> String {
 }
 
 #[test]
-fn an_input_that_is_outvoted_is_a_warning_of_check() {
+fn check_warns_about_an_input_that_is_outvoted() {
     let folder = Folder::new();
     let profile = voting(&folder, "IF battery IS empty THEN risk IS very_high");
     let (code, told, _) = run(&["check", &profile]);
@@ -377,7 +377,7 @@ fn an_input_that_is_outvoted_is_a_warning_of_check() {
         (&battery["input"], &battery["term"]),
         (&"battery".into(), &"empty".into())
     );
-    // It is true: an empty battery is GOOD.
+    // The warning is correct: with an empty battery, the flight is GOOD.
     let log = folder.file("hover.csv", hover(|_| Some(0.0)));
     let (code, told, errors) = run(&["assess", "--profile", &profile, &log]);
     assert_eq!((code, errors.as_str()), (Some(0), ""), "{told}");
@@ -395,7 +395,7 @@ fn an_input_that_is_outvoted_is_a_warning_of_check() {
         "{highest} {said}"
     );
 
-    // A rule that every other one gives way to decides: `check` does not warn, and the flight fails.
+    // If all other rules exclude an empty battery, its rule decides: `check` does not warn, and the flight fails.
     let rules = fs::read_to_string(folder.at("rules.yaml")).unwrap();
     let guarded = rules.replace(
         "at_limit IS none THEN",
@@ -431,7 +431,7 @@ fn forklift(folder: &Folder, last_kg: f64, step_s: f64) -> [String; 2] {
 }
 
 #[test]
-fn a_profile_that_reads_no_motor_assesses_a_table_without_a_word_about_rotors() {
+fn a_profile_that_reads_no_motor_does_not_mention_rotors() {
     let folder = Folder::new();
     let [profile, table] = forklift(&folder, 1500.0, 0.1);
     let (code, told, _) = run(&["check", "--deny", "notes", &profile]);
@@ -492,13 +492,13 @@ fn a_profile_that_reads_no_motor_assesses_a_table_without_a_word_about_rotors() 
     let [_, table] = forklift(&folder, 900.0, 0.1);
     let (code, text, _) = run(&["assess", "--profile", &profile, &table]);
     assert!(code == Some(0) && text.starts_with("GOOD "), "{text}");
-    // The default profile needs motors, and says what does not.
+    // The default profile requires motors; its message names profiles that do not.
     let (code, text, _) = run(&["assess", &table]);
     assert!(
         code == Some(3) && text.contains("not a multirotor"),
         "{text}"
     );
-    // Each sample would be a flight of its own: milliseconds, for example.
+    // Each sample would be a separate flight, for example with times in milliseconds.
     let [_, table] = forklift(&folder, 1500.0, 100.0);
     let (code, text, _) = run(&["assess", "--profile", &profile, &table]);
     assert_eq!(code, Some(3), "{text}");
@@ -506,7 +506,7 @@ fn a_profile_that_reads_no_motor_assesses_a_table_without_a_word_about_rotors() 
 }
 
 #[test]
-fn a_missing_signal_is_assumed_and_every_reader_is_told() {
+fn every_output_reports_an_assumed_signal() {
     let folder = Folder::new();
     let battery =
         fs::read_to_string(format!("{ROOT}/rules/profiles/flagred-battery.yaml")).unwrap();
@@ -520,7 +520,7 @@ fn a_missing_signal_is_assumed_and_every_reader_is_told() {
     let (code, told, _) = run(&["check", "--deny", "notes", &profile]);
     assert_eq!(code, Some(0), "{told}");
 
-    // A hover: without the level, with it, and with a sensor that is lost.
+    // A hover: without the level, with it, and with a failed sensor.
     let flight = |column: &str, level: &dyn Fn(u32) -> String| {
         let mut table = format!("t_s,motor1,motor2,motor3,motor4{column}\n");
         for i in 0..1500 {
@@ -551,7 +551,7 @@ fn a_missing_signal_is_assumed_and_every_reader_is_told() {
         Vec::<String>::new()
     );
 
-    // A lost sensor is not a full battery, and neither is one that is empty from the beginning.
+    // A failed sensor does not count as a full battery, even if it failed from the beginning.
     for lost in [0, 10] {
         let level = |i: u32| {
             if i < lost {

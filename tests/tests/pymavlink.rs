@@ -10,26 +10,26 @@ use flagred_tests::{Folder, flagred};
 
 const PEER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peer/pymavlink_peer.py");
 
-/// `FLAGRED_PYTHON` names a Python that has pymavlink; without it that is `python3`.
+/// `FLAGRED_PYTHON` names a Python with pymavlink; the default is `python3`.
 fn python() -> Command {
     Command::new(std::env::var("FLAGRED_PYTHON").unwrap_or_else(|_| "python3".to_owned()))
 }
 
-/// A process that goes with the test, also where that fails.
+/// A process that is killed at the end of the test, even if the test fails.
 struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended already; nobody is left to be told.
+        // Errors are ignored: it may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// Every line of scripts/try-against-sitl runs, and every check holds with a simulator that does as it is told.
+/// Every line of scripts/try-against-sitl runs, and every check passes with a stand-in for the simulator.
 #[test]
 #[ignore = "needs Python with pymavlink, and takes two minutes: tests/peer/run.sh"]
-fn what_is_tried_against_the_simulator_holds_with_a_stand_in() {
+fn watch_works_against_a_stand_in_for_the_simulator() {
     const SPEED: &str = "3";
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
     let stand_in = python()
@@ -75,11 +75,11 @@ fn what_is_tried_against_the_simulator_holds_with_a_stand_in() {
     drop((watch, stand_in));
 }
 
-/// Every check of scripts/try-against-sitl holds with ArduCopter's simulator, with the script on board and without. `SITL_BIN`
-/// names the simulator and `SITL_PARAMS` the folder of its default parameters; without them nothing is flown.
+/// Every check of scripts/try-against-sitl passes with ArduCopter's simulator, with and without the script on board. `SITL_BIN`
+/// names the simulator and `SITL_PARAMS` the folder of its default parameters; without them nothing is run.
 #[test]
 #[ignore = "flies ArduCopter's simulator for half an hour: docs/live.md"]
-fn what_is_tried_against_the_simulator_holds() {
+fn watch_works_against_the_simulator() {
     if std::env::var_os("SITL_BIN").is_none() {
         return;
     }

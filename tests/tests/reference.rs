@@ -1,4 +1,4 @@
-//! The shipped profile, held against a second computation of what the documents say: `flagred_tests::reference`.
+//! The shipped profile compared with a second implementation of the documents: `flagred_tests::reference`.
 
 use std::f64::consts::TAU;
 
@@ -20,11 +20,11 @@ use flagred_tests::{
     reference_data,
 };
 
-/// Rounding: the sums are made in another order.
+/// Tolerance for rounding: the sums are computed in another order.
 const ROUNDING: f64 = 1e-9;
 
 #[test]
-fn the_shipped_flight_is_what_the_documents_say() {
+fn the_shipped_flight_agrees_with_the_documents() {
     let troubles = compare_log(&open(STEADY));
     assert_eq!(troubles, []);
 }
@@ -42,7 +42,7 @@ fn octa() -> Vec<Factors> {
     motors.collect()
 }
 
-/// A flight of eight motors with everything that resets or interrupts something.
+/// A flight of eight motors with every event that resets or interrupts something.
 fn eventful(rate_hz: f64, length_s: f64, late_s: f64) -> Vec<Sample> {
     let mut random = fastrand::Rng::with_seed(7);
     let count = (length_s * rate_hz) as u32;
@@ -50,11 +50,11 @@ fn eventful(rate_hz: f64, length_s: f64, late_s: f64) -> Vec<Sample> {
     for i in 0..count {
         let t_s = 20.0 + (f64::from(i) + 0.3 * random.f64()) / rate_hz;
         let during = |from_s: f64, to_s: f64| (from_s..to_s).contains(&(t_s - 20.0));
-        // Lost samples: a short time and a long one.
+        // Lost samples: a short gap and a long one.
         if during(40.0, 41.0) || during(75.0, 78.0) {
             continue;
         }
-        // For a while, just before a landing, and just after a take-off.
+        // For some time, just before a landing, and just after a take-off.
         let is_shaken = during(12.0, 18.0) || during(85.0 - late_s, 85.0) || during(89.0, 92.0);
         let shaken = if is_shaken { 0.32 } else { 0.004 };
         let mut commands = Vec::new();
@@ -80,7 +80,7 @@ fn eventful(rate_hz: f64, length_s: f64, late_s: f64) -> Vec<Sample> {
         if during(0.0, 3.0) || during(31.2, 33.0) || during(92.0, 95.0) {
             commands = vec![0.05; 8];
         }
-        // A land detector that chatters, and two landings.
+        // A land detector that flickers, and two landings.
         let in_air =
             !(during(0.0, 1.0) || during(25.0, 25.6) || during(85.0, 88.0) || during(96.0, 97.3));
         samples.push(Sample {
@@ -94,10 +94,10 @@ fn eventful(rate_hz: f64, length_s: f64, late_s: f64) -> Vec<Sample> {
 }
 
 #[test]
-fn an_eventful_flight_is_what_the_documents_say() {
+fn an_eventful_flight_agrees_with_the_documents() {
     let text = include_str!("../../rules/profiles/multirotor.yaml");
     let with_noise = text.replace("std_less_noise", "std");
-    // How long the vehicle is shaken before it lands, and the number of findings: a landing takes back a late WARN.
+    // How long the vehicle is shaken before it lands, and the number of findings: a landing cancels a late WARN.
     for (text, rate_hz, length_s, late_s, factors, findings) in [
         (text, 3.0, 100.0, 1.1, octa(), 3),
         (text, 10.0, 100.0, 0.45, octa(), 2),
@@ -119,9 +119,9 @@ fn an_eventful_flight_is_what_the_documents_say() {
     }
 }
 
-/// The motors fall from a calm hover to 3 % in the air.
+/// The motors drop from a calm hover to 3 % in the air.
 #[test]
-fn a_fall_is_what_the_documents_say() {
+fn a_fall_agrees_with_the_documents() {
     let text = include_str!("../../rules/profiles/multirotor.yaml");
     let samples: Vec<Sample> = (0..1300)
         .map(|i| {
@@ -212,7 +212,7 @@ const SOURCES: [(f64, &str); 22] = [
     ),
 ];
 
-/// A profile with each source, and a rule set that takes each into account.
+/// A profile with each source, and a rule set that uses each.
 fn of_sources() -> Estimator {
     let (mut inputs, mut sources, mut rules) = (String::new(), String::new(), String::new());
     for (i, (end, source)) in SOURCES.iter().enumerate() {
@@ -236,7 +236,7 @@ fn of_sources() -> Estimator {
 }
 
 #[test]
-fn every_statistic_of_every_source_is_what_the_documents_say() {
+fn every_statistic_of_every_source_agrees_with_the_documents() {
     let estimator = of_sources();
     let names = estimator.profile().signals();
     assert_eq!(names, ["yaw_des_deg", "yaw_deg", "battery_v", "cells_v"]);
@@ -247,7 +247,7 @@ fn every_statistic_of_every_source_is_what_the_documents_say() {
             let wanted_deg = 200.0 * (0.4 * t_s).sin();
             let is_at = (wanted_deg - 9.0 * (1.3 * t_s).cos() + 360.0) % 360.0;
             let battery_v = 16.0 - 0.02 * t_s + 0.3 * (0.9 * t_s).sin();
-            // The voltage is unknown for a while.
+            // The voltage is unknown for some time.
             let is_lost = (46.0..46.9).contains(&t_s);
             let battery_v = if is_lost { f64::NAN } else { battery_v };
             sample.signals = vec![wanted_deg, is_at, battery_v, 15.0 - 0.01 * t_s];
@@ -260,7 +260,7 @@ fn every_statistic_of_every_source_is_what_the_documents_say() {
     }
 }
 
-/// Flights at 4 to 50 Hz with 4, 6 and 8 motors; whether something is found in them.
+/// Flights at 4 to 50 Hz with 4, 6 and 8 motors, with their expected level.
 const FLIGHTS: [(&str, usize, Option<Level>); 12] = [
     ("real/flights/dronekit_test_01.csv.gz", 4, Some(Level::Fail)),
     ("real/flights/crash_quad_05.csv.gz", 4, Some(Level::Fail)),
@@ -278,7 +278,7 @@ const FLIGHTS: [(&str, usize, Option<Level>); 12] = [
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn flights_are_what_the_documents_say() {
+fn flights_agree_with_the_documents() {
     let mut inferred = 0;
     for (name, motors, worst) in FLIGHTS {
         let flight = open(reference_data().join(name));
@@ -299,7 +299,7 @@ fn open(path: impl AsRef<std::path::Path>) -> Flight {
     flagred_flightlog::open(path, &flagred_flightlog::Options::default()).unwrap()
 }
 
-/// Holds a log's assessment against the reference; gives what the reference finds.
+/// Compares the assessment of a log with the reference; returns the findings of the reference.
 fn compare_log(flight: &Flight) -> Vec<Trouble> {
     let estimator = shipped::flagred();
     let assessment = flagred::log::assess(flight, &estimator, Some(0.0));

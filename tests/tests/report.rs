@@ -1,5 +1,5 @@
-//! `flagred assess --html` and `--svg`: files that are whole, that need nothing beside them, and that say what the
-//! flight says.
+//! `flagred assess --html` and `--svg`: files that are complete, self-contained, and agree with the assessment of the
+//! flight.
 
 use std::{fmt::Write as _, fs, path::Path, process::Output};
 
@@ -43,7 +43,7 @@ fn curve(html: &str, class: &str) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn the_curves_hold_the_values_of_the_json_document() {
+fn the_curves_have_the_values_of_the_json_document() {
     let folder = Folder::new();
     let html = report(&[STEADY], &folder);
     let document: Value = serde_json::from_slice(&assess(&[STEADY], &["--json"]).stdout).unwrap();
@@ -77,7 +77,7 @@ fn the_curves_hold_the_values_of_the_json_document() {
     assert!((48.0..50.0).contains(&start_s));
 }
 
-/// Whatever would make a browser ask for something that is not in the file.
+/// The page contains nothing that makes a browser request another file.
 #[test]
 fn a_report_needs_no_network() {
     let folder = Folder::new();
@@ -127,7 +127,7 @@ fn ten_minutes_of_an_octocopter_stay_small() {
     assert_eq!(html.matches("<figure class=\"panel small\"").count(), 8 + 6);
 }
 
-/// Who can write into a log must not be able to write into the page that shows it.
+/// Text in a log must not become markup of the page that shows it.
 #[test]
 fn nothing_in_a_log_is_markup() {
     const SAID: &[u8] = b"EKF3 IMU0 MAG0 in-flight yaw alignment complete";
@@ -164,7 +164,7 @@ fn nothing_in_a_log_is_markup() {
     );
 }
 
-/// Calm, then two motors for 4 s near a limit and, 20 s later, at it, in turns: to the paper's rules WARN and FAIL.
+/// Calm, then two motors for 4 s near a limit and, 20 s later, at it, in turns: WARN and FAIL with the paper's rules.
 fn saturating_log() -> String {
     let mut log =
         String::from("## pwm_low_us: 1000\n## pwm_high_us: 2000\nt_s,pwm1,pwm2,pwm3,pwm4,in_air\n");
@@ -185,7 +185,7 @@ fn saturating_log() -> String {
 }
 
 #[test]
-fn the_gravest_finding_is_on_top_and_scales_have_units() {
+fn the_most_severe_finding_is_on_top_and_scales_have_units() {
     let folder = Folder::new();
     let log = folder.file("log.csv", saturating_log());
     let html = report(&[&log, "--profile", "flagred-paper"], &folder);
@@ -196,7 +196,7 @@ fn the_gravest_finding_is_on_top_and_scales_have_units() {
     for said in ["WARN from 67 %", "FAIL from 85 %", ">100 %<"] {
         assert!(risk.contains(said), "no `{said}`");
     }
-    // One cause, one line, with the motor at its limit.
+    // One cause is one line, with the motor at its limit.
     let told = html.matches("2 times, worst ").count();
     assert_eq!(told, 1);
     for said in [
@@ -226,7 +226,7 @@ fn several_flights_are_compared_on_one_scale() {
 }
 
 #[test]
-fn a_report_that_cannot_be_written_says_so_and_leaves_nothing() {
+fn a_report_that_cannot_be_written_fails_and_leaves_no_file() {
     let folder = Folder::new();
     let file = folder.at("missing/report.html");
     let output = assess(&[STEADY], &["--html", &file]);
@@ -255,9 +255,9 @@ fn a_report_that_cannot_be_written_says_so_and_leaves_nothing() {
     assert_eq!(output.status.code(), Some(2));
 }
 
-/// A log without an answer still shows what was read, and why there is none.
+/// The report of a log without a verdict shows the contents that were read, and the reason.
 #[test]
-fn no_answer_is_reported_as_none() {
+fn a_flight_without_a_verdict_is_reported_as_such() {
     let folder = Folder::new();
     let log = folder.at("ground.csv");
     let text = long_log(20, 10).replace(",1\n", ",0\n");

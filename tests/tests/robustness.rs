@@ -1,4 +1,4 @@
-//! What becomes of the shipped rules where the log is coarse, the limits are wrong, or something breaks.
+//! The shipped rules on coarse logs, with wrong limits, and with faults.
 //!
 //! `FLAGRED_SHARED=... cargo test -p flagred-tests --test robustness -- --ignored --nocapture` prints the figures.
 
@@ -129,7 +129,7 @@ fn coarse_logs_wrong_limits_and_faults() {
             "{name}: {near}"
         );
     }
-    // Two samples in a window say nothing of what varies: no number is better than a wrong one.
+    // Two samples in a window do not determine a variation: unknown is better than a wrong number.
     let Compared { unknown, .. } = compare(
         &flights,
         &as_flown,
@@ -148,14 +148,14 @@ fn coarse_logs_wrong_limits_and_faults() {
     faults(&flights, &as_flown);
 }
 
-/// What is said, against what is said as flown.
+/// Results compared with those of the unchanged flight.
 struct Compared {
     auc: f64,
-    /// Mean change of the risk, in points.
+    /// Mean change of the risk, in percentage points.
     change: f64,
-    /// The share of the steps whose risk changes by at most 3 points.
+    /// The share of steps whose risk changes by at most 3 points.
     near: f64,
-    /// The share of the steps without a risk.
+    /// The share of steps without a risk.
     unknown: f64,
 }
 
@@ -196,7 +196,7 @@ fn compare(flights: &[Simulated], as_flown: &[Said], said: &[Said]) -> Compared 
     }
 }
 
-/// From the fault of a flight to the first warning, by what failed.
+/// The time from the fault of a flight to the first warning, by kind of fault.
 fn faults(flights: &[Simulated], said: &[Said]) {
     println!(
         "faults: seconds from the fault to the warning, `-` where none came before the end of the judged time"
@@ -219,7 +219,7 @@ fn faults(flights: &[Simulated], said: &[Said]) {
             "{} {:12} {answer:>6}, {episodes} episodes{lost}",
             flight.id, flight.vehicle
         );
-        // Whoever is lost was warned of.
+        // There was a warning before every loss of control.
         assert!(flight.lost_s.is_none() || warned.is_some(), "{}", flight.id);
     }
 }

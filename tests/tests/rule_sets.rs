@@ -1,4 +1,4 @@
-//! The rule sets that ship: every one loads, compiles, and survives being written and read again.
+//! The shipped rule sets: every one loads, compiles, and reads back the same after it is written.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::{fs, path::Path};

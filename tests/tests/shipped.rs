@@ -1,6 +1,6 @@
-//! The rule sets and profiles that are shipped are those in `rules/`.
+//! The shipped rule sets and profiles equal those in `rules/`.
 //!
-//! A package holds only files below its own folder, so `flagred/rules/` has a copy of each. Edit the file in `rules/`, then
+//! A package can contain only files below its own folder, so `flagred/rules/` has a copy of each. Edit the file in `rules/`, then
 //! run `UPDATE_DOCUMENTS=1 cargo test --workspace --test shipped`, which copies it.
 
 use std::{env, fs, path::Path};
@@ -8,7 +8,7 @@ use std::{env, fs, path::Path};
 use flagred::shipped::{PROFILES, RULE_SETS};
 
 #[test]
-fn the_package_has_the_files_of_rules() {
+fn the_package_contains_the_files_of_rules() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let files = RULE_SETS
         .iter()

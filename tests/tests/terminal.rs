@@ -1,4 +1,4 @@
-//! What comes from outside is seen on a terminal, and does nothing there.
+//! Text from outside is visible on a terminal, and cannot control it.
 
 use std::fs;
 
@@ -7,17 +7,17 @@ use flagred_tests::{
     writing::{RULES, wild_flight},
 };
 
-/// Sets the title of the window, clears the screen, turns the direction of writing, begins a line of its own.
+/// Sets the window title, clears the screen, changes colour and writing direction.
 const HOSTILE: &str = "x\u{1b}]0;owned\u{7}\u{1b}[2J\u{9b}31m\u{202e}y";
 
-/// Whether no character of an output acts on a terminal, ends of lines and tabs apart.
+/// Whether an output contains no control characters except line ends and tabs.
 fn is_harmless(text: &str) -> bool {
     let acts =
         |c: char| c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{202a}'..='\u{202e}');
     !text.contains(acts)
 }
 
-/// All that a command says, on both streams.
+/// The output of a command on both streams.
 fn said(arguments: &[&str]) -> String {
     let output = flagred().args(arguments).output().unwrap();
     let both = [output.stdout, output.stderr].concat();
@@ -90,7 +90,7 @@ fn nothing_from_outside_acts_on_a_terminal() {
             names_it,
             "{arguments:?}: {said}"
         );
-        // A document may break lines within its markup.
+        // A document may have line breaks within its markup.
         let is_words = !arguments.contains(&"-") || arguments[0] == "convert";
         let forged = is_words && said.lines().any(|line| line.starts_with("GOOD"));
         assert!(!forged, "{arguments:?}: {said}");

@@ -1,4 +1,4 @@
-//! What a log does not tell of the motors or the end of a flight is never GOOD, whatever reads it.
+//! If a log lacks motors or the end of a flight, the verdict is never GOOD, with any reader.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use flagred_tests::{
     log_writer::{DataFlash, ULog, Value},
 };
 
-/// Runs `flagred assess` on a flight CSV; gives the exit code and what it printed.
+/// Runs `flagred assess` on a flight CSV; returns the exit code and the output.
 fn assess_csv(csv: &str, more: &[&str]) -> (Option<i32>, String) {
     let folder = Folder::new();
     let log = folder.file("flight.csv", csv.as_bytes());
@@ -27,8 +27,8 @@ fn assess_csv(csv: &str, more: &[&str]) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8(text).unwrap())
 }
 
-/// A flight of 60 s at 25 Hz of six motors, which swing against each other between their limits from 20 s on. `known` of the
-/// motors have cells, the others are empty.
+/// A flight of 60 s at 25 Hz of six motors, which oscillate between their limits, in alternation, from 20 s on. Motors not in
+/// `known` have empty cells.
 fn hexa(frame: &str, known: &[usize]) -> String {
     let mut csv = format!(
         "# vehicle_kind: multirotor\n{frame}t_s,motor1,motor2,motor3,motor4,motor5,motor6,in_air\n"
@@ -55,7 +55,7 @@ fn hexa(frame: &str, known: &[usize]) -> String {
 }
 
 #[test]
-fn a_motor_without_commands_is_the_reason_for_no_verdict() {
+fn a_motor_without_commands_prevents_a_verdict() {
     for frame in ["", "# frame: HEXA/X\n", "# frame: HEXA/PLUS\n"] {
         for profile in ["flagred", "flagred-paper"] {
             let more = ["--profile", profile];
@@ -81,7 +81,7 @@ fn a_motor_without_commands_is_the_reason_for_no_verdict() {
 }
 
 #[test]
-fn a_motor_without_commands_for_a_while_is_the_reason_unless_it_fails_elsewhere() {
+fn a_motor_without_commands_for_a_while_prevents_a_verdict_unless_the_flight_fails() {
     let whole = hexa("", &[0, 1, 2, 3, 4, 5]);
     let without = |from_s: f64, to_s: f64| -> String {
         let rows = whole.lines().map(|row| {
@@ -96,14 +96,14 @@ fn a_motor_without_commands_for_a_while_is_the_reason_unless_it_fails_elsewhere(
         });
         rows.collect()
     };
-    // The whole trouble without one motor.
+    // The whole episode without one motor.
     let (code, text) = assess_csv(&without(20.0, 60.0), &[]);
     assert_eq!(code, Some(3), "{text}");
     assert!(
         text.contains("motor 3 is unknown in the air from 20.0 to 60.0 s"),
         "{text}"
     );
-    // What was seen without it is FAIL all the same, and a moment without it changes nothing.
+    // An episode seen without the motor is still FAIL, and a moment without it changes nothing.
     for (from_s, to_s) in [(50.0, 60.0), (22.0, 22.5), (10.0, 10.5)] {
         let (code, text) = assess_csv(&without(from_s, to_s), &[]);
         assert_eq!((code, text.starts_with("FAIL")), (Some(1), true), "{text}");
@@ -111,7 +111,7 @@ fn a_motor_without_commands_for_a_while_is_the_reason_unless_it_fails_elsewhere(
 }
 
 /// A DataFlash log of a hexacopter: parameters, then rows of outputs from `outputs(t_s)` at 25 Hz. It takes off at 1 s.
-/// The clock goes back at a time, by a time.
+/// `clock_back` is a time and by how much the clock goes back then.
 fn dataflash(outputs: impl Fn(f64) -> [u16; 6], clock_back: Option<(f64, f64)>) -> Vec<u8> {
     let mut log = DataFlash::new();
     log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
@@ -150,7 +150,7 @@ fn dataflash(outputs: impl Fn(f64) -> [u16; 6], clock_back: Option<(f64, f64)>) 
 }
 
 #[test]
-fn outputs_that_are_no_pulses_are_the_reason_for_no_verdict() {
+fn outputs_that_are_not_pulses_prevent_a_verdict() {
     let outputs = |t_s: f64| {
         let high = if t_s > 30.0 { 2000 } else { 1500 };
         [1500, u16::MAX, high, 1500, u16::MAX, high]
@@ -169,9 +169,9 @@ fn outputs_that_are_no_pulses_are_the_reason_for_no_verdict() {
     }
 }
 
-/// Live, the same is `lost_in_air`: docs/live.md.
+/// On a live link, the same event is `lost_in_air`: docs/live.md.
 #[test]
-fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
+fn a_clock_that_goes_back_in_the_air_prevents_a_verdict() {
     let calm = |_| [1500; 6];
     let estimator = shipped::flagred();
     let read = |bytes: &[u8]| flagred_flightlog::read(bytes, &Options::default()).unwrap();
@@ -193,11 +193,11 @@ fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
             "the clock goes back in the air at 61.0 s"
         );
     }
-    // By a second: what came in that second is dropped.
+    // By one second: the rows of that second are dropped.
     let short = read(&dataflash(calm, Some((61.0, 1.0))));
     assert_eq!(short.rebooted_in_air_s, [61.0]);
     assert_eq!(assess(&short, &estimator, None).verdict.to_string(), "NA");
-    // A motor that is unknown around the reboot is unknown for that, not for itself.
+    // A motor that is unknown around the reboot is unknown because of the reboot, not by itself.
     let mut csv = String::from("t_s,motor1,motor2,motor3,motor4,in_air\n");
     for i in 0..1500 {
         let first = if (1000..1200).contains(&i) { "" } else { "0.5" };
@@ -212,7 +212,7 @@ fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
     else {
         panic!("{:?}", verdict(&format!("# rebooted_in_air_s: 40\n{csv}")));
     };
-    // Trouble before it is known.
+    // The trouble comes before the motor is known.
     let trouble = |t_s: f64| match t_s > 30.0 {
         true => [2000, 1000, 2000, 1000, 2000, 1000],
         false => [1500; 6],
@@ -226,7 +226,7 @@ fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
 }
 
 #[test]
-fn a_clock_of_px4_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
+fn a_clock_of_px4_that_goes_back_in_the_air_prevents_a_verdict() {
     let fly = |back_at: u64, back_by: u64| {
         let mut log = ULog::new(1_000_000);
         log.define("actuator_motors:uint64_t timestamp;float[12] control;");
@@ -264,7 +264,7 @@ fn a_flight_csv_whose_clock_starts_again_in_the_air_has_no_verdict() {
         text.contains("the clock goes back in the air at 40.0 s"),
         "{text}"
     );
-    // By a second, too: what came in that second is assessed.
+    // Also by one second: the rows of that second are assessed.
     let second: String = rows(1).lines().fold(String::new(), |mut text, row| {
         let (t_s, rest) = row.split_once(',').unwrap();
         let t_s: f64 = t_s.parse().unwrap();
@@ -277,7 +277,7 @@ fn a_flight_csv_whose_clock_starts_again_in_the_air_has_no_verdict() {
         text.contains("the clock goes back in the air at 40.0 s"),
         "{text}"
     );
-    // On the ground it is the next flight.
+    // On the ground, the next flight begins.
     let ground = "40,0,0,0,0,0\n41.5,0,0,0,0,0\n";
     let (code, text) = assess_csv(&format!("{head}{}{ground}{}", rows(1), rows(1)), &[]);
     assert_eq!(code, Some(0), "{text}");
@@ -285,7 +285,7 @@ fn a_flight_csv_whose_clock_starts_again_in_the_air_has_no_verdict() {
 }
 
 #[test]
-fn a_rate_below_that_of_the_windows_is_the_reason_for_no_verdict() {
+fn a_rate_too_low_for_the_windows_prevents_a_verdict() {
     for step_s in [1.0, 1.5, 2.5, 4.0] {
         let row = |i: u32| format!("{},0.4,0.41,0.42,0.4\n", 0.5 + f64::from(i) * step_s);
         let rows: String = (0..200).map(row).collect();
@@ -303,7 +303,7 @@ fn a_rate_below_that_of_the_windows_is_the_reason_for_no_verdict() {
 }
 
 #[test]
-fn cells_with_another_unit_are_refused_where_they_stand() {
+fn cells_with_another_unit_are_refused_with_their_position() {
     for (motor, t_step, said) in [
         (
             "1500",
@@ -335,7 +335,7 @@ fn cells_with_another_unit_are_refused_where_they_stand() {
         assert_eq!(code, Some(3), "{text}");
         assert!(text.contains(said) && text.contains("help: "), "{text}");
     }
-    // Rounding is clamped.
+    // Small excesses from rounding are clamped.
     let of = |motors: &str| {
         let row = |i: u32| format!("{},{motors}\n", f64::from(i) * 0.04);
         let rows: String = (0..1000).map(row).collect();

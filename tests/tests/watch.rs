@@ -1,4 +1,4 @@
-//! `flagred watch` against a stand-in vehicle: the same verdicts as `flagred assess`, whatever the link does.
+//! `flagred watch` with a stand-in vehicle: the same verdicts as `flagred assess`, over any link.
 
 use std::{
     net::TcpListener,
@@ -46,7 +46,7 @@ fn every_link_gives_the_verdict_of_assess(log: &Path) {
     );
 }
 
-/// The same verdict, the same risk where no packet is lost, and one text for each change of state.
+/// Asserts the same verdict, the same risk if no packet is lost, and one text for each change of state.
 fn says_what_assess_says(
     (said, vehicle): &(Said, StandIn),
     assessed: &Value,
@@ -77,7 +77,7 @@ fn says_what_assess_says(
     assert_eq!(said.code, Some(code), "{case}");
 }
 
-/// A watch that a vehicle has a connection to, in MAVLink 1.
+/// A watch with a TCP connection from a vehicle, in MAVLink 1.
 fn watch_tcp(flight: &Flight, keep: fn(&Value) -> bool) -> (Watch, StandIn) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let endpoint = format!("tcp:{}", listener.local_addr().unwrap());
@@ -87,7 +87,7 @@ fn watch_tcp(flight: &Flight, keep: fn(&Value) -> bool) -> (Watch, StandIn) {
     (watch, vehicle)
 }
 
-/// Flies a log over TCP.
+/// Replays a log over TCP.
 fn fly_tcp(flight: &Flight, speed: Speed) -> (Said, StandIn) {
     let (watch, mut vehicle) = watch_tcp(flight, |_| true);
     vehicle.meet();
@@ -119,7 +119,7 @@ fn reference_flights_get_the_verdict_of_assess_over_every_link() {
     });
 }
 
-/// As slow as it was flown: two minutes a flight, so only where it is asked for (`--ignored`).
+/// At the original speed: two minutes per flight, so only on request (`--ignored`).
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn reference_flights_get_the_verdict_of_assess_in_real_time() {
@@ -157,7 +157,7 @@ fn reference_flights_get_the_verdict_of_assess_in_real_time() {
     });
 }
 
-/// One flight after the other, all day, as fast as it goes: `scripts/measure-live`.
+/// One flight after the other, for a whole day, as fast as possible: `scripts/measure-live`.
 #[test]
 #[ignore = "a day of flights"]
 fn a_day_of_flights_takes_no_more_memory_than_an_hour() {

@@ -20,21 +20,21 @@ use flagred_tests::{
 };
 use serde_json::Value;
 
-/// Sockets, and vehicles that share each: the numbers of their systems are the same on all.
+/// Sockets, and vehicles per socket: the system numbers are the same on all sockets.
 const SOCKETS: usize = 10;
 const SYSTEMS: usize = 50;
 const VEHICLES: usize = SOCKETS * SYSTEMS;
-/// Motor commands a second of each, sent one after the other in so many parts of that time.
+/// Motor commands per second of each vehicle, sent in this many parts of the second.
 const RATE_HZ: u32 = 10;
 const PARTS: usize = 10;
-/// The vehicle whose motors are at their limits from the middle on, and the one that falls silent then.
+/// The vehicle whose motors are at their limits from the middle on, and the one that becomes silent then.
 const TROUBLED: usize = 123;
 const SILENT: usize = 321;
 
 /// When the commands of a vehicle at a time of its clock, in ms, were sent.
 type Sent = Arc<Mutex<HashMap<(usize, u32), Instant>>>;
 
-/// All lines of the watch, the delay of each risk, and how the watch did.
+/// All lines of the watch, the delay of each risk, and resource figures.
 struct Watched {
     lines: Vec<Value>,
     late_ms: Vec<f64>,
@@ -98,7 +98,7 @@ fn fly(seconds: u32) -> Watched {
                     let at = sent.lock().unwrap().remove(&(vehicle, t_ms));
                     late_ms.extend(at.map(|at| (now - at).as_secs_f64() * 1e3));
                 }
-                // Ten minutes of all risks are millions.
+                // The risks of ten minutes are millions of lines.
                 if line["watch"]["event"] != "risk"
                     || line["vehicle"].as_str().unwrap().starts_with("7@")
                 {
@@ -174,7 +174,7 @@ fn name(sockets: &[UdpSocket], vehicle: usize) -> String {
     format!("{}@{address}", vehicle % SYSTEMS + 1)
 }
 
-/// Memory in kB; 0 where the system does not tell.
+/// Memory in kB; 0 if the system does not report it.
 fn resident_kb(process: u32) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmRSS:"));
@@ -183,7 +183,7 @@ fn resident_kb(process: u32) -> u64 {
     })
 }
 
-/// Seconds of processor time; 0 where the system does not tell.
+/// Seconds of processor time; 0 if the system does not report it.
 fn cpu_s(process: u32) -> f64 {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
     let fields = stat
@@ -198,7 +198,7 @@ fn cpu_s(process: u32) -> f64 {
     ticks.sum::<f64>() / 100.0
 }
 
-/// The sum of the shares of packets that each vehicle lost; on a busy machine the system drops some.
+/// The sum of the shares of packets that each vehicle lost; on a busy machine, the system drops some.
 fn check(watched: &Watched, seconds: u32) -> f64 {
     let summaries: Vec<&Value> = (watched.lines.iter())
         .filter(|line| line["verdict"].is_string())
@@ -211,7 +211,7 @@ fn check(watched: &Watched, seconds: u32) -> f64 {
             .count()
     };
     assert_eq!((of("GOOD"), of("NA")), (VEHICLES - 2, 1));
-    // The gravest first, and only one is.
+    // The vehicle in most danger comes first, and only one is in danger.
     assert!(
         summaries[0]["verdict"] == "FAIL" || summaries[0]["verdict"] == "WARN",
         "{}",
@@ -244,7 +244,7 @@ fn check(watched: &Watched, seconds: u32) -> f64 {
         (&VEHICLES.into(), &0.into())
     );
     assert_eq!(watched.code, Some(1));
-    // A risk line for each command that came after the first second or two.
+    // A risk line for each command after the first two seconds.
     let expected = (seconds - 5) as usize * RATE_HZ as usize * VEHICLES;
     assert!(
         watched.late_ms.len() > expected,
@@ -264,7 +264,7 @@ fn check(watched: &Watched, seconds: u32) -> f64 {
 }
 
 #[test]
-fn five_hundred_vehicles_are_followed_and_the_one_in_trouble_stands_first() {
+fn five_hundred_vehicles_are_followed_and_the_one_in_trouble_is_listed_first() {
     let watched = fly(16);
     check(&watched, 16);
     let (of_all, of_one) = (schema("watch-all"), schema("watch"));
@@ -277,7 +277,7 @@ fn five_hundred_vehicles_are_followed_and_the_one_in_trouble_stands_first() {
     assert!(watched.resident_kb < 300_000, "{} kB", watched.resident_kb);
 }
 
-/// With the machine for itself.
+/// On an otherwise idle machine.
 #[test]
 #[ignore = "ten minutes on a machine that does nothing else"]
 fn five_hundred_vehicles_for_ten_minutes() {
@@ -288,7 +288,7 @@ fn five_hundred_vehicles_for_ten_minutes() {
 }
 
 #[test]
-fn several_endpoints_need_all_and_nothing_is_sent() {
+fn several_endpoints_require_the_option_all_and_send_nothing() {
     for (arguments, said) in [
         (
             &["udpin:127.0.0.1:0", "udpin:127.0.0.1:0"][..],

@@ -17,9 +17,9 @@ fn is_known(event: &Value) -> bool {
     event["risk"].is_number()
 }
 
-/// Twice in a window is too little to know a deviation by.
+/// Two samples in a window are too few for a deviation.
 #[test]
-fn a_vehicle_at_1_hz_has_no_risk_and_no_verdict_and_is_not_good() {
+fn a_vehicle_at_1_hz_has_no_risk_and_no_verdict() {
     let flight = flight(Path::new(STEADY));
     let watch = Watch::udp(&[]);
     let mut vehicle = watch.vehicle(&flight, Link::default());
@@ -51,9 +51,9 @@ fn a_vehicle_at_1_hz_has_no_risk_and_no_verdict_and_is_not_good() {
     assert_eq!(vehicle.heard.texts(), []);
 }
 
-/// Another station slows the motor commands down in flight; the watch asks again, and the risk is known again.
+/// Another station slows down the motor commands in flight; the watch repeats its request, and the risk is known again.
 #[test]
-fn a_stream_that_another_station_slowed_down_is_asked_for_again() {
+fn a_stream_that_another_station_slowed_down_is_requested_again() {
     let flight = flight(Path::new(STEADY));
     let watch = Watch::udp(&[]);
     let mut vehicle = watch.vehicle(&flight, Link::default());
@@ -114,9 +114,9 @@ fn motors_on_outputs_9_to_12_and_17_to_20_get_the_risk_of_assess() {
     }
 }
 
-/// What the answer rests on: told when ready, and kept in the recording.
+/// The parameters behind the verdict are reported when ready, and are in the recording.
 #[test]
-fn the_parameters_that_the_answer_rests_on_are_told_and_recorded() {
+fn the_parameters_behind_the_verdict_are_reported_and_recorded() {
     let flight = flight(Path::new(STEADY));
     let folder = flagred_tests::Folder::new();
     let path = folder.path().join("flight.tlog");

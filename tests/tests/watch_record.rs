@@ -1,4 +1,4 @@
-//! What `flagred watch` recorded gives `flagred assess` what it said.
+//! `flagred assess` of a recording of `flagred watch` agrees with the watch.
 
 use std::path::Path;
 
@@ -10,8 +10,8 @@ use flagred_tests::{
 };
 use serde_json::Value;
 
-/// What was recorded gives `assess` what `watch` said of it, at the same times: a flight as fast as it goes arrives in a
-/// second or so, but both go by the vehicle's clock.
+/// The recording gives `assess` the same results as `watch`, at the same times: a flight at full speed arrives in about a second,
+/// but both use the vehicle's clock.
 fn a_recording_gives_assess_what_watch_said(log: &Path) {
     let flight = flight(log);
     let name = log.file_stem().unwrap().to_string_lossy().into_owned();
@@ -24,7 +24,7 @@ fn a_recording_gives_assess_what_watch_said(log: &Path) {
         &["--record", file],
         Speed::Fastest,
     );
-    // A recording is not written over.
+    // A recording is not overwritten.
     let (code, told) = refused("udpin:127.0.0.1:0", &["--record", file]);
     assert!(code == Some(2) && told.contains("exists already"), "{told}");
     let assessed = assess(&path);
@@ -60,13 +60,13 @@ fn a_recording_gives_assess_what_watch_said(log: &Path) {
 }
 
 #[test]
-fn the_recording_of_the_shipped_flight_gives_assess_what_watch_said() {
+fn assess_of_the_recorded_shipped_flight_agrees_with_watch() {
     a_recording_gives_assess_what_watch_said(Path::new(STEADY));
 }
 
-/// Nobody asks for a parameter: both assume the same limits, and say so.
+/// No parameter is requested: both assume the same limits, and report that.
 #[test]
-fn a_recording_without_parameters_gives_assess_what_watch_said() {
+fn assess_of_a_recording_without_parameters_agrees_with_watch() {
     let flight = flight(Path::new(STEADY));
     let folder = Folder::new();
     let path = folder.path().join("flight.tlog");
@@ -82,13 +82,13 @@ fn a_recording_without_parameters_gives_assess_what_watch_said() {
     assert_eq!(ready["assumed"], assessed["vehicle"]["assumed"]);
     assert_eq!(ready["assumed"].as_array().unwrap().len(), 3, "{ready}");
     let (share, difference) = compare(&said, &assessed);
-    // At 30 times the speed there are no lines for the second in which parameters are awaited; the verdict is of all.
+    // At 30 times the speed, there are no lines for the second of waiting for parameters; the verdict is of the whole flight.
     assert!(share > 0.6 && difference < 0.1, "{share}, {difference}");
 }
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn the_recording_of_a_flight_that_nearly_crashed_gives_assess_what_watch_said() {
+fn assess_of_the_recorded_near_crash_agrees_with_watch() {
     let data = reference_data();
     a_recording_gives_assess_what_watch_said(&data.join("flights/octoquad.BIN"));
 }

@@ -1,9 +1,9 @@
-//! Telemetry streams that `flagred watch` recorded beside the autopilots' own simulators, given to a watch again and to
-//! `assess`: both say the same.
+//! Telemetry streams that `flagred watch` recorded from the autopilots' own simulators, replayed to a watch and to
+//! `assess`: both agree.
 
 use std::{fs, io::Read, path::Path};
 
-use flagred::{flight::Verdict, shipped};
+use flagred::{estimator::Estimator, flight::Verdict, shipped};
 use flagred_cli::fuzzing::Watch;
 use flagred_flightlog::mavlink::{
     Next,
@@ -13,21 +13,20 @@ use flagred_flightlog::mavlink::{
 use flagred_tests::reference_data;
 use serde_json::Value;
 
-/// How often a watch looks at the time.
+/// The interval at which a watch reads the time.
 const TICK_S: f64 = 0.02;
-/// Bytes of the time stamp before each packet of a telemetry log.
+/// Bytes of the timestamp before each packet of a telemetry log.
 const STAMP: usize = 8;
 
-/// What a watch said of a stream, and what it sent.
+/// The output of a watch for a stream, and the packets that it sent.
 struct Replay {
     events: Vec<Value>,
     sent: Vec<MavMessage>,
 }
 
 impl Replay {
-    fn of(stream: &[u8]) -> Replay {
-        let estimator = shipped::flagred();
-        let mut watch = Watch::new(&estimator);
+    fn of(stream: &[u8], estimator: &Estimator) -> Replay {
+        let mut watch = Watch::new(estimator);
         let mut replay = Replay {
             events: Vec::new(),
             sent: Vec::new(),
@@ -73,7 +72,7 @@ impl Replay {
             .filter(move |event| event["event"] == name)
     }
 
-    /// The gravest verdict of its flights; one that is not known counts where nothing else is known.
+    /// The worst verdict of its flights; an unknown one counts only if all are unknown.
     fn verdict(&self) -> String {
         let ends = ["landed", "left_in_air", "lost_in_air"];
         let over = ends.iter().flat_map(|name| self.all(name));
@@ -95,10 +94,10 @@ fn stream(path: &Path) -> Vec<u8> {
     bytes
 }
 
-/// The verdict of `assess`, and what it assumes.
-fn assess(stream: &[u8]) -> (Verdict, Vec<String>) {
+/// The verdict of `assess`, and its assumptions.
+fn assess(stream: &[u8], estimator: &Estimator) -> (Verdict, Vec<String>) {
     let flight = flagred_flightlog::read(stream, &flagred_flightlog::Options::default()).unwrap();
-    let assessment = flagred::log::assess(&flight, &shipped::flagred(), None);
+    let assessment = flagred::log::assess(&flight, estimator, None);
     (assessment.verdict, flight.assumed)
 }
 
@@ -109,7 +108,7 @@ fn px4(name: &str) -> Vec<u8> {
 /// PX4's simulator does not report the limits of its outputs.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn px4_streams_have_the_verdict_of_assess_on_the_same_assumptions() {
+fn px4_streams_get_the_verdict_of_assess_with_the_same_assumptions() {
     for (name, verdict) in [
         ("c1", "GOOD"),
         ("w1", "GOOD"),
@@ -119,20 +118,20 @@ fn px4_streams_have_the_verdict_of_assess_on_the_same_assumptions() {
         ("m2", "FAIL"),
     ] {
         let bytes = px4(name);
-        let replay = Replay::of(&bytes);
-        let (assessed, assumed) = assess(&bytes);
+        let replay = Replay::of(&bytes, &shipped::flagred());
+        let (assessed, assumed) = assess(&bytes, &shipped::flagred());
         assert_eq!(replay.verdict(), verdict, "{name}");
         assert_eq!(assessed.to_string(), verdict, "{name}: {assessed:?}");
         let ready = replay.all("ready").last().unwrap();
         assert_eq!(ready["assumed"], serde_json::json!(assumed), "{name}");
         assert_eq!(assumed, ["commands from 1000 to 2000 us"], "{name}");
-        // Parameters that come in the air, 887 of them in one stream, change nothing.
+        // Parameters that arrive in the air, 887 of them in one stream, change nothing.
         assert_eq!(replay.all("took_off").count(), 1, "{name}");
         let parts = replay
             .all("left_in_air")
             .filter(|part| part["why"] == "set_up_anew");
         assert_eq!(parts.count(), 0, "{name}");
-        // The risk is known soon after take-off, although thrust coefficients, which that watch did not ask for, never came.
+        // The risk is known soon after take-off, although thrust coefficients, which that watch did not request, never came.
         let first_s = |name: &str, is: &dyn Fn(&&Value) -> bool| {
             let first = replay.all(name).find(is).unwrap();
             first["t_s"].as_f64().unwrap()
@@ -140,7 +139,7 @@ fn px4_streams_have_the_verdict_of_assess_on_the_same_assumptions() {
         let blind_s =
             first_s("risk", &|risk| risk["risk"].is_number()) - first_s("took_off", &|_| true);
         assert!(blind_s < 2.0, "{name}: {blind_s}");
-        // PX4 sends ATTITUDE and motor commands at 50 Hz: nobody's rate is lowered.
+        // PX4 sends ATTITUDE and motor commands at 50 Hz: no rate is lowered.
         let lowered = replay.sent.iter().filter(|message| {
             matches!(message, MavMessage::COMMAND_LONG(command)
                 if command.command == MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL && command.param1 != 245.0)
@@ -150,10 +149,24 @@ fn px4_streams_have_the_verdict_of_assess_on_the_same_assumptions() {
     }
 }
 
-/// In the streams of ArduPilot's simulator everything is known, but for those without a parameter.
+/// PX4 sends SYS_STATUS without a request.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn ardupilot_streams_have_the_verdict_of_assess() {
+fn px4_streams_have_the_battery_risk_of_assess() {
+    let estimator = shipped::flagred_battery();
+    for name in ["c1", "w1", "m1"] {
+        let bytes = px4(name);
+        let replay = Replay::of(&bytes, &estimator);
+        let (assessed, _) = assess(&bytes, &estimator);
+        assert_eq!(replay.verdict(), assessed.to_string(), "{name}");
+        assert_ne!(replay.verdict(), "NA", "{name}");
+    }
+}
+
+/// In the streams of ArduPilot's simulator, everything is known, except in those without a parameter.
+#[test]
+#[ignore = "needs FLAGRED_SHARED"]
+fn ardupilot_streams_get_the_verdict_of_assess() {
     let mut streams: Vec<_> = fs::read_dir(reference_data().join("sitl5/streams"))
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -163,12 +176,15 @@ fn ardupilot_streams_have_the_verdict_of_assess() {
     let mut wrong = Vec::new();
     for path in streams {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        // Two flights, of which the first was lost in the air: `assess` has one verdict of both.
+        // Two flights, of which the first was lost in the air: `assess` has one verdict for both.
         if name.starts_with("w_kill") || name.starts_with("w_reboot") {
             continue;
         }
         let bytes = stream(&path);
-        let (replay, (assessed, assumed)) = (Replay::of(&bytes), assess(&bytes));
+        let (replay, (assessed, assumed)) = (
+            Replay::of(&bytes, &shipped::flagred()),
+            assess(&bytes, &shipped::flagred()),
+        );
         let watched = replay.verdict();
         eprintln!("{name}: {watched}, {assessed}, assumed {assumed:?}");
         if watched != assessed.to_string() {
@@ -178,12 +194,12 @@ fn ardupilot_streams_have_the_verdict_of_assess() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// The other station of this flight asks for 1 Hz every three seconds.
+/// The other station of this flight requests 1 Hz every three seconds.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn the_station_that_slows_a_recorded_stream_is_named() {
     let bytes = stream(&reference_data().join("sitl5/streams/w_1hz_contend.tlog.gz"));
-    let replay = Replay::of(&bytes);
+    let replay = Replay::of(&bytes, &shipped::flagred());
     let slowed: Vec<&Value> = replay.all("slowed").collect();
     assert!(!slowed.is_empty());
     for event in slowed {

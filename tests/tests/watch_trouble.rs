@@ -1,4 +1,4 @@
-//! `flagred watch` where the link, the vehicle or the machine does what it should not.
+//! `flagred watch` with faults of the link, the vehicle or the machine.
 
 use std::{
     net::{TcpListener, TcpStream, UdpSocket},
@@ -17,7 +17,7 @@ use flagred_tests::{
 use serde_json::json;
 
 #[test]
-fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
+fn a_silent_link_and_a_reboot_are_reported_and_discard_the_old_risk() {
     let flight = flight(Path::new(STEADY));
     let watch = Watch::udp(&[]);
     let mut vehicle = watch.vehicle(&flight, Link::default());
@@ -26,7 +26,7 @@ fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
     vehicle.fly(&flight, Speed::Fastest, air.start_s, air.start_s + 40.0);
     vehicle.linger(Duration::from_millis(2300));
     let values_then = vehicle.heard.values("FR_RISK").len();
-    // It comes back, half a minute later on its own clock: the windows start anew.
+    // It returns, half a minute later on its own clock: the windows start empty.
     vehicle.fly(
         &flight,
         Speed::Fastest,
@@ -40,7 +40,7 @@ fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
         air.start_s + 80.0,
     );
     assert!(vehicle.heard.values("FR_RISK").len() > values_then);
-    // It starts anew, and takes its time for that.
+    // It reboots, which takes time.
     vehicle.linger(Duration::from_millis(2300));
     for t_ms in [100, 200, 300, 400] {
         vehicle.send(&servo(t_ms * 1000, &[1000; 16]));
@@ -60,7 +60,7 @@ fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
         first["risk"].is_null() && first["unknown"].is_string(),
         "{first}"
     );
-    // The flight is over with the reboot, and nobody saw it land.
+    // The reboot ends the flight, and no landing was received.
     assert_eq!(said.all("landed").count(), 0);
     let lost = said.one("lost_in_air");
     assert_eq!(
@@ -106,9 +106,9 @@ fn other_vehicles_and_ground_stations_are_not_followed() {
     assert_eq!(said.one("another_vehicle")["system"], 7);
 }
 
-/// Whatever comes in between, the flight is assessed as if it had not.
+/// The flight is assessed as if nothing else had been received.
 #[test]
-fn garbage_and_wild_values_are_counted_and_raise_no_alarm() {
+fn garbage_and_extreme_values_are_counted_and_raise_no_alarm() {
     let flight = flight(Path::new(STEADY));
     let watch = Watch::udp(&[]);
     let mut vehicle = watch.vehicle(&flight, Link::default());
@@ -128,10 +128,10 @@ fn garbage_and_wild_values_are_counted_and_raise_no_alarm() {
             })
             .collect();
         vehicle.raw(&garbage);
-        // Longer than any packet, and the beginning of one that is cut off.
+        // Longer than any packet, and the beginning of a truncated one.
         vehicle.raw(&[0xfd; 5000]);
         vehicle.raw(&[0xfd, 30, 0, 0, 1, 1, 1, 36, 0, 0, 9]);
-        // Wild values: no pulse at all, and times from nowhere.
+        // Extreme values: invalid pulses, and impossible times.
         vehicle.send(&servo(((at_s - 0.01) * 1e6) as u32, &[u16::MAX; 16]));
         vehicle.send(&servo(u32::MAX, &[u16::MAX; 16]));
         wild(&mut vehicle, ((at_s - 0.01) * 1e6) as u32);
@@ -161,7 +161,7 @@ fn garbage_and_wild_values_are_counted_and_raise_no_alarm() {
     }
 }
 
-/// The messages that are read: number, the byte that goes into the checksum with them, a payload that is in order, and
+/// The messages that are read: number, the extra byte of the checksum, a valid payload, and
 /// the width of each field on the wire (<https://mavlink.io/en/messages/common.html>).
 fn messages_read(t_us: u32) -> Vec<(u8, u8, Vec<u8>, Vec<usize>)> {
     let mut heartbeat = vec![0; 4];
@@ -201,12 +201,12 @@ fn messages_read(t_us: u32) -> Vec<(u8, u8, Vec<u8>, Vec<usize>)> {
 fn packet(message: u8, extra: u8, payload: &[u8]) -> Vec<u8> {
     let mut log = Tlog::default();
     log.packet(0, 2, (1, 1), (u32::from(message), extra, 0), payload);
-    // Without the time stamp of a log.
+    // Without the timestamp of a log.
     log.bytes.split_off(8)
 }
 
-/// Every field of every message that is read holds all ones in turn (the largest number, 65535, NaN of a float), and then
-/// all of them at once; and the floats the infinities.
+/// Sends every message with each field in turn, and then all fields, set to all ones (the largest number, 65535, NaN of a float);
+/// floats also as infinities.
 fn wild(vehicle: &mut StandIn, t_us: u32) {
     for (message, extra, payload, widths) in messages_read(t_us) {
         assert_eq!(payload.len(), widths.iter().sum::<usize>(), "{message}");
@@ -228,9 +228,9 @@ fn wild(vehicle: &mut StandIn, t_us: u32) {
     }
 }
 
-/// The checksum of these tests is that of the library, so that wild values arrive and are not skipped as damaged.
+/// The checksum of these tests is that of the library, so that extreme values arrive and are not skipped as damaged.
 #[test]
-fn wild_packets_are_packets() {
+fn packets_with_extreme_values_are_valid_packets() {
     use flagred_flightlog::mavlink::{Next, next_packet};
     for (message, extra, payload, _) in messages_read(1) {
         let bytes = packet(message, extra, &payload);
@@ -242,7 +242,7 @@ fn wild_packets_are_packets() {
 }
 
 #[test]
-fn ports_that_cannot_be_had_are_told_with_what_to_do() {
+fn unavailable_ports_are_reported_with_a_remedy() {
     let taken = UdpSocket::bind("127.0.0.1:0").unwrap();
     let (code, told) = refused(&format!("udpin:{}", taken.local_addr().unwrap()), &[]);
     assert_eq!(code, Some(3));
@@ -279,10 +279,10 @@ fn ports_that_cannot_be_had_are_told_with_what_to_do() {
     assert!(code == Some(2) && told.contains("sends first"), "{told}");
 }
 
-/// As a user whom the port does not belong to.
+/// As a user who may not open the port.
 #[test]
 #[cfg(unix)]
-fn a_serial_port_without_permission_is_told_with_what_to_do() {
+fn a_serial_port_without_permission_is_reported_with_a_remedy() {
     use std::os::unix::{fs::PermissionsExt, process::CommandExt};
     let path = std::env::temp_dir().join(format!("flagred-port-{}", std::process::id()));
     std::fs::write(&path, "").unwrap();
@@ -290,7 +290,7 @@ fn a_serial_port_without_permission_is_told_with_what_to_do() {
     let mut watch = flagred();
     watch.args(["watch", &format!("{}:57600", path.display())]);
     if std::fs::File::open(&path).is_ok() {
-        // This user may open anything: be nobody.
+        // This user may open anything, so the watch runs as `nobody`.
         watch.uid(65534);
     }
     let output = watch.output();
@@ -312,7 +312,7 @@ fn a_serial_port_without_permission_is_told_with_what_to_do() {
 
 /// A watch is often started before the vehicle, its network and its cable.
 #[test]
-fn an_endpoint_that_is_not_there_yet_is_waited_for() {
+fn watch_waits_for_an_endpoint_that_does_not_exist_yet() {
     let flight = flight(Path::new(STEADY));
     let free = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = free.local_addr().unwrap();
@@ -341,7 +341,7 @@ fn an_endpoint_that_is_not_there_yet_is_waited_for() {
 }
 
 #[test]
-fn a_connection_that_breaks_is_opened_again() {
+fn a_broken_connection_is_reopened() {
     let flight = flight(Path::new(STEADY));
     let watch = Watch::start("tcpin:127.0.0.1:0", &[]);
     for round in 0..2 {
@@ -365,7 +365,7 @@ fn a_connection_that_breaks_is_opened_again() {
 }
 
 #[test]
-fn nothing_known_is_no_good() {
+fn an_unknown_risk_is_not_good() {
     let watch = Watch::udp(&[]);
     let said = watch.end();
     let ended = said.one("ended");
@@ -376,9 +376,9 @@ fn nothing_known_is_no_good() {
     assert_eq!(said.code, Some(3));
 }
 
-/// A link that is killed in the air is no landing; a watch that is ended there is none either, but has seen all.
+/// A link that breaks in the air is not a landing; nor is a watch that is ended there, but it has received everything.
 #[test]
-fn a_flight_whose_end_nobody_saw_is_not_landed() {
+fn a_flight_whose_end_was_not_received_is_not_reported_as_landed() {
     let flight = flight(Path::new(STEADY));
     let air = flight.in_air.as_ref().unwrap().spans[0];
     for (silent_ms, event, why, verdict, code) in [

@@ -1,4 +1,4 @@
-//! `flagred watch` where others speak in the name of the vehicle, or watch it too.
+//! `flagred watch` with other senders that use the vehicle's identity, or with other watches.
 
 use std::{net::TcpStream, path::Path, time::Duration};
 
@@ -25,7 +25,7 @@ fn steady() -> (Flight, f64) {
     (flight, start_s)
 }
 
-/// Every line is one that `flagred schema watch` describes.
+/// Asserts that every line matches `flagred schema watch`.
 fn valid(said: &Said) {
     let schema = schema::schema("watch");
     for line in &said.events {
@@ -33,7 +33,7 @@ fn valid(said: &Said) {
     }
 }
 
-/// Motors at their limits, a landing and a parameter, in the name of the vehicle.
+/// Sends motors at their limits, a landing and a parameter, with the identity of the vehicle.
 fn lie(liar: &mut StandIn, t_s: f64) {
     liar.beat(false, false);
     liar.send(&servo((t_s * 1e6) as u32, &[2000; 16]));
@@ -55,7 +55,7 @@ fn maximum(value_us: f32) -> MavMessage {
 }
 
 #[test]
-fn a_second_sender_is_told_and_neither_believed_nor_answered() {
+fn a_second_sender_is_reported_and_ignored() {
     let (flight, start_s) = steady();
     let folder = Folder::new();
     let file = folder.at("flight.tlog");
@@ -86,11 +86,11 @@ fn a_second_sender_is_told_and_neither_believed_nor_answered() {
     assert!(!vehicle.heard.values("FR_RISK").is_empty());
     assert!(liar.heard.messages.is_empty(), "{:?}", liar.heard);
     valid(&said);
-    // Nor is it believed when the recording is assessed.
+    // Nor is it used when the recording is assessed.
     let assessed = assess(Path::new(&file));
     assert_eq!(assessed["verdict"], "GOOD");
     let (share, difference) = compare(&said, &assessed);
-    // One sample of 475 is in one of them only.
+    // One sample of 475 is in only one of them.
     assert!(share > 0.99 && difference < 0.5, "{share}, {difference}");
 }
 
@@ -113,10 +113,10 @@ fn a_vehicle_that_comes_back_from_another_address_is_followed_after_a_silence() 
 }
 
 #[test]
-fn of_two_watches_one_speaks() {
+fn only_one_of_two_watches_sends() {
     let (flight, start_s) = steady();
     let first = Watch::udp(&[]);
-    // Their ages differ by more than a tenth of a second.
+    // Ages that differ by more than a tenth of a second.
     std::thread::sleep(Duration::from_millis(400));
     let second = Watch::udp(&[]);
     let mut vehicle = first.vehicle(&flight, Link::default());
@@ -142,7 +142,7 @@ fn of_two_watches_one_speaks() {
     );
     assert!(vehicle.heard.values("FR_RISK").len() > 2);
     assert_eq!(vehicle.heard_elsewhere.values("FR_RISK").len(), 0);
-    // Both know the risk.
+    // Both report the risk.
     for said in [&first, &second] {
         assert_eq!(said.one("left_in_air")["verdict"], "GOOD");
         valid(said);
@@ -150,7 +150,7 @@ fn of_two_watches_one_speaks() {
 }
 
 #[test]
-fn with_a_key_only_signed_packets_are_believed_and_those_sent_are_signed() {
+fn with_a_key_only_signed_packets_are_accepted_and_sent() {
     let (flight, start_s) = steady();
     let folder = Folder::new();
     let file = folder.file("key", "0b".repeat(32));
@@ -159,7 +159,7 @@ fn with_a_key_only_signed_packets_are_believed_and_those_sent_are_signed() {
     let mut liar = watch.vehicle(&flight, Link::default());
     let mut vehicle = watch.vehicle(&flight, Link::default());
     vehicle.sign(&key);
-    // First, and with the wrong key: even so the vehicle is not locked out.
+    // First, and with the wrong key: the vehicle is not locked out.
     for _ in 0..5 {
         lie(&mut liar, 1.0);
     }
@@ -197,7 +197,7 @@ fn with_a_key_only_signed_packets_are_believed_and_those_sent_are_signed() {
 }
 
 #[test]
-fn a_silent_client_does_not_keep_a_second_one_out() {
+fn a_silent_client_does_not_block_a_second_one() {
     let (flight, _) = steady();
     let watch = Watch::start("tcpin:127.0.0.1:0", &[]);
     let silent = TcpStream::connect(watch.address()).unwrap();

@@ -1,4 +1,4 @@
-//! What `flagred watch` tells the vehicle, and how soon.
+//! The messages of `flagred watch` to the vehicle, and their delays.
 
 use std::{path::Path, time::Duration};
 
@@ -9,7 +9,7 @@ use flagred_tests::{
     wire::{Link, Speed},
 };
 
-/// How long after a motor command its risk was on the wire, in ms, of the values sent in so many seconds at 50 Hz, in
+/// The delay from a motor command to its risk on the wire, in ms, for the values sent in this many seconds at 50 Hz, in
 /// order.
 fn late_ms(seconds: f64) -> Vec<f64> {
     let flight = flight(Path::new(STEADY));
@@ -17,7 +17,7 @@ fn late_ms(seconds: f64) -> Vec<f64> {
     let mut vehicle = watch.vehicle(&flight, Link::default());
     vehicle.look_every = Duration::from_micros(200);
     vehicle.meet();
-    // The log has 25 Hz, so twice as fast.
+    // The log has 25 Hz, so it is replayed at twice the speed.
     let air = flight.in_air.as_ref().unwrap().spans[0];
     let end_s = air.start_s + 2.0 * seconds;
     assert!(end_s <= air.end_s, "the flight is too short");
@@ -36,7 +36,7 @@ fn late_ms(seconds: f64) -> Vec<f64> {
     late_ms
 }
 
-/// Other tests share the machine: half of all must make it here.
+/// Other tests share the machine, so only half of the values must meet the limit.
 #[test]
 fn the_risk_is_on_the_wire_within_5_ms() {
     let late_ms = late_ms(8.0);
@@ -44,7 +44,7 @@ fn the_risk_is_on_the_wire_within_5_ms() {
     assert!(late_ms[late_ms.len() / 2] < 5.0, "{late_ms:?}");
 }
 
-/// With the machine for itself: `scripts/measure-live`.
+/// On an otherwise idle machine: `scripts/measure-live`.
 #[test]
 #[ignore = "for a machine that does nothing else"]
 fn all_but_one_percent_of_risks_are_on_the_wire_within_5_ms() {
@@ -61,7 +61,7 @@ fn all_but_one_percent_of_risks_are_on_the_wire_within_5_ms() {
 }
 
 #[test]
-fn it_is_an_onboard_controller_of_the_vehicle_and_tells_values_once_in_half_a_second() {
+fn watch_is_an_onboard_controller_and_sends_values_every_half_second() {
     let flight = flight(Path::new(STEADY));
     let (_, vehicle) = fly_udp(
         &flight,

@@ -1,7 +1,7 @@
-//! Reads a flight log a number of times and says how fast, for `logs.py`.
+//! Reads a flight log several times and prints the speed, for `logs.py`.
 //!
-//! `read-log LOG RUNS [SIGNAL...]`: with signals named, only these are decoded; `none` for
-//! the motor commands alone. Prints one line of JSON.
+//! `read-log LOG RUNS [SIGNAL...]`: with signals, only these are decoded; `none` stands for
+//! the motor commands only. Prints one line of JSON.
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -29,15 +29,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Seconds of CPU that this process has used, as the peers are measured: the wall clock
-/// would count what else the machine does. Linux tells it in nanoseconds, now and then.
+/// The CPU time of this process in seconds, as for the other programs: wall-clock time
+/// includes the load of other processes. Linux reports it in nanoseconds, but updates it rarely.
 fn cpu_s() -> Result<f64, Box<dyn std::error::Error>> {
     let used = std::fs::read_to_string("/proc/self/schedstat")?;
     let ns = used.split_whitespace().next().ok_or("no CPU time")?;
     Ok(ns.parse::<f64>()? * 1e-9)
 }
 
-/// The most memory that the process ever had, where the system tells.
+/// The peak memory of the process, if the system reports it.
 fn peak_kib() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -26,7 +26,8 @@ import flagred
 folder = Path("../../../examples/flights")
 
 # %% [markdown]
-# A damaged log is still read as far as it goes, and says so. A file that is no log is an error, which does not end the others.
+# A damaged log is read as far as possible, and reports the damage. A file that is not a log is an error, which does not stop
+# the others.
 
 # %%
 assessments, rows = {}, []
@@ -53,7 +54,7 @@ assert assessments, f"no log in {folder.resolve()}"
 pd.DataFrame(rows)
 
 # %% [markdown]
-# The risk over time is a table, which pandas, polars and pyarrow take.
+# The risk over time is a table, which pandas, polars and pyarrow can read.
 
 # %%
 name, assessment = next(iter(assessments.items()))
@@ -64,7 +65,7 @@ steps[["t_s", "risk", "margin", "spread"]].describe()
 print(assessment)
 
 # %% [markdown]
-# Signals keep their own times. Here are the commands of the ten seconds around the highest risk.
+# Signals have their own times. Here are the commands of the ten seconds around the highest risk.
 
 # %%
 flight = assessment.flight

@@ -14,7 +14,7 @@
 # # A rule set from a DataFrame
 #
 # A greenhouse has logged its temperature, its humidity and how far the gardener opened the window. Which rules did the
-# gardener follow? (`jupytext --to ipynb` makes a notebook of this file; Jupyter with jupytext opens it as one.)
+# gardener follow? (`jupytext --to ipynb` converts this file to a notebook; Jupyter with jupytext opens it as one.)
 
 # %%
 import numpy as np
@@ -29,7 +29,7 @@ days["window"] = (wish + random.normal(0, 5, 300)).clip(0, 100).round()
 days.head()
 
 # %% [markdown]
-# The variables are ours to name: a partition gives each its terms.
+# We choose the names of the terms: a partition defines the terms of each variable.
 
 # %%
 variables = (
@@ -41,7 +41,7 @@ variables = (
 variables
 
 # %% [markdown]
-# Each combination of terms gets the rule that its days vote for. `validation` tells the error on days that were left out.
+# Each combination of terms gets the rule that its days support most. `validation` has the error on held-out days.
 
 # %%
 learned = flagred.learn(variables, days, resolve="mean")
@@ -50,7 +50,7 @@ for rule in learned.model.rules:
 print(learned.validation)
 
 # %% [markdown]
-# The rule set takes a frame, and gives one back. It says why, and what it covers.
+# For a frame, the rule set returns a frame. It also explains its outputs and lists the uncovered regions.
 
 # %%
 days["by_rules"] = learned.model(days)["window"]
@@ -69,4 +69,4 @@ for finding in learned.model.check(rising="temperature"):
     print(finding)
 
 # %% [markdown]
-# `learned.model.save("greenhouse.yaml")` writes it: for the command line, for Rust and C, or to be edited by hand.
+# `learned.model.save("greenhouse.yaml")` writes it: for the command line, for Rust and C, or for editing by hand.

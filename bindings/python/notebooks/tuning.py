@@ -13,8 +13,8 @@
 # %% [markdown]
 # # Tuning
 #
-# An expert knows the rules, data know the numbers. A battery has less to give in the cold: the rules say so, but where does
-# "cold" begin?
+# An expert knows the rules, and data determine the numbers. The capacity of a battery is lower in the cold: the rules express
+# that, but where does "cold" begin?
 
 # %%
 import numpy as np
@@ -46,8 +46,8 @@ capacity = 55 + 35 * warmth - 2.5 * load + random.normal(0, 1, 6)[which] + rando
 measured = {"temperature": temperature, "load": load, "capacity": capacity.clip(0, 100), "battery": which}
 
 # %% [markdown]
-# The capacity must not fall with the temperature, and must not rise with the load. Whole batteries are left out to tell what
-# tuning is worth.
+# The capacity must not fall with the temperature, and must not rise with the load. Whole batteries are held out in the
+# cross-validation.
 
 # %%
 tuned = flagred.tune(
@@ -61,7 +61,7 @@ print(f"gain {worth.gain.value:.2f} [{worth.gain.low:.2f}, {worth.gain.high:.2f}
 assert worth.gain.low > 0
 
 # %% [markdown]
-# The rules are those of the expert; the numbers moved.
+# The rules are those of the expert; only the numbers changed.
 
 # %%
 assert [rule.text for rule in tuned.model.rules] == [rule.text for rule in battery.rules]
@@ -71,7 +71,7 @@ tuned.model.plot()
 tuned.model.map(points=31)
 
 # %% [markdown]
-# Without an expert, `flagred.sklearn.FuzzyRegressor` makes partitions and rules from the data alone.
+# Without an expert, `flagred.sklearn.FuzzyRegressor` derives partitions and rules from the data.
 
 # %%
 from sklearn.model_selection import GroupKFold, cross_val_score

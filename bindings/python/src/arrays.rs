@@ -1,16 +1,16 @@
-//! NumPy arrays in: any shape that broadcasts, any strides, any type of number.
+//! NumPy arrays as arguments: any broadcastable shapes, any strides, any numeric type.
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::{prelude::*, sync::PyOnceLock, types::PyList};
 
-/// Arrays of one shape, in one piece each.
+/// Contiguous arrays of one shape.
 pub(crate) struct Arrays<'py> {
     arrays: Vec<PyReadonlyArrayDyn<'py, f64>>,
     pub(crate) shape: Vec<usize>,
 }
 
 impl<'py> Arrays<'py> {
-    /// Values as arrays of one shape. What is in no such form yet is copied by `flagred._arrays.alike`.
+    /// Values as arrays of one shape. Values in another form are copied by `flagred._arrays.alike`.
     pub(crate) fn new(py: Python<'py>, values: &[Bound<'py, PyAny>]) -> PyResult<Self> {
         if let Some(arrays) = Self::of(values) {
             return Ok(arrays);
@@ -23,14 +23,14 @@ impl<'py> Arrays<'py> {
         })
     }
 
-    /// The values as they are; `None` unless all are arrays of one shape, in one piece.
+    /// The values without a copy; `None` unless all are contiguous arrays of one shape.
     fn of(values: &[Bound<'py, PyAny>]) -> Option<Self> {
         let arrays = values.iter().map(|value| {
             let array = value.cast::<PyArrayDyn<f64>>().ok()?;
             let array = array
                 .is_c_contiguous()
                 .then(|| array.try_readonly().ok())??;
-            // It may be in one piece and not aligned.
+            // A contiguous array may be unaligned.
             array.as_slice().is_ok().then_some(array)
         });
         let arrays: Vec<_> = arrays.collect::<Option<_>>()?;

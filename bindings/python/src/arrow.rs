@@ -1,6 +1,6 @@
-//! Arrow's C interface in Python capsules: tables of other libraries in, tables out.
+//! Arrow's C interface in Python capsules: import of tables of other libraries, export of our own.
 //!
-//! The only place of this package that is unsafe: a capsule is a pointer to a C struct.
+//! The only file of this package with unsafe code: a capsule is a pointer to a C struct.
 #![allow(unsafe_code)]
 
 use std::{
@@ -27,7 +27,7 @@ use pyo3::{prelude::*, types::PyCapsule};
 
 use crate::errors::data_error;
 
-/// A stream that is handed to another library.
+/// A stream that is passed to another library.
 #[repr(transparent)]
 struct Exported(FFI_ArrowArrayStream);
 
@@ -42,7 +42,7 @@ pub(crate) fn export(
 ) -> PyResult<Bound<'_, PyCapsule>> {
     let reader = RecordBatchIterator::new(batches.into_iter().map(Ok), schema);
     let stream = FFI_ArrowArrayStream::new(Box::new(reader));
-    // Who takes the stream leaves an empty one in the capsule, and the capsule releases what is left.
+    // A consumer moves the stream out and leaves an empty one in the capsule; the capsule releases whatever remains.
     PyCapsule::new_with_value(py, Exported(stream), c"arrow_array_stream")
 }
 
@@ -58,10 +58,10 @@ enum Source {
     Batch(Option<StructArray>),
 }
 
-/// Takes over a table of another library.
+/// Imports a table of another library.
 ///
 /// # Errors
-/// It is not a table, or its capsules do not hold what Arrow's protocol says.
+/// The value is not a table, or its capsules violate Arrow's protocol.
 pub(crate) fn import(table: &Bound<'_, PyAny>) -> PyResult<Imported> {
     match table.hasattr("__arrow_c_stream__")? {
         true => import_stream(&table.call_method0("__arrow_c_stream__")?),
@@ -103,7 +103,7 @@ fn import_batch(capsules: &Bound<'_, PyAny>) -> PyResult<Imported> {
     if is_taken || array.is_released() {
         return Err(taken("array"));
     }
-    // SAFETY: as above; it is not released, so that its texts live.
+    // SAFETY: as above; it is not released, so its texts are valid.
     let fields = fields(unsafe { schema.cast::<FFI_ArrowSchema>().as_ref() })?;
     let batch = batch(array, &fields).map_err(|error| data_error(error, None))?;
     Ok(Imported {
@@ -112,7 +112,7 @@ fn import_batch(capsules: &Bound<'_, PyAny>) -> PyResult<Imported> {
     })
 }
 
-/// An ArrowSchema by the C data interface, which never changes: `arrow` does not show whether it is released.
+/// An ArrowSchema according to the C data interface, which never changes; `arrow` does not expose whether it is released.
 #[repr(C)]
 struct SchemaLayout {
     texts: [*const c_void; 3],
@@ -131,7 +131,7 @@ impl Imported {
             .collect()
     }
 
-    /// The next batch of rows, of which some may be null as a whole.
+    /// The next batch of rows; whole rows may be null.
     pub(crate) fn next(&mut self) -> Option<Result<StructArray, String>> {
         let stream = match &mut self.source {
             Source::Batch(batch) => return batch.take().map(Ok),
@@ -148,7 +148,7 @@ impl Imported {
     }
 }
 
-/// The pointer in a capsule of a name.
+/// The pointer in a capsule with this name.
 fn content(capsule: &Bound<'_, PyAny>, name: &CStr) -> PyResult<NonNull<c_void>> {
     let wanted = || mismatched(&format!("a capsule `{}`", name.to_string_lossy()));
     let capsule = capsule.cast::<PyCapsule>().map_err(|_| wanted())?;
@@ -171,7 +171,7 @@ fn last_error(stream: &mut FFI_ArrowArrayStream, code: i32) -> String {
     // SAFETY: the stream is not released.
     let text = stream.get_last_error.map(|get| unsafe { get(stream) });
     match text.filter(|text| !text.is_null()) {
-        // SAFETY: by the protocol a text that lives until the stream is used again.
+        // SAFETY: according to the protocol, the text is valid until the stream is used again.
         Some(text) => unsafe { CStr::from_ptr(text) }
             .to_string_lossy()
             .into_owned(),
@@ -181,7 +181,7 @@ fn last_error(stream: &mut FFI_ArrowArrayStream, code: i32) -> String {
 
 struct Panicked;
 
-/// Runs what may panic, without a message on standard error: the caller reports an error of its own.
+/// Runs a function that may panic, without a message on standard error: the caller reports its own error.
 fn unpanicked<T>(run: impl FnOnce() -> T) -> Result<T, Panicked> {
     thread_local! {
         static IS_SILENT: Cell<bool> = const { Cell::new(false) };
@@ -218,7 +218,7 @@ fn fields(schema: &FFI_ArrowSchema) -> PyResult<Fields> {
     }
 }
 
-/// A batch with these columns. `arrow` panics where a table breaks the protocol.
+/// A batch with these columns. `arrow` panics if a table violates the protocol.
 fn batch(array: FFI_ArrowArray, fields: &Fields) -> Result<StructArray, String> {
     let broken = || "the Arrow array does not have the columns of its schema".to_owned();
     if array.num_children() != fields.len() {
@@ -226,14 +226,14 @@ fn batch(array: FFI_ArrowArray, fields: &Fields) -> Result<StructArray, String> 
     }
     let kind = DataType::Struct(fields.clone());
     let read = unpanicked(|| {
-        // SAFETY: by the protocol the array is what the schema says.
+        // SAFETY: according to the protocol, the array matches the schema.
         unsafe { from_ffi_and_data_type(array, kind) }.map(StructArray::from)
     });
     read.map_err(|Panicked| broken())?
         .map_err(|error| error.to_string())
 }
 
-/// A column of a batch as numbers; NaN is unknown. So are rows that are null as a whole, whatever the column holds there.
+/// A column of a batch as numbers; NaN is unknown. Rows that are null as a whole are unknown, whatever the column contains.
 pub(crate) fn column<'a>(
     name: &str,
     batch: &'a StructArray,

@@ -1,4 +1,4 @@
-//! Assessments of flights: verdict, findings, the risk over time, the report.
+//! Assessments of flights: verdict, findings, the risk over time, and the report.
 
 use std::sync::{Arc, OnceLock};
 
@@ -27,15 +27,15 @@ use crate::{
     threads::interruptible,
 };
 
-/// What is said of a flight; `flagred.types.Assessment` is made of it.
+/// The assessment of a flight, inside `flagred.types.Assessment`.
 #[pyclass(frozen, subclass, module = "flagred._core")]
 pub(crate) struct AssessmentData {
     flight: Py<FlightData>,
     loaded: Arc<Loaded>,
     step_s: Option<f64>,
-    /// Made again when it is first used, after it was unpickled.
+    /// Created again at its first use after unpickling.
     subject: OnceLock<Arc<Subject>>,
-    /// Verdict, findings and summary in JSON, as they were pickled.
+    /// Pickled verdict, findings and summary, in JSON.
     said: Option<String>,
 }
 
@@ -103,19 +103,19 @@ impl AssessmentData {
         Ok(said(assessed, teller))
     }
 
-    /// The distance of the steps in seconds, as it was given.
+    /// The interval of the steps in seconds, as the caller chose it.
     fn _step_s(&self) -> Option<f64> {
         self.step_s
     }
 
-    /// All of it in JSON, as `flagred assess --json` prints it.
+    /// The whole assessment in JSON, as `flagred assess --json` prints it.
     fn to_json(&self, py: Python<'_>) -> PyResult<String> {
         let (name, flight, assessed) = self.parts(py)?;
         let document = document(name, flight, &self.loaded.estimator, assessed);
         serde_json::to_string(&document).map_err(|error| data_error(error, None))
     }
 
-    /// What was known at a time in seconds, and the rules that fired there, in JSON.
+    /// The state at a time in seconds, and the rules that fired, in JSON.
     fn _moment(&self, py: Python<'_>, t_s: f64) -> PyResult<String> {
         let (_, flight, assessed) = self.parts(py)?;
         let moment = moment::moment(flight, &self.loaded.estimator, assessed, t_s);
@@ -127,19 +127,19 @@ impl AssessmentData {
         steps(&self.subject(py)?.assessed)
     }
 
-    /// The report as one HTML page that needs nothing beside it.
+    /// The report as a single, self-contained HTML page.
     fn html(&self, py: Python<'_>) -> PyResult<String> {
         let (subject, loaded) = (Arc::clone(self.subject(py)?), Arc::clone(&self.loaded));
         interruptible(py, move || page::report(&subject, &loaded))
     }
 
-    /// The picture of the risk over time as SVG; None where no risk is known.
+    /// The picture of the risk over time as SVG; None if no risk is known.
     fn svg(&self, py: Python<'_>) -> PyResult<Option<String>> {
         Ok(page::svg(self.subject(py)?, &self.loaded))
     }
 }
 
-/// A page that looks like a report, around a body that is HTML already.
+/// A page in the style of a report, around a body in HTML.
 #[pyfunction]
 pub(crate) fn _page(title: &str, body: String) -> String {
     page::around(title, body)
@@ -160,7 +160,7 @@ pub(crate) fn said(assessed: &Assessment, teller: Teller<'_>) -> String {
     .to_string()
 }
 
-/// The risk over time as a table: a row each step.
+/// The risk over time as a table with one row per step.
 pub(crate) fn steps(assessed: &Assessment) -> PyResult<Table> {
     let steps = &assessed.steps;
     let number = |get: &dyn Fn(&Step) -> Option<f64>| {
@@ -193,7 +193,7 @@ pub(crate) fn steps(assessed: &Assessment) -> PyResult<Table> {
         ("spread", "1", number(&|step| step.spread)),
         ("judged", "", Arc::new(judged)),
     ];
-    // A profile may have an input `spread` with another window than the column of that name.
+    // A profile may have an input `spread` whose window differs from that of the column with this name.
     let inputs: Vec<String> = assessed
         .inputs
         .iter()

@@ -1,4 +1,4 @@
-//! A compiled rule set, and what Python asks of it: a point, arrays, a table.
+//! A compiled rule set, and its evaluation for Python: at a point, on arrays, on a table.
 
 use std::{
     cell::RefCell,
@@ -30,13 +30,13 @@ use crate::{
 
 /// A rule set that can be evaluated.
 pub(crate) struct Compiled {
-    /// No other has it, as long as the process lives.
+    /// Unique during the life of the process.
     id: u64,
     pub(crate) engine: Engine,
     inputs: Vec<Py<PyString>>,
 }
 
-/// What each thread keeps for single evaluations, of the rule sets it used last.
+/// The scratch memory of each thread for single evaluations, of the rule sets used last.
 struct Kept {
     id: u64,
     scratch: Scratch,
@@ -49,7 +49,7 @@ thread_local! {
 
 const MOST_KEPT: usize = 8;
 
-/// What is asked for: a number, or a value for each row.
+/// The values to evaluate: numbers, or a value for each row.
 pub(crate) enum Asked<'py> {
     /// In the order of the inputs.
     Numbers(Vec<f64>),
@@ -78,7 +78,7 @@ impl Compiled {
         args: &Bound<'py, PyTuple>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Asked<'py>> {
-        // `model({"service": 8, "food": 9})`, for names that are no words of Python.
+        // `model({"service": 8, "food": 9})`, for names that are not Python identifiers.
         let mapping = match named {
             None if args.len() == 1 => args.get_item(0)?.cast_into::<PyDict>().ok(),
             _ => None,
@@ -176,7 +176,7 @@ impl Compiled {
         })
     }
 
-    /// The only thing, or a dict by the names of the outputs.
+    /// The only item, or a dict by the names of the outputs.
     fn by_output<'py, T: IntoPyObject<'py>>(
         &self,
         py: Python<'py>,
@@ -224,7 +224,7 @@ impl Compiled {
                 let outcomes = Outcomes::new(py, result.value, reasons, &arrays.shape)?;
                 outcomes.into_bound_py_any(py)
             }
-            // A number, as NumPy gives for arrays without axes.
+            // A number, like the result of NumPy for arrays without axes.
             None if arrays.shape.is_empty() => result.value[0].into_bound_py_any(py),
             None => Ok(result
                 .value
@@ -236,7 +236,7 @@ impl Compiled {
         self.by_output(py, shaped)
     }
 
-    /// Evaluates a table that Arrow's C interface hands over, a batch at a time.
+    /// Evaluates a table from Arrow's C interface, one batch at a time.
     pub(crate) fn table(
         &self,
         frame: &Bound<'_, PyAny>,
@@ -268,7 +268,7 @@ impl Compiled {
         let schema = table::schema(&outputs, with_reasons);
         let mut evaluator = Evaluator::new(&self.engine, threads, with_reasons)?;
         let mut batches = Vec::new();
-        // A stream may be made in Python, which asks for the interpreter itself.
+        // The stream may be implemented in Python, and then acquires the interpreter itself.
         while let Some(batch) = py.detach(|| imported.next()) {
             let batch = batch.map_err(|error| data_error(error, None))?;
             let columns = names.iter().zip(&places);
@@ -282,7 +282,7 @@ impl Compiled {
     }
 }
 
-/// A number of Python, or None, which is unknown; `None` for anything else.
+/// A Python number, or None, which is unknown; `None` for anything else.
 fn number(value: &Bound<'_, PyAny>) -> Option<f64> {
     if let Ok(float) = value.cast::<PyFloat>() {
         return Some(float.value());
@@ -293,7 +293,7 @@ fn number(value: &Bound<'_, PyAny>) -> Option<f64> {
     value.is_none().then_some(f64::NAN)
 }
 
-/// The columns of a matrix with a column for each input; `None` where it is not a matrix.
+/// The columns of a matrix that has a column for each input; `None` if it is not a matrix.
 fn matrix_columns<'py>(
     py: Python<'py>,
     matrix: &Bound<'py, PyAny>,

@@ -1,4 +1,4 @@
-//! Errors and findings as Python's: the classes are in `python/flagred/_errors.py`.
+//! Conversion of errors and findings to Python; the classes are in `python/flagred/_errors.py`.
 
 use std::io;
 
@@ -23,7 +23,7 @@ const STYLE: Style = Style {
     },
 };
 
-/// A [`DataError`] with what to do about it.
+/// A [`DataError`] with help.
 pub(crate) fn data_error(message: impl std::fmt::Display, help: Option<String>) -> PyErr {
     match help {
         Some(help) => DataError::new_err(format!("{message}\n  help: {help}")),
@@ -31,7 +31,7 @@ pub(crate) fn data_error(message: impl std::fmt::Display, help: Option<String>) 
     }
 }
 
-/// A [`LogError`] with what to do about it.
+/// A [`LogError`] with help.
 pub(crate) fn log_error(message: impl std::fmt::Display, help: Option<&str>) -> PyErr {
     match help {
         Some(help) => LogError::new_err(format!("{message}\n  help: {help}")),
@@ -39,7 +39,7 @@ pub(crate) fn log_error(message: impl std::fmt::Display, help: Option<&str>) -> 
     }
 }
 
-/// Why a file cannot be read, as `open` tells it.
+/// The error of a file that cannot be read, as raised by `open`.
 pub(crate) fn os_error(
     py: Python<'_>,
     error: &io::Error,
@@ -56,7 +56,7 @@ pub(crate) fn os_error(
     })
 }
 
-/// Why a log cannot be read.
+/// The error of a log that cannot be read.
 pub(crate) fn read_error(py: Python<'_>, error: &ReadError) -> PyErr {
     match error {
         ReadError::Io { path, source } => {
@@ -66,7 +66,7 @@ pub(crate) fn read_error(py: Python<'_>, error: &ReadError) -> PyErr {
     }
 }
 
-/// A [`RuleSetError`] whose text is the drawn findings.
+/// A [`RuleSetError`] whose text contains the drawn findings.
 pub(crate) fn rule_set_error(py: Python<'_>, findings: &Findings, file: &str, text: &str) -> PyErr {
     match diagnostics(py, findings, file, text) {
         Ok(list) => {

@@ -1,4 +1,4 @@
-//! Columns of values in, columns of outcomes out: in blocks, on many threads, with an ear for Ctrl-C.
+//! Evaluation of columns of values to columns of outcomes: in blocks, on many threads, interruptible by Ctrl-C.
 
 use std::{
     sync::Arc,
@@ -18,10 +18,10 @@ use crate::{
     threads,
 };
 
-/// Rows whose outcomes fit the cache.
+/// The number of rows whose outcomes fit into the cache.
 const BLOCK: usize = 1024;
 
-/// Evaluates one table after another; an output that keeps its previous value keeps it from table to table.
+/// Evaluates tables in sequence; an output that keeps its previous value keeps it from table to table.
 pub(crate) struct Evaluator<'e> {
     engine: &'e Engine,
     sequence: Option<Sequence<'e>>,
@@ -30,7 +30,7 @@ pub(crate) struct Evaluator<'e> {
     with_reasons: bool,
 }
 
-/// The part of the result that a block fills.
+/// The part of the result that one block fills.
 struct Block<'a> {
     first: usize,
     outputs: Vec<BlockOutput<'a>>,
@@ -43,7 +43,7 @@ struct BlockOutput<'a> {
 
 impl<'e> Evaluator<'e> {
     /// # Errors
-    /// No threads.
+    /// If `threads` is 0.
     pub(crate) fn new(
         engine: &'e Engine,
         threads: Option<usize>,
@@ -60,7 +60,7 @@ impl<'e> Evaluator<'e> {
         })
     }
 
-    /// The outcomes of each output; columns are of one length. The interpreter is free for others meanwhile.
+    /// The outcomes of each output; columns have equal lengths. The interpreter is released meanwhile.
     pub(crate) fn run(
         &mut self,
         py: Python<'_>,
@@ -87,7 +87,7 @@ impl<'e> Evaluator<'e> {
         {
             self.pool = Some(threads::pool(self.threads)?);
         }
-        // As many blocks at once as take about this long: then Ctrl-C is heard.
+        // A group of blocks takes about this long; Ctrl-C is checked after each group.
         const LISTEN_EVERY: Duration = Duration::from_millis(50);
         let (mut from, mut at_once) = (0, 16);
         while from < blocks.len() {

@@ -1,4 +1,4 @@
-//! How good the risks of profiles are, over many flights.
+//! Validation of the risks of profiles, over many flights.
 
 use std::{
     path::PathBuf,
@@ -28,7 +28,7 @@ use crate::{
     threads::{count, interruptible, pool},
 };
 
-/// What came of many flights; `flagred.types.Evaluation` is made of it.
+/// The validation over many flights, inside `flagred.types.Evaluation`.
 #[pyclass(frozen, subclass, module = "flagred._core")]
 pub(crate) struct EvaluationData {
     evaluation: Arc<Evaluation>,
@@ -37,14 +37,14 @@ pub(crate) struct EvaluationData {
     notes: Vec<String>,
 }
 
-/// A flight, or where logs are.
+/// A flight, or the path of logs.
 #[derive(FromPyObject)]
 pub(crate) enum Log<'py> {
     Flight(PyRef<'py, FlightData>),
     Path(PathBuf),
 }
 
-/// A table with a row for each flight; a column holds numbers, or else texts.
+/// A table with a row for each flight; a column contains numbers or texts.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct FlightRows<'py> {
@@ -59,7 +59,7 @@ enum Source {
     Path(PathBuf),
 }
 
-/// Why there is no evaluation.
+/// The reason why there is no result.
 enum Failed {
     Unusable(Unusable),
     NoSteps,
@@ -80,7 +80,7 @@ impl Failed {
     }
 }
 
-/// The shipped profiles that read the motors alone, and those that were asked for.
+/// The shipped profiles that read only the motors, and the given ones.
 fn estimators(py: Python<'_>, asked: &[PyRef<'_, Profile>]) -> PyResult<Estimators> {
     let mut estimators = Estimators::default();
     for name in shipped::motor_profile_names() {
@@ -94,8 +94,8 @@ fn estimators(py: Python<'_>, asked: &[PyRef<'_, Profile>]) -> PyResult<Estimato
     Ok(estimators)
 }
 
-/// The flights and files in their order, with those in folders. Also whether each was named itself: a folder may hold other
-/// things than flights.
+/// The flights and files in their order, including those in folders, and whether each was named itself: a folder may contain
+/// files that are not flights.
 fn named(logs: Vec<Source>) -> Result<Vec<(Source, bool)>, Failed> {
     let mut found = Vec::new();
     for log in logs {
@@ -123,7 +123,7 @@ fn evaluate(
     stop: &AtomicBool,
 ) -> Result<Evaluation, Failed> {
     let logs = named(logs)?;
-    // What comes after the first log that ends the evaluation is not looked at.
+    // Logs after the first one that ends the evaluation are not read.
     let last = AtomicUsize::new(usize::MAX);
     let each = logs.par_iter().enumerate().map(|(i, (log, is_named))| {
         if i > last.load(Ordering::Relaxed) || stop.load(Ordering::Relaxed) {
@@ -159,7 +159,7 @@ fn name(log: &Source) -> String {
     }
 }
 
-/// The rows of a table as cases, and what is to be said about it.
+/// The rows of a table as cases, and notes about them.
 fn row_cases(rows: &FlightRows<'_>, estimators: &Estimators) -> PyResult<(Vec<Case>, Vec<String>)> {
     let columns: Vec<&str> = rows.names.iter().map(String::as_str).collect();
     if !columns.contains(&ERROR) {
@@ -253,18 +253,18 @@ impl EvaluationData {
         })
     }
 
-    /// What is to be said of the rows.
+    /// Notes about the rows.
     fn _notes(&self) -> Vec<String> {
         self.notes.clone()
     }
 
-    /// All of it in JSON, as `flagred validate --json` prints it.
+    /// The whole evaluation in JSON, as `flagred validate --json` prints it.
     fn to_json(&self) -> PyResult<String> {
         let document = Document::new(&self.evaluation);
         serde_json::to_string(&document).map_err(|error| data_error(error, None))
     }
 
-    /// What each estimator said of each case.
+    /// The score of each estimator for each case.
     fn _scores(&self) -> PyResult<Table> {
         let cases = self.evaluation.cases();
         let has_times = cases.iter().any(|case| case.t_s.is_some());
@@ -302,7 +302,7 @@ impl EvaluationData {
         Ok(Table { batches, schema })
     }
 
-    /// False and true positive rates along the ROC curve of an estimator.
+    /// The false and true positive rates along the ROC curve of an estimator.
     fn _roc<'py>(
         &self,
         py: Python<'py>,
@@ -312,7 +312,7 @@ impl EvaluationData {
         (false_rate.into_pyarray(py), true_rate.into_pyarray(py))
     }
 
-    /// The evaluation as one HTML page that needs nothing beside it.
+    /// The evaluation as a single, self-contained HTML page.
     fn html(&self) -> String {
         flagred_report::page::around("Evaluation", page::body(&self.evaluation))
     }
@@ -322,7 +322,7 @@ impl EvaluationData {
         svg::draw(&self.evaluation)
     }
 
-    /// The evaluation in words, as `flagred validate` prints it.
+    /// The evaluation as text, as `flagred validate` prints it.
     fn __str__(&self) -> String {
         words::text(&self.evaluation)
     }

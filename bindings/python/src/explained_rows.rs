@@ -1,4 +1,4 @@
-//! Many points explained: a line for each rule that contributes to an output at a row.
+//! Explanations of many points: a line for each rule that contributes to an output at a row.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ struct Line {
     dominant: Option<usize>,
 }
 
-/// What the outputs rest on at each row whose inputs are all known.
+/// The rules that contribute to the outputs at each row whose inputs are all known.
 fn explained(engine: &Engine, columns: &[Vec<f64>]) -> Result<Vec<Line>, EvaluateError> {
     let rows = columns.first().map_or(0, Vec::len);
     let lines = (0..rows).into_par_iter().map(|row| {
@@ -53,7 +53,7 @@ fn explained(engine: &Engine, columns: &[Vec<f64>]) -> Result<Vec<Line>, Evaluat
     Ok(lines?.into_iter().flatten().collect())
 }
 
-/// The lines of all rows as columns; rules count from 1. `columns` are in the order of the inputs.
+/// The lines of all rows as columns; rules are counted from 1. `columns` are in the order of the inputs.
 pub(crate) fn explained_rows<'py>(
     py: Python<'py>,
     compiled: Arc<Compiled>,

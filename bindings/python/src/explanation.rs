@@ -1,4 +1,4 @@
-//! Why outputs are what they are.
+//! Explanations of outputs.
 
 use std::sync::Arc;
 
@@ -11,13 +11,13 @@ use pyo3::{prelude::*, types::PyDict};
 
 use crate::compiled::Compiled;
 
-/// Why outputs are what they are at one point.
+/// The explanation of the outputs at one point.
 #[pyclass(frozen, module = "flagred.types")]
 pub(crate) struct Explanation {
     /// The inputs, with the degree of each of their terms.
     #[pyo3(get)]
     inputs: Vec<Py<ExplainedInput>>,
-    /// The rules that fired, the strongest first.
+    /// The rules that fired, strongest first.
     #[pyo3(get)]
     rules: Vec<Py<FiredRule>>,
     /// The outputs, with the share of each rule.
@@ -27,14 +27,14 @@ pub(crate) struct Explanation {
     compiled: Arc<Compiled>,
 }
 
-/// An input, and the degree of each of its terms.
+/// An input with the degree of each of its terms.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct ExplainedInput {
     /// Its name.
     name: String,
-    /// The value that was given.
+    /// The given value.
     given: f64,
-    /// The value that was used: the end of the range where the given one lies outside.
+    /// The used value: the end of the range if the given one is outside.
     value: f64,
     /// The degree of each term, in [0, 1].
     terms: Py<PyDict>,
@@ -43,13 +43,13 @@ pub(crate) struct ExplainedInput {
 /// A rule that fired.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct FiredRule {
-    /// Its number in the model, from 1.
+    /// Its rule number in the model, from 1.
     rule: usize,
-    /// The rule as it is written.
+    /// The text of the rule.
     text: String,
     /// The degree of its condition.
     degree: f64,
-    /// The degree times the weight, as the activation method leaves it.
+    /// The degree times the weight, after the activation method.
     strength: f64,
 }
 
@@ -58,13 +58,13 @@ pub(crate) struct FiredRule {
 pub(crate) struct ExplainedOutput {
     /// Its name.
     name: String,
-    /// The value; None where it is unknown.
+    /// The value; None if it is unknown.
     value: Option<f64>,
     /// Whether no rule fires and the value is the model's default.
     is_default: bool,
     /// The largest firing strength of a rule of this output.
     coverage: f64,
-    /// The rules that contribute to it, the largest share first.
+    /// The rules that contribute to it, largest share first.
     rules: Vec<Py<Share>>,
     /// The degree of the value in each term.
     terms: Py<PyDict>,
@@ -74,10 +74,10 @@ pub(crate) struct ExplainedOutput {
     set_degree: Py<PyArray1<f64>>,
 }
 
-/// What a rule contributes to an output.
+/// The contribution of a rule to an output.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct Share {
-    /// Its number in the model, from 1.
+    /// Its rule number in the model, from 1.
     rule: usize,
     /// The term it concludes.
     term: String,
@@ -85,7 +85,7 @@ pub(crate) struct Share {
     strength: f64,
     /// Its share of the result, in [0, 1].
     share: f64,
-    /// In a Takagi-Sugeno or Tsukamoto output, the number that it gives.
+    /// In a Takagi-Sugeno or Tsukamoto output, the value of the rule.
     value: Option<f64>,
 }
 
@@ -180,7 +180,7 @@ impl Explanation {
 
 #[pymethods]
 impl Explanation {
-    /// The value of each output; None where it is unknown.
+    /// The value of each output; None if it is unknown.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let values = PyDict::new(py);

@@ -1,4 +1,4 @@
-//! Flights: logs read, their commands and signals as arrays and tables.
+//! Flights: reading logs, commands and signals as arrays and tables.
 
 use std::{
     fs, io,
@@ -20,10 +20,10 @@ use crate::{
     threads::interruptible,
 };
 
-/// A flight; `flagred.types.Flight` is made of it.
+/// The data of a flight, inside `flagred.types.Flight`.
 #[pyclass(frozen, subclass, module = "flagred._core")]
 pub(crate) struct FlightData {
-    /// Read when it is first used, after it was unpickled.
+    /// Read at its first use after unpickling.
     flight: OnceLock<Arc<Flight>>,
     pub(crate) name: String,
     source: Source,
@@ -31,7 +31,7 @@ pub(crate) struct FlightData {
     range: Option<(u16, u16)>,
 }
 
-/// Where a log is.
+/// The source of a log.
 enum Source {
     Path(PathBuf, Option<Stamp>),
     Bytes(Py<PyBytes>),
@@ -50,7 +50,7 @@ type SignalParts = (String, String, String, Option<f64>, usize);
 
 type Column<'py> = Bound<'py, PyArray1<f64>>;
 
-/// Arguments of [`FlightData::new`], as a pickle has them.
+/// Arguments of [`FlightData::new`], as they are pickled.
 type Parts<'py> = (
     Bound<'py, PyBytes>,
     String,
@@ -58,7 +58,7 @@ type Parts<'py> = (
     Option<(u16, u16)>,
 );
 
-/// Columns as a table; those after the first may be unknown here and there.
+/// Columns as a table; values of all but the first may be unknown.
 fn table(columns: Vec<(String, &str, Vec<f64>)>) -> PyResult<Table> {
     let mut fields = Vec::new();
     let mut arrays: Vec<ArrayRef> = Vec::new();
@@ -77,7 +77,7 @@ fn table(columns: Vec<(String, &str, Vec<f64>)>) -> PyResult<Table> {
 }
 
 impl FlightData {
-    /// The flight. Its log is read while Ctrl-C is listened to, where that is not done yet.
+    /// The flight. Its log is read if necessary, interruptible by Ctrl-C.
     pub(crate) fn flight(&self, py: Python<'_>) -> PyResult<&Arc<Flight>> {
         if let Some(flight) = self.flight.get() {
             return Ok(flight);
@@ -107,7 +107,7 @@ impl FlightData {
         Ok(self.flight.get_or_init(|| Arc::new(flight)))
     }
 
-    /// The bytes of the log as they were when it was read.
+    /// The bytes of the log at the time of reading.
     fn bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let (path, read) = match &self.source {
             Source::Bytes(bytes) => return Ok(bytes.bind(py).clone()),
@@ -177,13 +177,13 @@ impl FlightData {
         Ok(new)
     }
 
-    /// What makes the same flight: the bytes of the log, its name, the signals and the range that were given.
+    /// The parts that reproduce the flight: the bytes of the log, its name, the signals and the given range.
     fn _parts<'py>(&self, py: Python<'py>) -> PyResult<Parts<'py>> {
         let (name, signals) = (self.name.clone(), self.signals.clone());
         Ok((self.bytes(py)?, name, signals, self.range))
     }
 
-    /// What it was read from.
+    /// The name of its source.
     #[getter]
     fn name(&self) -> &str {
         &self.name
@@ -221,12 +221,12 @@ impl FlightData {
         Ok(PyArray1::from_slice(py, flight.commands.t_s()))
     }
 
-    /// The commands as they were logged, a column for each motor.
+    /// The commands as logged, with a column for each motor.
     fn _raw_commands<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.rows(py, |_, raw| raw)
     }
 
-    /// The commands on the effective range, a column for each motor.
+    /// The commands on the effective range, with a column for each motor.
     fn _effective_commands<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.rows(py, |flight, raw| {
             flight.effective_command(raw).unwrap_or(f64::NAN)

@@ -1,4 +1,4 @@
-//! A rule set from rows alone: `flagred.identify`.
+//! A rule set from rows only: `flagred.identify`.
 
 use std::ops::ControlFlow;
 
@@ -59,11 +59,11 @@ impl IdentifyOptions {
 /// A figure and its interval.
 type Figure = (f64, f64, f64);
 
-/// What `flagred.types.Identified` is made of.
+/// The result inside `flagred.types.Identified`.
 #[derive(IntoPyObject)]
 pub(crate) struct Identified {
     model: String,
-    /// The inputs that were taken, how many terms they got, and the error on rows left out.
+    /// The selected inputs, their numbers of terms, and the cross-validation error.
     steps: Vec<(String, usize, f64)>,
     without_rows: usize,
     validation: Option<Worth>,
@@ -79,7 +79,7 @@ pub(crate) struct Worth {
     ratio: Figure,
 }
 
-/// A rule set for the truths, found in columns with these names.
+/// Finds a rule set that predicts the truths, from columns with these names.
 #[pyfunction]
 pub(crate) fn _identify(
     py: Python<'_>,

@@ -29,7 +29,7 @@ pub(crate) struct LearnOptions {
     validation: bool,
 }
 
-/// What `flagred.types.Learned` is made of.
+/// The result inside `flagred.types.Learned`.
 #[derive(IntoPyObject)]
 pub(crate) struct Learned {
     model: String,
@@ -72,7 +72,7 @@ impl LearnOptions {
     }
 }
 
-/// Rules from rows.
+/// Learns rules from rows.
 #[pyfunction]
 pub(crate) fn _learn(
     py: Python<'_>,

@@ -1,7 +1,7 @@
 //! The native half of the Python package `flagred`: it converts types and calls the libraries.
 //!
-//! The other half, `python/flagred`, holds what is plain Python: data classes, errors, views for editing, other libraries'
-//! frames.
+//! The other half, `python/flagred`, contains plain Python: data classes, errors, views for editing, and frames of other
+//! libraries.
 
 mod arrays;
 mod arrow;

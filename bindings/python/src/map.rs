@@ -75,7 +75,7 @@ impl DecisionMap {
         Ok(axes)
     }
 
-    /// The inputs that are held at a value.
+    /// The fixed inputs and their values.
     #[getter]
     fn fixed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let held = PyDict::new(py);
@@ -85,7 +85,7 @@ impl DecisionMap {
         Ok(held)
     }
 
-    /// The value of each cell; NaN where it is unknown.
+    /// The value of each cell; NaN if it is unknown.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let values = self
@@ -107,7 +107,7 @@ impl DecisionMap {
             .reshape(self.shape())
     }
 
-    /// The number of the rule with that strength, from 1; masked where no rule fires.
+    /// The rule number with that strength, from 1; masked if no rule fires.
     #[getter]
     fn dominant_rule<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let rules = self
@@ -140,7 +140,7 @@ impl DecisionMap {
         }
     }
 
-    /// Draws the map, of one or two axes.
+    /// Draws the map, which must have one or two axes.
     ///
     /// Parameters
     /// ----------
@@ -150,7 +150,7 @@ impl DecisionMap {
     /// Returns
     /// -------
     /// Picture or matplotlib.axes.Axes
-    ///     The axes; without them a picture in SVG, for which matplotlib is not needed.
+    ///     The axes; without ``ax`` a picture in SVG, which does not require matplotlib.
     #[pyo3(signature = (ax = None))]
     fn plot<'py>(
         slf: &Bound<'py, Self>,

@@ -1,4 +1,4 @@
-//! A flight followed sample by sample.
+//! A monitor that follows a flight sample by sample.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -18,26 +18,26 @@ use crate::{
 };
 use flagred::loaded::Loaded;
 
-/// What a monitor knows after a sample.
+/// The state of a monitor after a sample.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct Update {
     /// The time of the sample in seconds.
     t_s: f64,
-    /// The risk in %, from 0 to 100; None where it is unknown.
+    /// The risk in %, from 0 to 100; None if it is unknown.
     risk: Option<f64>,
-    /// Why the risk is unknown; None where it is known.
+    /// The reason why the risk is unknown; None if it is known.
     unknown: Option<String>,
-    /// The elevated risk in %; None where the risk is unknown.
+    /// The elevated risk in %; None if the risk is unknown.
     elevated_risk: Option<f64>,
-    /// ``GOOD``, ``INFO``, ``WARN`` or ``FAIL``; None on the ground and where a risk is unknown, unless an alarm stands.
+    /// ``GOOD``, ``INFO``, ``WARN`` or ``FAIL``; None on the ground and while a risk is unknown, unless an alarm is raised.
     level: Option<String>,
-    /// The new level where this sample changed it.
+    /// The new level, if this sample changed it.
     change: Option<String>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: Option<f64>,
-    /// Whether the risk is interpolated because no rule applies.
+    /// Whether the risk is interpolated because no rule fires.
     filled: Option<bool>,
-    /// The number of the rule with the largest firing strength, from 1; None where none fires or the risk is unknown.
+    /// The rule number with the largest firing strength, from 1; None if no rule fires or the risk is unknown.
     dominant_rule: Option<usize>,
     /// Whether the risk counts for levels and findings.
     judged: bool,
@@ -55,12 +55,12 @@ impl Update {
     }
 }
 
-/// Follows a flight sample by sample; `flagred.Monitor` is made of it.
+/// Follows a flight sample by sample, inside `flagred.Monitor`.
 #[pyclass(frozen, subclass, module = "flagred._core")]
 pub(crate) struct MonitorData {
     loaded: Arc<Loaded>,
     signals: Vec<String>,
-    /// Made with the first sample, which tells how many motors there are.
+    /// Created with the first sample, which determines the number of motors.
     followed: Mutex<Option<Followed>>,
     step_s: Option<f64>,
 }
@@ -70,7 +70,7 @@ struct Followed {
     motors: usize,
 }
 
-/// Python's `None` is unknown, as NaN is.
+/// Numbers in which Python's `None` becomes NaN: both are unknown.
 fn numbers(values: &[Option<f64>]) -> Vec<f64> {
     values
         .iter()
@@ -121,7 +121,7 @@ impl MonitorData {
     ) -> PyResult<Update> {
         let commands = numbers(&commands);
         let signals = numbers(&signals);
-        // Refused before anything is followed: with another unit, no sample of the flight is right.
+        // Refused before the sample is processed: in another unit, all samples of the flight are wrong.
         if let Some(motor) = commands
             .iter()
             .position(|e| counted(*e).is_nan() && !e.is_nan())
@@ -160,7 +160,7 @@ impl MonitorData {
         Ok(self.update(&update))
     }
 
-    /// The findings that are over after the latest sample, in JSON.
+    /// The findings that ended with the latest sample, in JSON.
     fn _ended(&self) -> String {
         let followed = self.followed();
         let ended = followed
@@ -173,7 +173,7 @@ impl MonitorData {
         json!(ended).to_string()
     }
 
-    /// Ends the flight: its assessment in JSON, and its steps; None without a sample.
+    /// Ends the flight and returns its assessment in JSON, and its steps; None without a sample.
     fn _finish(&self) -> PyResult<Option<(String, Table)>> {
         let Some(mut followed) = self.followed().take() else {
             return Ok(None);

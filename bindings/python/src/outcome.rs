@@ -1,4 +1,4 @@
-//! What an evaluation says of an output.
+//! Outcomes of an evaluation.
 
 use fuzzy::engine::{self, State};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
@@ -6,25 +6,25 @@ use pyo3::prelude::*;
 
 use crate::errors::data_error;
 
-/// What an evaluation says of one output at one point.
+/// The outcome of one output at one point.
 #[pyclass(frozen, get_all, eq, module = "flagred.types")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Outcome {
-    /// The value; None where it is unknown.
+    /// The value; None if it is unknown.
     value: Option<f64>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: f64,
-    /// The number of the rule with that strength, from 1; None where no rule fired.
+    /// The rule number with that strength, from 1; None if no rule fires.
     dominant_rule: Option<usize>,
-    /// Whether an input was outside its range and was moved to the end of it.
+    /// Whether an input was outside its range and was clamped to its end.
     clamped: bool,
-    /// Why the value is what it is.
+    /// The state of the value.
     state: &'static str,
 }
 
 #[pymethods]
 impl Outcome {
-    /// The value; NaN where it is unknown.
+    /// The value; NaN if it is unknown.
     fn __float__(&self) -> f64 {
         self.value.unwrap_or(f64::NAN)
     }
@@ -78,7 +78,7 @@ impl Outcome {
     }
 }
 
-/// All that an outcome can be.
+/// All states of an outcome.
 const STATES: [&str; 5] = [
     "defined",
     "default",
@@ -105,16 +105,16 @@ impl From<engine::Outcome> for Outcome {
     }
 }
 
-/// What an evaluation says of one output at many points: an array each.
+/// The outcomes of one output at many points, as arrays.
 #[pyclass(frozen, get_all, module = "flagred.types")]
 pub(crate) struct Outcomes {
-    /// The values; NaN where they are unknown.
+    /// The values; NaN if they are unknown.
     value: Py<PyArrayDyn<f64>>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: Py<PyArrayDyn<f64>>,
-    /// The numbers of the rules with that strength, from 1; masked where no rule fired.
+    /// The rule numbers with that strength, from 1; masked if no rule fires.
     dominant_rule: Py<PyAny>,
-    /// Whether an input was outside its range and was moved to the end of it.
+    /// Whether an input was outside its range and was clamped to its end.
     clamped: Py<PyArrayDyn<bool>>,
 }
 
@@ -125,18 +125,18 @@ pub(crate) struct Columns {
     pub(crate) reasons: Option<Reasons>,
 }
 
-/// Why values are what they are.
+/// The reasons of values.
 pub(crate) struct Reasons {
     pub(crate) coverage: Vec<f64>,
-    /// [`NO_RULE`] where no rule fired.
+    /// [`NO_RULE`] if no rule fires.
     pub(crate) dominant_rule: Vec<i32>,
     pub(crate) clamped: Vec<bool>,
 }
 
-/// In place of the number of a rule: masked or null before anybody sees it.
+/// A placeholder for a rule number; it is masked or null before it is returned.
 pub(crate) const NO_RULE: i32 = -1;
 
-/// The number of a rule, from 1.
+/// The rule number, from 1.
 pub(crate) fn rule_number(rule: Option<usize>) -> i32 {
     rule.map_or(NO_RULE, |rule| rule as i32 + 1)
 }

@@ -1,4 +1,4 @@
-//! Profiles: where the inputs of a rule set come from, and when it warns.
+//! Profiles: the sources of the inputs of a rule set, and the thresholds of warnings.
 
 use std::{fs, io, path::Path, sync::Arc};
 
@@ -16,7 +16,7 @@ use crate::errors::{data_error, diagnostics, os_error, rule_set_error};
 /// Parameters
 /// ----------
 /// name
-///     A shipped profile, ``flagred`` or ``flagred-paper``, or a file. The rule set of a file is looked for beside it.
+///     A shipped profile, ``flagred`` or ``flagred-paper``, or a file. The rule set of a file must be in the same folder.
 ///
 /// Raises
 /// ------
@@ -33,7 +33,7 @@ use crate::errors::{data_error, diagnostics, os_error, rule_set_error};
 #[pyclass(frozen, module = "flagred")]
 pub(crate) struct Profile {
     pub(crate) loaded: Arc<Loaded>,
-    /// What it was asked for by.
+    /// The name or path that it was loaded by.
     pub(crate) file: String,
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn _built_in(name: &str) -> Option<&'static str> {
         .map(|known| known.text)
 }
 
-/// A profile that was loaded from a file or by its name, or why it was not.
+/// A loaded profile, or the error of loading it.
 fn usable(
     py: Python<'_>,
     file: &str,
@@ -86,7 +86,7 @@ impl Profile {
         usable(py, name, loaded)
     }
 
-    /// A profile of its text and that of its rule set, as a pickle has them.
+    /// Creates a profile from its text and that of its rule set, as they are pickled.
     #[staticmethod]
     fn _of_texts(py: Python<'_>, file: &str, profile: String, rules: String) -> PyResult<Self> {
         let [profile, rules] = [profile, rules].map(Source::new);
@@ -115,26 +115,26 @@ impl Profile {
         inputs.map(|input| input.name.clone()).collect()
     }
 
-    /// The signals that it needs beside the commands of the motors.
+    /// The signals that it requires besides the commands of the motors.
     #[getter]
     fn signals(&self) -> Vec<String> {
         let signals = self.loaded.estimator.profile().signals();
         signals.into_iter().map(str::to_owned).collect()
     }
 
-    /// The profile as it is written.
+    /// The text of the profile.
     #[getter]
     fn text(&self) -> &str {
         self.loaded.profile.text()
     }
 
-    /// Its rule set as it is written.
+    /// The text of its rule set.
     #[getter]
     fn rules_text(&self) -> &str {
         self.loaded.rules.text()
     }
 
-    /// What is doubtful about it.
+    /// The warnings about it.
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         diagnostics(

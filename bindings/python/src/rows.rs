@@ -1,4 +1,4 @@
-//! Rows to learn from, and what `flagred.learn` and `flagred.tune` ask alike.
+//! Rows to learn from, and options shared by `flagred.learn` and `flagred.tune`.
 
 use flagred_authoring::provenance;
 use flagred_evaluation::learning::Row;
@@ -12,10 +12,10 @@ use pyo3::prelude::*;
 
 use crate::errors::{data_error, rule_set_error};
 
-/// The most refused rows that a message shows.
+/// The maximum number of refused rows that a message shows.
 const SHOWN: usize = 20;
 
-/// Rows as Python gives them.
+/// Rows as arguments from Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Rows<'py> {
@@ -42,10 +42,10 @@ impl Rows<'_> {
     }
 }
 
-/// Why there is no result.
+/// The reason why there is no result.
 pub(crate) enum Failed {
     Refused(Vec<String>),
-    /// A message, and what to do.
+    /// A message, and help.
     Data(String, Option<String>),
     Findings(Findings),
 }
@@ -75,12 +75,12 @@ impl Failed {
     }
 }
 
-/// The text of a rule set that a function made of another one, with the step that made it.
+/// The text of a rule set derived from another one, with the step that created it.
 pub(crate) fn with_step(begun_with: &str, model: &Model, step: Step) -> Result<String, Failed> {
     provenance::rule_set(begun_with, model.clone(), step).map_err(Failed::Findings)
 }
 
-/// The choice that a word names.
+/// The choice with this name.
 pub(crate) fn choice<T: Copy>(key: &str, word: &str, choices: &[(&str, T)]) -> PyResult<T> {
     if let Some((_, choice)) = choices.iter().find(|(name, _)| *name == word) {
         return Ok(*choice);
@@ -94,7 +94,7 @@ pub(crate) fn choice<T: Copy>(key: &str, word: &str, choices: &[(&str, T)]) -> P
     Err(data_error(format!("`{key}` is `{word}`"), Some(help)))
 }
 
-/// Inputs in which the output must not fall, then those in which it must not rise, with a direction of each.
+/// Inputs that the output must not fall with, then those that it must not rise with, each with its direction.
 pub(crate) fn directed<D: Copy>(
     rising: &[String],
     falling: &[String],
@@ -105,7 +105,7 @@ pub(crate) fn directed<D: Copy>(
     rising.chain(falling).collect()
 }
 
-/// The claims that `rising` and `falling` make.
+/// The claims of `rising` and `falling`.
 pub(crate) fn claims(rising: &[String], falling: &[String]) -> Vec<Monotone> {
     let directions = [Direction::Increasing, Direction::Decreasing];
     let claims = directed(rising, falling, directions).into_iter();

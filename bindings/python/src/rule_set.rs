@@ -1,4 +1,4 @@
-//! Rule sets: read, edited, compiled when they are first used, and asked.
+//! Rule sets: reading, editing, and evaluation, compiled at first use.
 
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -36,7 +36,7 @@ use crate::{
     threads::{count, interruptible, pool},
 };
 
-/// A rule set. `flagred.Model` is made of it.
+/// A rule set, inside `flagred.Model`.
 #[pyclass(frozen, subclass, module = "flagred._core")]
 pub(crate) struct RuleSet {
     current: RwLock<Arc<Source>>,
@@ -59,12 +59,12 @@ impl RuleSet {
         of(&self.source().document.model)
     }
 
-    /// The text that it was read from, or that edits made of it.
+    /// The text that was read, or the result of edits.
     pub(crate) fn text(&self) -> String {
         self.source().text.clone()
     }
 
-    /// Compiles the rule set, where that is not done yet.
+    /// Compiles the rule set, unless this is done already.
     pub(crate) fn compile(&self, py: Python<'_>) -> PyResult<()> {
         self.source().compiled(py).map(|_| ())
     }
@@ -84,7 +84,7 @@ fn names(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     })
 }
 
-/// The values at what Python gives, or the outcomes `with_reasons`.
+/// The values for arguments from Python, or the outcomes `with_reasons`.
 fn answer<'py>(
     rule_set: &Bound<'py, RuleSet>,
     args: &Bound<'py, PyTuple>,
@@ -101,7 +101,7 @@ fn answer<'py>(
     }
 }
 
-/// The answer to a frame is a frame of the same library, which Python knows.
+/// Evaluates a frame in Python, which returns a frame of the same library.
 fn by_frame<'py>(
     rule_set: &Bound<'py, RuleSet>,
     frame: Bound<'py, PyAny>,
@@ -178,13 +178,13 @@ impl RuleSet {
         self.model(|model| model.outputs.iter().map(name).collect())
     }
 
-    /// The names of the variables that rows of data have values of: the inputs, and the measured output.
+    /// The names of the variables with values in rows of data: the inputs, and the measured output.
     fn _measured_names(&self) -> Vec<String> {
         let name = |variable: &fuzzy::model::Variable| variable.name.clone();
         self.model(|model| model.measured_variables().map(name).collect())
     }
 
-    /// The text it was read from, and the name of its file.
+    /// The text that was read, and the name of its file.
     fn _text(&self) -> (String, String) {
         let source = self.source();
         (source.text.clone(), source.file.clone())
@@ -196,13 +196,13 @@ impl RuleSet {
         json.map_err(|error| data_error(error, None))
     }
 
-    /// The same with lists of named entries, whose order no sorting of keys changes.
+    /// The same with lists of named entries, whose order does not depend on the sorting of keys.
     fn _json_lists(&self) -> PyResult<String> {
         let json = self.model(serde_json::to_string);
         json.map_err(|error| data_error(error, None))
     }
 
-    /// Replaces the model by a document in JSON; comments of the text stay where they can. Nothing changes where the
+    /// Replaces the model by a document in JSON; comments of the text are kept where possible. Nothing changes if the
     /// document has errors.
     fn _edit(&self, py: Python<'_>, json: &str) -> PyResult<()> {
         let tree: Result<Node, _> = serde_json::from_str(json);
@@ -213,7 +213,7 @@ impl RuleSet {
         Ok(())
     }
 
-    /// The text in a format, as it is saved, and warnings. In the format that it was read from, this is the text that was read.
+    /// The text in a format, as it is saved, and warnings. In the original format, this is the text that was read.
     #[pyo3(signature = (format, lossy = false))]
     fn _to_text(
         &self,
@@ -257,7 +257,7 @@ impl RuleSet {
         })
     }
 
-    /// The degrees of membership of values in a term. Outside the range of the variable they are those at its ends.
+    /// The degrees of membership of values in a term. Values outside the range of the variable are clamped.
     fn _degrees<'py>(
         &self,
         variable: &str,
@@ -290,8 +290,8 @@ impl RuleSet {
         Ok(values.map(degree).into_pyarray(py))
     }
 
-    /// Rule by rule what each row rests on: the row, the output and the rule from 1, strength, share, and the dominant rule of
-    /// the row. `columns` are in the order of the inputs. A row with an unknown input has none.
+    /// The rules that contribute to each row: the row, the output and the rule from 1, strength, share, and the dominant rule of
+    /// the row. `columns` are in the order of the inputs. A row with an unknown input has no rules.
     fn _explain_rows<'py>(
         &self,
         py: Python<'py>,
@@ -302,7 +302,7 @@ impl RuleSet {
         explained_rows(py, compiled, &columns)
     }
 
-    /// Another model that is equal, and apart: an edit of one does not change the other.
+    /// Makes another model an equal but independent copy: editing one does not change the other.
     fn _share(&self, other: &RuleSet) {
         self.replace(other.source());
     }
@@ -311,35 +311,35 @@ impl RuleSet {
         self.source().document.model == other.source().document.model
     }
 
-    /// The rule set in YAML; comments of a file it was read from are not in it.
+    /// The rule set in YAML, without the comments of the file.
     fn to_yaml(&self) -> String {
         self.model(yaml::to_string)
     }
 
-    /// Evaluates the rule set, and gives values.
+    /// Evaluates the rule set and returns the values.
     ///
     /// Parameters
     /// ----------
     /// values
     ///     A number for each input, in their order or by their names: ``model(8, 9)``, ``model(service=8, food=9)``,
     ///     ``model({"service": 8, "food": 9})``. Or arrays that broadcast against each other. Or one frame with a column for
-    ///     each input: pandas, polars, pyarrow, DuckDB, and whatever else hands over Arrow data. None, null and NaN are
+    ///     each input: pandas, polars, pyarrow, DuckDB, or any other library that exports Arrow data. None, null and NaN are
     ///     unknown.
     /// threads
-    ///     How many threads evaluate arrays and frames; as many as there are cores where it is None.
+    ///     The number of threads for arrays and frames; by default the number of cores.
     ///
     /// Returns
     /// -------
     /// float, numpy.ndarray or frame
-    ///     The value of the output; NaN where it is unknown, null in frames. With several outputs a dict by their names. A
-    ///     frame gives a frame of the same library.
+    ///     The value of the output; NaN if it is unknown, null in frames. With several outputs, a dict by their names. For a
+    ///     frame, a frame of the same library.
     ///
     /// Raises
     /// ------
     /// DataError
-    ///     An input has no value, a name is no input, or a value is no number.
+    ///     An input has no value, a name is not an input, or a value is not a number.
     /// RuleSetError
-    ///     The rule set is not finished, or was built wrong.
+    ///     The rule set is not finished, or has errors.
     #[pyo3(signature = (*args, threads = None, **named))]
     fn __call__<'py>(
         slf: &Bound<'py, Self>,
@@ -350,20 +350,20 @@ impl RuleSet {
         answer(slf, args, named, threads, false)
     }
 
-    /// Evaluates the rule set, and says what its values rest on.
+    /// Evaluates the rule set and returns the values with their reasons.
     ///
     /// Parameters
     /// ----------
     /// values
-    ///     As the model is called.
+    ///     As in a call of the model.
     /// threads
-    ///     As the model is called.
+    ///     As in a call of the model.
     ///
     /// Returns
     /// -------
     /// Outcome, Outcomes or frame
-    ///     Value, coverage, dominant rule and whether an input was clamped: of a point, as arrays, or as the columns of a
-    ///     frame. With several outputs a dict by their names.
+    ///     Value, coverage, dominant rule and whether an input was clamped: of a point, as arrays, or as columns of a
+    ///     frame. With several outputs, a dict by their names.
     ///
     /// Examples
     /// --------
@@ -379,7 +379,7 @@ impl RuleSet {
         answer(slf, args, named, threads, true)
     }
 
-    /// Evaluates a table that Arrow's C interface hands over.
+    /// Evaluates a table from Arrow's C interface.
     #[pyo3(signature = (frame, threads = None, with_reasons = false))]
     fn _table(
         &self,
@@ -403,10 +403,10 @@ impl RuleSet {
     /// Returns
     /// -------
     /// Explanation or frame
-    ///     Of a point the degree of each term, the rules that fired and their shares; Jupyter draws it, ``print`` writes it.
-    ///     Of a frame a frame of the same library with a row for each rule that contributes to an output of a row: ``row``,
+    ///     For a point, the degree of each term, the rules that fired and their shares; Jupyter draws it, ``print`` prints it.
+    ///     For a frame, a frame of the same library with a row for each rule that contributes to an output of a row: ``row``,
     ///     ``output``, ``rule``, ``strength``, ``share`` and the ``dominant_rule`` of that row and output. A row with an
-    ///     unknown input has none.
+    ///     unknown input has no rules.
     ///
     /// Raises
     /// ------
@@ -443,13 +443,13 @@ impl RuleSet {
     /// Parameters
     /// ----------
     /// points
-    ///     How many points there are along each axis, from one end of the range to the other.
+    ///     The number of points along each axis, from one end of the range to the other.
     /// output
-    ///     The output; the first where it is None.
+    ///     The output; by default the first.
     /// threads
-    ///     How many threads evaluate it; as many as there are cores where it is None.
+    ///     The number of threads; by default the number of cores.
     /// fixed
-    ///     Inputs that are held at a value, by their names. The others are the axes.
+    ///     Inputs with a fixed value, by their names. The others are the axes.
     ///
     /// Returns
     /// -------
@@ -495,19 +495,19 @@ impl RuleSet {
         })?
     }
 
-    /// Looks for gaps, contradictions and jumps in the rules.
+    /// Checks the rules for gaps, contradictions and jumps.
     ///
     /// Parameters
     /// ----------
     /// coverage
-    ///     The firing strength that some rule should reach everywhere.
+    ///     The firing strength that at least one rule should reach everywhere.
     /// rising, falling
-    ///     Inputs that no output may fall, or rise, with: ``["service"]``, or ``["service:tip"]`` for one of several outputs.
+    ///     Inputs with which no output may fall, or rise: ``["service"]``, or ``["service:tip"]`` for one of several outputs.
     ///
     /// Returns
     /// -------
     /// list of Diagnostic
-    ///     What an author should know, in the order of the text; ``str()`` draws one.
+    ///     The findings in the order of the text; ``str()`` draws one.
     #[pyo3(signature = (*, coverage = 0.5, rising = Vec::new(), falling = Vec::new()))]
     fn check<'py>(
         &self,

@@ -1,4 +1,4 @@
-//! The same said with fewer rules: `flagred.simplify`.
+//! Simplification to fewer rules with the same outputs: `flagred.simplify`.
 
 use flagred_tuning::{SimplifyError, SimplifySettings, simplify};
 use fuzzy::{Model, yaml};
@@ -15,7 +15,7 @@ pub(crate) struct SimplifyOptions {
     seed: u64,
 }
 
-/// What `flagred.types.Simplified` is made of.
+/// The result inside `flagred.types.Simplified`.
 #[derive(IntoPyObject)]
 pub(crate) struct Simplified {
     model: String,
@@ -23,7 +23,7 @@ pub(crate) struct Simplified {
     dropped: Vec<usize>,
     inputs: Vec<String>,
     points: usize,
-    /// The output, its value before and after, and the inputs.
+    /// The largest difference: the output, its value before and after, and the inputs.
     difference: Option<(String, f64, f64, Vec<f64>)>,
 }
 
@@ -36,7 +36,7 @@ impl From<SimplifyError> for Failed {
     }
 }
 
-/// A rule set that says the same; `columns` are rows at which both are compared, too, one for each input or none.
+/// Simplifies a rule set; `columns` are rows at which outputs are compared too, one for each input, or empty.
 #[pyfunction]
 pub(crate) fn _simplify(
     py: Python<'_>,

@@ -1,4 +1,4 @@
-//! The text of a rule set, its document, and the engine that it compiles to.
+//! The text of a rule set, its document, and its compiled engine.
 
 use std::sync::{Arc, OnceLock};
 
@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 
 use crate::{compiled::Compiled, errors::rule_set_error};
 
-/// A rule set as it was read; an edit makes another.
+/// A rule set as it was read; an edit creates a new one.
 pub(crate) struct Source {
     pub(crate) file: String,
     pub(crate) text: String,
@@ -20,7 +20,7 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// Reads a text, in whatever format; an `unfinished` rule set is in YAML.
+    /// Reads a text in any format; an `unfinished` rule set is in YAML.
     pub(crate) fn read(
         py: Python<'_>,
         text: String,

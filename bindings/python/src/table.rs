@@ -1,4 +1,4 @@
-//! A table that Arrow's C interface hands on: to pyarrow, polars, pandas, DuckDB.
+//! A table for other libraries through Arrow's C interface: pyarrow, polars, pandas, DuckDB.
 
 use std::{collections::HashMap, sync::Arc};
 
@@ -21,7 +21,7 @@ use crate::{
     outcome::{Columns, NO_RULE},
 };
 
-/// A column as a pickle has it: name, metadata, values, and which of them are known where not all are.
+/// A pickled column: name, metadata, values, and which of them are known, unless all are.
 type Column<'py> = (
     String,
     HashMap<String, String>,
@@ -29,7 +29,7 @@ type Column<'py> = (
     Option<PyReadonlyArray1<'py, bool>>,
 );
 
-/// The values of a column. Those that are unknown may be anything.
+/// The values of a column. Unknown values are arbitrary.
 #[derive(FromPyObject)]
 enum Values<'py> {
     Floats(PyReadonlyArray1<'py, f64>),
@@ -61,8 +61,8 @@ impl Values<'_> {
     }
 }
 
-/// Columns of numbers. Whatever takes Arrow streams takes it: ``pyarrow.table(t)``, ``polars.DataFrame(t)``; and
-/// ``pandas.DataFrame(dict(t))`` takes its NumPy columns.
+/// Columns of numbers. Any library that imports Arrow streams can read it: ``pyarrow.table(t)``, ``polars.DataFrame(t)``;
+/// ``pandas.DataFrame(dict(t))`` uses its NumPy columns.
 #[pyclass(frozen, mapping, module = "flagred.types")]
 pub(crate) struct Table {
     pub(crate) batches: Vec<RecordBatch>,
@@ -78,7 +78,7 @@ impl Table {
         py: Python<'py>,
         requested_schema: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyCapsule>> {
-        // The protocol allows to ignore the wish.
+        // The protocol allows ignoring the request.
         let _ = requested_schema;
         arrow::export(py, self.batches.clone(), Arc::clone(&self.schema))
     }
@@ -109,7 +109,7 @@ impl Table {
         Ok(values.into_pyarray(py).into_any())
     }
 
-    /// A table of its columns, as a pickle has them.
+    /// Creates a table from its pickled columns.
     #[staticmethod]
     fn _of_columns(columns: Vec<Column<'_>>) -> PyResult<Self> {
         let (mut fields, mut arrays) = (Vec::new(), Vec::new());
@@ -170,7 +170,7 @@ impl Table {
     }
 }
 
-/// The names and types of the columns of results, as [`batch`] makes them.
+/// The names and types of the columns of results, in the order of [`batch`].
 pub(crate) fn schema(outputs: &[String], with_reasons: bool) -> SchemaRef {
     let mut fields = Vec::new();
     let reasons = [
@@ -208,7 +208,7 @@ pub(crate) fn batch(schema: &SchemaRef, results: Vec<Columns>) -> PyResult<Recor
     RecordBatch::try_new(Arc::clone(schema), columns).map_err(|error| data_error(error, None))
 }
 
-/// A column in which NaN, which is unknown, is null.
+/// A column in which NaN (unknown) becomes null.
 pub(crate) fn known(values: Vec<f64>) -> ArrayRef {
     Arc::new(if values.iter().any(|value| value.is_nan()) {
         let values = values.into_iter();

@@ -1,4 +1,4 @@
-//! Threads: pools that survive a fork, and work that Ctrl-C ends.
+//! Threads: pools that survive a fork, and work that Ctrl-C interrupts.
 
 use std::{
     collections::HashMap,
@@ -21,10 +21,10 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::errors::data_error;
 
-/// The pools of this process, by the number of their threads.
+/// The pools of this process, by their numbers of threads.
 type Pools = (u32, HashMap<usize, Arc<ThreadPool>>);
 
-/// The number of threads that Python gives.
+/// The number of threads from Python.
 pub(crate) fn count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
     value.extract().map_err(|_| {
         let shown = value
@@ -52,9 +52,9 @@ pub(crate) fn checked(threads: Option<usize>) -> PyResult<()> {
     }
 }
 
-/// A pool of so many threads, at most as many as there are cores; of that many for `None`.
+/// A pool with this number of threads, at most the number of cores, which is also the default.
 ///
-/// A fork copies a pool without its threads, which would wait for ever. So a child process makes its own.
+/// A fork copies a pool without its threads, so work would wait for ever. Therefore a child process creates its own pools.
 pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
     checked(threads)?;
@@ -63,7 +63,7 @@ pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let here = process::id();
     if let Some((_, pools)) = guard.take_if(|(process, _)| *process != here) {
-        // Their threads are in the parent: ending them here would wait for ever.
+        // Their threads are in the parent process: ending them here would wait for ever.
         std::mem::forget(pools);
     }
     let (_, pools) = guard.get_or_insert_with(|| (here, HashMap::new()));
@@ -76,7 +76,7 @@ pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     Ok(pool)
 }
 
-/// Does long work on another thread while this one listens for Ctrl-C. After Ctrl-C nobody waits for the work.
+/// Runs long work on another thread while this one checks for Ctrl-C. After Ctrl-C, nothing waits for the work.
 pub(crate) fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
@@ -84,8 +84,8 @@ pub(crate) fn interruptible<T: Send + 'static>(
     listening(py, work, Err)
 }
 
-/// As [`interruptible`], for work that ends soon with a result once `stop` is set. The first Ctrl-C sets it and waits for the
-/// result; the second does not wait. Gives also whether there was a Ctrl-C.
+/// Like [`interruptible`], for work that returns a result soon after `stop` is set. The first Ctrl-C sets it and waits for the
+/// result; the second does not wait. Also returns whether Ctrl-C was pressed.
 pub(crate) fn stoppable<T: Send + 'static>(
     py: Python<'_>,
     stop: &AtomicBool,
@@ -103,13 +103,13 @@ pub(crate) fn stoppable<T: Send + 'static>(
     Ok((result, was_interrupted))
 }
 
-/// Does work on another thread. `heard` gets what signals raise, and says whether to go on waiting.
+/// Runs work on another thread. `heard` receives exceptions from signals, and returns whether to continue waiting.
 fn listening<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
     mut heard: impl FnMut(PyErr) -> PyResult<()>,
 ) -> PyResult<T> {
-    /// Work that is shorter is not noticed to wait.
+    /// Short enough not to be noticed as a delay.
     const LISTEN_EVERY: Duration = Duration::from_millis(50);
     let (sender, mut receiver) = mpsc::sync_channel(1);
     thread::spawn(move || sender.send(work()));

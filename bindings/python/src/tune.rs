@@ -1,4 +1,4 @@
-//! Numbers from rows: `flagred.tune`.
+//! Tuning of numbers on rows: `flagred.tune`.
 
 use std::{
     ops::ControlFlow,
@@ -41,7 +41,7 @@ pub(crate) struct TuneOptions {
     folds: Option<u32>,
 }
 
-/// What `flagred.types.Tuned` is made of.
+/// The result inside `flagred.types.Tuned`.
 #[derive(IntoPyObject)]
 pub(crate) struct Tuned {
     model: String,
@@ -96,7 +96,7 @@ impl TuneOptions {
     }
 }
 
-/// Numbers from rows, and whether Ctrl-C ended the search before its next step.
+/// Tunes numbers on rows; also returns whether Ctrl-C ended the search before its next step.
 #[pyfunction]
 #[pyo3(signature = (rule_set, rows, options, threads))]
 pub(crate) fn _tune(
@@ -199,12 +199,12 @@ fn tune_numbers(
     })
 }
 
-/// Six digits: authors read them.
+/// Rounds to six digits, because authors read them.
 fn rounded(loss: f64) -> f64 {
     format!("{loss:.5e}").parse().unwrap_or(loss)
 }
 
-/// The rows that can be used, as columns, and why others cannot.
+/// The usable rows as columns, and the reasons why others are not usable.
 fn data(model: &Model, rows: Vec<Row>, loss: Loss) -> (Data, Vec<String>) {
     let mut data = Data {
         inputs: vec![Vec::with_capacity(rows.len()); model.inputs.len()],

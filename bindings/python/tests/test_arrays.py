@@ -1,4 +1,4 @@
-"""NumPy arrays: any shape, any strides, any type of number."""
+"""NumPy arrays: any shape, any strides, any numeric type."""
 
 import os
 import pathlib
@@ -100,7 +100,7 @@ def test_any_arrays_that_broadcast(data):
         assert np.array_equal(array, copy, equal_nan=array.dtype.kind == "f")
 
 
-def test_what_stands_for_unknown():
+def test_representations_of_unknown_values():
     expected = MODEL([8.0, np.nan, 8.0], 9)
     assert np.isnan(expected[1]) and not np.isnan(expected[0])
     masked = np.ma.masked_array([8, 7, 8], mask=[0, 1, 0])
@@ -108,7 +108,7 @@ def test_what_stands_for_unknown():
         assert np.array_equal(MODEL(given, 9), expected, equal_nan=True)
 
 
-def test_shapes_at_the_edges():
+def test_empty_and_scalar_shapes():
     assert MODEL([], []).shape == (0,)
     assert MODEL(np.zeros((0, 3)), 1.0).shape == (0, 3)
     assert type(MODEL(np.float32(8), np.int8(9))) is float
@@ -119,7 +119,7 @@ def test_shapes_at_the_edges():
     assert MODEL(read_only, read_only).shape == (2,)
 
 
-def test_what_holds_no_numbers_is_refused():
+def test_arrays_without_numbers_are_refused():
     for wrong in (np.array(["a"]), np.array(["2020-01-01"], dtype="M8[D]"), np.array([1j]), [object()]):
         with pytest.raises(flagred.DataError):
             MODEL(wrong, 1.0)

@@ -120,7 +120,7 @@ def test_rules_in_blocks():
     assert model.rules[-1].note == "the last" and [rule.text for rule in model.rules] == rules
 
 
-def test_an_unfinished_model_says_what_it_lacks():
+def test_an_unfinished_model_reports_its_missing_parts():
     with pytest.raises(flagred.RuleSetError) as error:
         flagred.Model("empty")(1)
     assert [finding.code for finding in error.value.findings] == ["missing-key", "no-rules"]

@@ -18,7 +18,7 @@ from conftest import ROOT
 
 COMMAND = os.path.join(sysconfig.get_path("scripts"), "flagred")
 FLIGHT = str(ROOT / "examples/flights/steady.BIN")
-# The program of crates/cli, which does the same.
+# The program of crates/cli, whose output must be the same.
 PROGRAM = os.environ.get("FLAGRED_COMMAND")
 
 
@@ -41,7 +41,7 @@ def run(*arguments: str, program: str = COMMAND, **more) -> subprocess.Completed
         (["explain", str(ROOT / "rules/tipper.yaml"), "service=8", "food=9"], 0),
     ],
 )
-def test_it_prints_and_returns_what_the_program_does(arguments, code):
+def test_the_command_prints_and_returns_the_same_as_the_program(arguments, code):
     ours = run(*arguments)
     assert ours.returncode == code, ours.stderr
     assert "Traceback" not in ours.stderr
@@ -57,7 +57,7 @@ def test_names_that_are_not_unicode_reach_the_command(tmp_path):
     assert b"flagred-assess.1" in os.listdir(folder)
 
 
-def test_it_starts_without_numpy_and_fast():
+def test_the_command_starts_without_numpy_and_fast():
     seconds = []
     for _ in range(5):
         start = time.perf_counter()
@@ -82,13 +82,13 @@ def test_ctrl_c_ends_a_watch():
     assert f"127.0.0.1:{port}" in watch.stdout.readline()
     watch.send_signal(signal.SIGINT)
     _, err = watch.communicate(timeout=20)
-    # 3, since no vehicle was heard.
+    # Exit code 3, since no vehicle was received.
     assert (watch.returncode, err) == (3, "")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of Unix")
-def test_ctrl_c_ends_what_handles_no_signals():
-    # Waits for its standard input.
+def test_ctrl_c_ends_commands_that_handle_no_signals():
+    # Blocks on its standard input.
     waiting = subprocess.Popen([COMMAND, "assess", "-"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     time.sleep(1)
     waiting.send_signal(signal.SIGINT)

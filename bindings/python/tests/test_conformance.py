@@ -1,4 +1,4 @@
-"""The corpus of all languages: every outcome to the bit, on every path."""
+"""The corpus shared by all languages: every outcome bit for bit, by every path."""
 
 import math
 import re
@@ -24,7 +24,7 @@ def said(outcome):
 
 
 def corpus():
-    """The cases: where each stands, its model, its point, and the bits of its outcomes."""
+    """The cases: the position of each, its model, its point, and the bits of its outcomes."""
     on_file = {}
     for line in (ROOT / "tests/conformance.bits").read_text().splitlines():
         file, number, *outcomes = line.split(" ")

@@ -1,4 +1,4 @@
-"""The Python of the documents runs and prints what they say."""
+"""The Python code of the documents runs and prints the documented output."""
 
 import doctest
 import os
@@ -24,7 +24,7 @@ def blocks(document: str, language: str) -> list[tuple[str, int]]:
 
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder that looks like the repository, in which documents may write."""
+    """A copy of the repository's files, in which documents may write."""
     for shared in ("examples", "rules"):
         os.symlink(ROOT / shared, tmp_path / shared)
     monkeypatch.chdir(tmp_path)
@@ -34,7 +34,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize(
     ("document", "least", "needs"), [("docs/python.md", 40, "sklearn"), ("README.md", 3, "sklearn"), ("docs/fleet.md", 8, "distributed")]
 )
-def test_a_document_is_true(desk, document, least, needs):
+def test_the_code_of_a_document_runs_as_printed(desk, document, least, needs):
     pytest.importorskip(needs, reason=f"{needs} is not installed: `pip install flagred[sklearn,fleet]`")
     parts = blocks(document, "pycon")
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE, verbose=False)
@@ -49,7 +49,7 @@ def test_a_document_is_true(desk, document, least, needs):
 
 
 def printed(program: str, python: str) -> str:
-    """What a program prints, after comparing it with the comment behind its last line."""
+    """The output of a program, after comparing it with the comment after its last line."""
     done = subprocess.run([python, "-c", program], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == program.strip().rpartition("# ")[2]
@@ -61,7 +61,7 @@ def programs() -> dict[str, str]:
     return {text.partition("\n")[0].removeprefix("# with "): text for text in texts}
 
 
-def test_the_program_beside_that_of_scikit_fuzzy():
+def test_the_program_compared_with_scikit_fuzzy():
     assert printed(programs()["flagred"], sys.executable) == "19.8578"
 
 

@@ -1,4 +1,4 @@
-"""Profiles on many flights, held against the command line."""
+"""Profiles on many flights, compared with the command line."""
 
 import gzip
 import json
@@ -22,7 +22,7 @@ HEADER = "t_s,motor1,motor2,motor3,motor4,roll_des_deg,roll_deg,pitch_des_deg,pi
 
 
 def log(vehicle: str, kind: str, upset_s: float | None) -> bytes:
-    """A minute in the air; some seconds before the upset the motors reach their limits, then it rolls over."""
+    """A minute in the air; some seconds before the upset, the motors reach their limits, then it rolls over."""
     lines = [f"# vehicle: {vehicle}\n# kind: {kind}\n", HEADER]
     for i in range(1600):
         t_s = i / 25
@@ -51,7 +51,7 @@ def evaluation(folder) -> flagred.types.Evaluation:
 
 
 def command(*arguments: object) -> str:
-    """What `flagred validate` prints."""
+    """The output of `flagred validate`."""
     if COMMAND is None or shutil.which(COMMAND) is None:
         pytest.skip("FLAGRED_COMMAND names no command `flagred`")
     done = subprocess.run([COMMAND, "validate", *map(str, arguments)], capture_output=True, text=True, timeout=300)
@@ -71,7 +71,7 @@ def test_logs_are_evaluated_as_by_the_command_line(folder, evaluation):
     assert flagred.evaluate(folder, "flagred", threads=1).to_json() == evaluation.to_json()
 
 
-def test_what_an_evaluation_holds(evaluation):
+def test_the_content_of_an_evaluation(evaluation):
     assert (evaluation.cases, evaluation.horizon_s, len(evaluation.flights)) == ("steps", 5, 4)
     assert list(evaluation.estimators)[:2] == ["flagred", "flagred-paper"] and len(evaluation.estimators) == 11
     assert repr(evaluation).startswith("Evaluation(11 estimators on ")
@@ -213,7 +213,7 @@ def test_rows_that_cannot_be_used():
         flagred.evaluate(rows={**columns(), "att_rmse_deg": [1, None, 2, 3]})
     with pytest.raises(flagred.DataError, match="row 0, column `c_mean`: no finite number"):
         flagred.evaluate(rows={**columns(), "c_mean": ["a", "b", "c", "d"]})
-    with pytest.raises(flagred.DataError, match="not of one length"):
+    with pytest.raises(flagred.DataError, match="different lengths"):
         flagred.evaluate(rows={**columns(), "c_mean": [1.0]})
 
 

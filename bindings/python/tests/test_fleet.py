@@ -1,4 +1,4 @@
-"""Fleets: every log is one row, whatever happens in between."""
+"""Fleets: every log has one row, after any interruption."""
 
 import os
 import shutil
@@ -32,7 +32,7 @@ def csv(number: int) -> str:
 
 @pytest.fixture
 def logs(tmp_path: Path, steady: Path) -> Path:
-    """Seven logs that are flights, in two folders, and two that are not."""
+    """Seven flight logs in two folders, and two files that are not logs."""
     folder = tmp_path / "logs"
     for number in range(6):
         file = folder / f"vehicle=v{number}" / f"{number}.csv"
@@ -47,7 +47,7 @@ def logs(tmp_path: Path, steady: Path) -> Path:
 
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Shards are processed in this process: most tests need no cluster."""
+    """Processes shards in this process: most tests do not need a cluster."""
 
     def work(planned, done, told, scheduler, workers):
         for shard in planned.shards:
@@ -70,7 +70,7 @@ def flights(out: Path) -> dict[str, dict]:
 
 
 def content(out: Path) -> list[list]:
-    """All rows of all tables, in an order of their own."""
+    """All rows of all tables, sorted."""
     return [sorted(map(str, table(out, kind).to_pylist())) for kind in ("flights", "steps")]
 
 
@@ -140,7 +140,7 @@ def test_motors_have_their_mean_margin(logs, tmp_path, here):
     assert flights(out)["noise.bin"]["motor_margins"] is None
 
 
-def test_only_what_is_missing_or_changed(logs, tmp_path, here):
+def test_only_missing_or_changed_logs_are_assessed(logs, tmp_path, here):
     out = tmp_path / "out"
     fleet.assess([str(logs)], str(out))
     assert len(flights(out)) == 3
@@ -173,12 +173,12 @@ def test_a_log_of_the_same_content(logs, tmp_path, here):
     assert len(flights(out)) == 3
 
 
-def test_other_settings_are_another_answer(logs, tmp_path, here):
+def test_other_settings_assess_logs_again(logs, tmp_path, here):
     out = tmp_path / "out"
     fleet.assess([str(logs)], str(out))
     assert fleet.assess([str(logs)], str(out), profile="flagred-paper").assessed == 3
     assert {row["profile"] for row in flights(out).values()} == {"flagred-paper"}
-    with pytest.raises(fleet.FleetError, match="a step of 0 s is none"):
+    with pytest.raises(fleet.FleetError, match="a step of 0 s is not possible"):
         fleet.assess([str(logs)], str(out), step_s=0)
 
 
@@ -187,7 +187,7 @@ def test_deleted_logs_are_kept_and_marked(logs, tmp_path, here):
     fleet.assess([str(logs)], str(out), recursive=True)
     away = tmp_path / "away.csv"
     (logs / "vehicle=v2" / "2.csv").rename(away)
-    # What is not listed this time is not missing.
+    # A log of a source that is not listed this time is not missing.
     fleet.assess([str(logs)], str(out))
     assert not any(row["deleted"] for row in flights(out).values())
     fleet.assess([str(logs)], str(out), recursive=True)
@@ -204,11 +204,11 @@ def test_nothing_is_written_in_a_dry_run(logs, tmp_path, capsys):
 
 
 class Killed(BaseException):
-    """What ends a process."""
+    """Ends a process."""
 
 
-def test_every_write_can_be_the_last(logs, tmp_path, here, monkeypatch):
-    """A run that is killed at its nth write, and then one that is not, give the dataset of an undisturbed run."""
+def test_an_interruption_after_any_write_is_repaired(logs, tmp_path, here, monkeypatch):
+    """A run killed at its nth write, followed by a complete run, gives the dataset of an undisturbed run."""
     whole = tmp_path / "whole"
     fleet.assess([str(logs)], str(whole), recursive=True)
     original = fleet.storage.Place.write
@@ -241,8 +241,8 @@ def change_some(logs: Path) -> None:
     (logs / "vehicle=v5" / "5.csv").unlink()
 
 
-def test_what_replaces_rows_can_be_interrupted(logs, tmp_path, here, monkeypatch):
-    """As above, with changed and deleted logs and small files joined, killed at writes and at deletions."""
+def test_commands_that_replace_rows_can_be_interrupted(logs, tmp_path, here, monkeypatch):
+    """As above, with changed and deleted logs and compaction, killed at writes and at deletions."""
     first = tmp_path / "first"
     fleet.assess([str(logs)], str(first), recursive=True)
     fleet.compact(str(first))
@@ -285,7 +285,7 @@ def test_what_replaces_rows_can_be_interrupted(logs, tmp_path, here, monkeypatch
     assert last > 10, "the run ended before it was killed"
 
 
-def test_a_worker_of_a_run_before_commits_nothing(logs, tmp_path):
+def test_a_worker_of_an_earlier_run_commits_nothing(logs, tmp_path):
     out = tmp_path / "out"
     place = open_place(str(out))
     job = fleet.Job.of(str(out), flagred.Profile(), 1.0, False).of_run(takeover.take_over(place))
@@ -299,7 +299,7 @@ def test_a_worker_of_a_run_before_commits_nothing(logs, tmp_path):
 
 
 def test_two_rows_of_a_log_become_one(logs, tmp_path, here):
-    """As a worker leaves them that commits while the next run begins."""
+    """As after a worker that commits while the next run begins."""
     out = tmp_path / "out"
     fleet.assess([str(logs)], str(out), recursive=True)
     before = content(out)
@@ -311,7 +311,7 @@ def test_two_rows_of_a_log_become_one(logs, tmp_path, here):
     assert content(out) == before
 
 
-def test_a_vanished_log_is_no_row_and_a_busy_storage_is_asked_again(logs, tmp_path, monkeypatch):
+def test_a_vanished_log_has_no_row_and_a_busy_storage_is_retried(logs, tmp_path, monkeypatch):
     out = tmp_path / "out"
     place = open_place(str(out))
     job = fleet.Job.of(str(out), flagred.Profile(), 1.0, True).of_run(takeover.take_over(place))
@@ -333,7 +333,7 @@ def test_a_vanished_log_is_no_row_and_a_busy_storage_is_asked_again(logs, tmp_pa
     rows = flights(out)
     assert len(rows) == 5 and rows["1.csv"]["status"] == "assessed"
     assert (rows["2.csv"]["status"], rows["2.csv"]["error"]) == ("unavailable", "503 slow down")
-    # The next run asks for it again.
+    # The next run requests it again.
     with Catalog(job.settings) as catalog:
         source = open_place(str(logs))
         catalog.take_in(source, source.logs(True, ["*.csv"]))
@@ -360,12 +360,12 @@ def test_shards_are_cut_by_size_and_source():
     assert one.halves()[0].logs + one.halves()[1].logs == one.logs
 
 
-def test_a_small_fleet_employs_all_cores():
+def test_a_small_fleet_uses_all_cores():
     logs = [("a", fleet.Log(str(i), 3_000_000, 0)) for i in range(108)]
     parts = list(shards(logs, *largest(108, 324_000_000, 16)))
     assert len(parts) >= 54 and max(len(part.logs) for part in parts) <= 2
     assert len(list(shards(logs, *largest(108, 324_000_000, 1)))) == 4
-    # A large fleet keeps the largest shards, and small logs do not make one shard.
+    # A large fleet has the largest shards, and small logs do not form a single shard.
     assert largest(1_000_000, 4 << 40, 16) == (128 << 20, 1000)
     assert largest(40, 40_000, 2)[1] == 5
 
@@ -383,16 +383,16 @@ def test_the_command_line_on_all_cores(logs, tmp_path, capsys):
     arguments = ["assess", str(logs), "--recursive", "--out", str(out), "--workers", "2"]
     assert main(arguments) == 0
     said = capsys.readouterr()
-    assert said.out == "9 logs read, 0 of them as before, 2 not assessed\n" and "dashboard: http://127.0.0.1" in said.err
+    assert said.out == "9 logs read, 0 of them unchanged, 2 not assessed\n" and "dashboard: http://127.0.0.1" in said.err
     assert len(flights(out)) == 9
     assert main(arguments) == 0
-    assert capsys.readouterr().out == "0 logs read, 0 of them as before, 0 not assessed\n"
+    assert capsys.readouterr().out == "0 logs read, 0 of them unchanged, 0 not assessed\n"
     assert main(["assess", str(tmp_path / "none"), "--out", str(out)]) == 2
     assert "there is no" in capsys.readouterr().err
 
 
 def test_a_log_that_ends_its_worker_is_found(logs, tmp_path, monkeypatch):
-    """Workers have a `flagred.assess` that ends them at one of the logs, as running out of memory would."""
+    """The workers' `flagred.assess` kills them at one of the logs, like running out of memory."""
     plugin = tmp_path / "plugin"
     plugin.mkdir()
     (plugin / "sitecustomize.py").write_text(
@@ -418,7 +418,7 @@ def test_a_log_that_ends_its_worker_is_found(logs, tmp_path, monkeypatch):
 
 
 def test_a_full_disk_stops_the_run_before_logs_are_read_again(logs, tmp_path, monkeypatch, capsys):
-    """Workers have a disk that takes no steps any more. Each log is read at most once."""
+    """The workers' disk is full for steps. Each log is read at most once."""
     plugin = tmp_path / "plugin"
     plugin.mkdir()
     (plugin / "sitecustomize.py").write_text(
@@ -456,12 +456,12 @@ def test_a_disk_without_space_is_noticed_before_logs_are_read(logs, tmp_path, mo
         fleet.process(shard, job)
 
 
-def test_a_worker_that_dask_gave_up_is_replaced(monkeypatch):
+def test_a_worker_that_dask_lost_is_replaced(monkeypatch):
     monkeypatch.setattr(engine, "LONGEST_RESTART_S", 1.0)
     with engine.cluster(None, 1) as client:
         client.wait_for_workers(1)
         (nanny,) = client.cluster.workers.values()
-        # As where a worker ends while it starts.
+        # As if a worker ends while it starts.
         nanny.status = Status.starting
         os.kill(nanny.pid, 9)
         attendance = engine._Attendance(client)
@@ -480,7 +480,7 @@ def test_a_worker_that_dask_gave_up_is_replaced(monkeypatch):
 
 
 def odd_folder(tmp_path: Path) -> Path:
-    """Two logs, and what else a folder may hold."""
+    """Two logs, and other entries of a folder."""
     folder = tmp_path / "odd"
     (folder / "below").mkdir(parents=True)
     (folder / "0.csv").write_text(csv(0))
@@ -496,7 +496,7 @@ def odd_folder(tmp_path: Path) -> Path:
     return folder
 
 
-def test_each_file_counts_once_and_what_is_no_file_is_passed_over(tmp_path, here, capsys):
+def test_each_file_counts_once_and_other_entries_are_skipped(tmp_path, here, capsys):
     folder, out = odd_folder(tmp_path), tmp_path / "out"
     done = fleet.assess([str(folder)], str(out), recursive=True)
     assert (done.listed, done.assessed, done.passed_over) == (2, 2, 4)
@@ -506,7 +506,7 @@ def test_each_file_counts_once_and_what_is_no_file_is_passed_over(tmp_path, here
     sources = [str(folder), str(folder / "below"), str(tmp_path / "link")]
     assert fleet.assess(sources, str(out), recursive=True, dry_run=True).listed == 2
     assert main(["assess", str(folder), "--out", str(out), "--dry-run"]) == 0
-    assert "4 passed over: names that are not UTF-8, or not of files" in capsys.readouterr().err
+    assert "4 skipped: names that are not UTF-8, or not of files" in capsys.readouterr().err
 
 
 def test_a_link_to_a_log_elsewhere_counts(tmp_path, here):
@@ -539,7 +539,7 @@ def test_hard_links_to_one_file_that_are_sources_count_once(tmp_path, here):
     assert fleet.assess(sources, str(tmp_path / "out"), dry_run=True).listed == 1
 
 
-def test_without_its_extras_the_command_names_what_to_install(tmp_path):
+def test_without_extras_the_command_names_the_packages_to_install(tmp_path):
     (tmp_path / "dask.py").write_text("raise ModuleNotFoundError('no dask', name='dask')")
     paths = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
     environment = {**os.environ, "PYTHONPATH": paths}
@@ -597,7 +597,7 @@ def test_assess_reads_the_logs_of_a_torn_part_again(kind, logs, tmp_path, here, 
     assert content(out) == before
     assert main(arguments) == 0
     assert capsys.readouterr().out.startswith("0 logs read")
-    # The row of a log that is gone would be lost.
+    # The row of a deleted log would be lost.
     torn = tear(sorted((out / kind).rglob("*.parquet"))[-1])
     shutil.rmtree(logs)
     logs.mkdir()
@@ -627,7 +627,7 @@ def test_a_part_that_is_missing_is_named_and_its_logs_are_read_again(kind, logs,
     assert main(arguments) == 0
     assert f"warning: `{lost}` is missing" in capsys.readouterr().err
     assert content(out) == before
-    # The row of a log that is gone would be lost.
+    # The row of a deleted log would be lost.
     sorted((out / kind).rglob("*.parquet"))[-1].unlink()
     shutil.rmtree(logs)
     logs.mkdir()

@@ -1,4 +1,4 @@
-"""Changes of a fleet: firmware, parts and weeks of all vehicles, and vehicles that jump once or grow riskier."""
+"""Changes of a fleet: firmware, parts and weeks of all vehicles, and vehicles with a step or a trend."""
 
 import datetime
 import sys
@@ -26,7 +26,8 @@ Rise = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 def rows(seed: int, rise: Rise, firmware: Rise | None = None, windy_since: float = 100.0) -> dict[str, np.ndarray]:
-    """Flights on 40 days of 8 vehicles. The risk rises by 1 % with each m/s of wind, and by `rise` of vehicle, week and wind."""
+    """Flights on 40 days of 8 vehicles. The risk rises by 1 % with each m/s of wind, and by `rise`, which depends on
+    vehicle, week and wind."""
     chance = np.random.default_rng(seed)
     vehicle = np.repeat(np.arange(VEHICLES), FLIGHTS)
     day = np.concatenate([np.sort(chance.choice(140, FLIGHTS, replace=False)) for _ in range(VEHICLES)])
@@ -143,7 +144,7 @@ def test_flights_of_a_day_are_one_row_and_counts_are_those_that_warned(tmp_path)
 def test_a_slope_is_the_regression_of_scipy(tmp_path):
     stats = pytest.importorskip("scipy.stats", reason="scipy is not installed")
     columns = {name: of[:FLIGHTS] for name, of in rows(11, lambda vehicle, week, wind: 2 * week).items()}
-    # 39 pairs of flights are too few to estimate the influence of the wind from.
+    # 39 pairs of flights are too few to estimate the influence of the wind.
     (change,) = changes(tmp_path, columns)
     line = stats.linregress(columns["start_s"] / synthetic.WEEK_S, columns[change.measure])
     weeks = np.ptp(columns["start_s"]) / synthetic.WEEK_S
@@ -162,7 +163,7 @@ def test_the_same_dataset_gives_the_same_answer(tmp_path):
 
 
 def test_planted_changes_are_found_and_a_calm_fleet_is_calm():
-    """A few of the fleets of benches/fleet/planted.py, which has the figures."""
+    """A few of the fleets of benches/fleet/planted.py, which prints the figures."""
     for seed in (0, 1):
         firmware, worn, jumped = planted.changes(seed, True)
         assert firmware.cause == "firmware ArduCopter V4.6.1" and len(firmware.vehicles) == 6

@@ -34,7 +34,7 @@ HOSTILE = "<script>alert(1)</script>\u202e\u0007&'\""
 
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """4,000 flights of 40 vehicles; the risk of one rises by 1 % a week."""
+    """4,000 flights of 40 vehicles; the risk of one rises by 1 % per week."""
     out = tmp_path_factory.mktemp("fleet") / "dataset"
     synthetic.write(out, 4000, 40, rising={"v00003": 1.0})
     return out
@@ -79,7 +79,7 @@ def test_causes_are_words_for_a_pilot(dataset):
         assert cause["flights"] == cause["findings"] and 1 <= cause["vehicles"] <= 40
 
 
-def test_what_is_rare_is_found(dataset):
+def test_rare_findings_are_listed(dataset):
     asked = {question: fleet.ask(str(dataset), question).to_pylist() for question in fleet.QUESTIONS}
     assert all(asked.values()), [question for question, rows in asked.items() if not rows]
     worst = asked["worst"][0]
@@ -107,7 +107,7 @@ def test_an_alert(dataset, tmp_path, capsys):
     assert alert["interval_pct"][0] < alert["change_pct"] < alert["interval_pct"][1] and alert["p"] <= found["level"]
     assert alert["interval_pct"][0] / alert["change_pct"] * alert["slope_pct_week"] < 1 < alert["interval_pct"][1] / alert["change_pct"] * alert["slope_pct_week"]
     assert alert["text"] in html.unescape(page.read_text()) and alert["advice"].startswith("Check propellers")
-    # The command hears of each alert once; the exit code stays.
+    # The command receives each alert once; the exit code stays the same.
     received.unlink()
     assert main([*arguments, "--alert", "5", *with_command]) == 1
     assert not received.exists()
@@ -128,7 +128,7 @@ def test_a_command_that_fails_is_run_again(dataset, tmp_path, capsys):
     assert (tmp_path / "fleet.html").exists()
 
 
-def test_what_is_new_since_the_last_report(dataset, tmp_path):
+def test_news_since_the_last_report(dataset, tmp_path):
     out, page = tmp_path / "dataset", tmp_path / "fleet.html"
     shutil.copytree(dataset, out)
     fleet.write_report(str(out), page)
@@ -151,7 +151,7 @@ def test_what_is_new_since_the_last_report(dataset, tmp_path):
     part = page.read_text().partition("New since the report of ")[2].partition("<h2>Worst flights")[0]
     assert "5 new flights, 1 of them warned." in part and ">fresh</a>." in part and "/logs/new0.BIN" in part
     assert fleet.write_report(str(out), page).document["new_flights"] == 0
-    # Without what the last report remembered, nothing is called new.
+    # Without the data of the last report, nothing is called new.
     (tmp_path / "fleet.files/last.json").write_text("{")
     assert fleet.write_report(str(out), page).document["last_report_utc"] is None
 
@@ -214,7 +214,7 @@ def test_parts_of_named_vehicles(tmp_path):
 
 
 def test_reports_of_the_worst_flights(tmp_path, capsys):
-    """A log that is there has its report, linked from the fleet's page and the vehicle's; one that is gone is named."""
+    """An existing log has its report, linked from the fleet's page and the vehicle's; a deleted one is named."""
     logs, out, page = tmp_path / "logs/vehicle=one", tmp_path / "out", tmp_path / "fleet.html"
     logs.mkdir(parents=True)
     for name in ("a", "b"):
@@ -229,11 +229,11 @@ def test_reports_of_the_worst_flights(tmp_path, capsys):
     assert "a.csv" in written.read_text() and flagred.assess(logs / "a.csv").verdict in written.read_text()
     assert f"href='fleet.files/flights/{written.name}'" in page.read_text()
     (vehicle,) = (tmp_path / "fleet.files/vehicles").glob("one-*.html")
-    # Two flights on one day do not show that nothing changed.
+    # Two flights on one day do not prove that nothing changed.
     assert "0 of 1 vehicles have flights on at least 8 days" in page.read_text()
     assert "Whether the risk of this vehicle changes is unknown: it has flights on fewer than 8 days." in vehicle.read_text()
     assert f"href='../flights/{written.name}'" in vehicle.read_text() and "href='../../fleet.html'" in vehicle.read_text()
-    # It is not made again.
+    # It is not written again.
     (logs / "a.csv").unlink()
     assert main(arguments) == 0 and f"href='fleet.files/flights/{written.name}'" in page.read_text()
     with pytest.raises(SystemExit):
@@ -241,7 +241,7 @@ def test_reports_of_the_worst_flights(tmp_path, capsys):
 
 
 def columns(kind: str, schema: pa.Schema) -> str:
-    """The columns of a table as docs/fleet.md has them."""
+    """The columns of a table in docs/fleet.md."""
     lines = [f"`{kind}`:\n", "| column | unit | meaning |", "|---|---|---|"]
     for field in schema:
         unit = (field.metadata or {}).get(b"unit", b"").decode()
@@ -276,7 +276,7 @@ def test_programs_for_other_engines_are_python():
 
 
 class Tags(HTMLParser):
-    """Balanced tags, and what they load."""
+    """Checks that tags are balanced, and collects the files that they load."""
 
     VOID = {"meta", "path", "input", "br", "hr"}
 
@@ -324,7 +324,7 @@ def test_nothing_in_a_dataset_is_markup_and_the_page_loads_nothing(dataset, tmp_
 
 
 def test_the_page_in_a_browser(dataset, tmp_path):
-    """On a phone and on a desktop, light and dark: nothing is asked of the network, nothing is wider than the screen."""
+    """On a phone and on a desktop, light and dark: the page makes no network request, and nothing is wider than the screen."""
     sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     if chromium is None:
@@ -344,7 +344,7 @@ def test_the_page_in_a_browser(dataset, tmp_path):
                 page.on("pageerror", lambda error: said.append(str(error)))
 
                 def fits() -> None:
-                    """Nothing is cut off at the right, in no table either."""
+                    """Checks that nothing is cut off at the right, including tables."""
                     assert page.evaluate("document.documentElement.scrollWidth") <= width
                     page.evaluate("document.querySelectorAll('details').forEach((part) => (part.open = true))")
                     wider = "[...document.querySelectorAll('.scroll')].filter((box) => box.scrollWidth > box.clientWidth + 1).length"

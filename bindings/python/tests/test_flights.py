@@ -31,7 +31,7 @@ def test_a_log_from_a_path_bytes_and_a_file(steady, flight):
         assert flagred.read_log(file).name == str(steady)
 
 
-def test_what_a_log_holds(flight):
+def test_the_content_of_a_log(flight):
     assert (flight.format, flight.vehicle.frame, len(flight.motors)) == ("ArduPilot DataFlash", "QUAD/X", 4)
     assert flight.range.unit == "us" and flight.range.high == 2000
     assert flight.in_air.duration_s == pytest.approx(129.14, abs=0.01)
@@ -48,7 +48,7 @@ def test_what_a_log_holds(flight):
     assert np.array_equal(table["motor3"], flight.commands[:, 2], equal_nan=True)
 
 
-def test_what_tells_the_vehicle_from_others(flight):
+def test_the_identity_of_a_vehicle(flight):
     assert flight.vehicle.system_id == 1
     named = flagred.read_log(("# vehicle_id: seven\n# boot_count: 812\n" + CSV).encode()).vehicle
     assert (named.id, named.id_source, named.boot_count) == ("seven", "header vehicle_id", 812)
@@ -125,13 +125,13 @@ def test_findings_and_the_report():
         flagred.assess(CSV.encode(), step_s=0)
 
 
-def test_no_answer_says_why():
+def test_a_missing_verdict_has_a_reason():
     assessment = flagred.assess(b"t_s,motor1,motor2,motor3,motor4\n0,0.4,0.4,0.5,0.5\n")
     assert assessment.verdict == "NA" and assessment.reason and assessment.summary.risk_max is None
     assert "no verdict" in str(assessment)
 
 
-def test_what_is_no_log(tmp_path):
+def test_a_file_that_is_not_a_log(tmp_path):
     with pytest.raises(flagred.LogError, match="is empty"):
         flagred.read_log(b"")
     with pytest.raises(flagred.LogError, match="PNG picture"):
@@ -162,7 +162,7 @@ def test_profiles(tmp_path):
         flagred.Profile(str(file))
 
 
-def test_a_monitor_says_what_the_assessment_says():
+def test_a_monitor_agrees_with_the_assessment():
     flight = flagred.read_log(CSV.encode())
     assessment = flagred.assess(flight, "flagred-paper", step_s=None)
     monitor = flagred.Monitor("flagred-paper")
@@ -183,7 +183,7 @@ def test_a_monitor_says_what_the_assessment_says():
 
 
 @pytest.mark.parametrize("unknown", [float("nan"), None])
-def test_a_monitor_without_the_command_of_a_motor_knows_no_risk(unknown):
+def test_the_risk_is_unknown_without_the_command_of_a_motor(unknown):
     monitor = flagred.Monitor("flagred-paper")
     for i in range(1000):
         update = monitor.push(i * 0.04, [1.0, 0.0, 1.0, unknown if i >= 250 else 0.0])
@@ -207,7 +207,7 @@ def test_a_monitor_clamps_rounding_and_refuses_other_units():
     for command in [1500, 50.0, -1.0, float("inf")]:
         with pytest.raises(flagred.DataError, match="the command of motor 2 is `.*`, and a command is a fraction from 0 to 1"):
             monitor.push(0.0, [0.5, command, 0.5, 0.5])
-    # What was refused left nothing behind.
+    # A refused sample leaves no state behind.
     fresh = flagred.Monitor("flagred-paper")
     assert [monitor.push(i * 0.04, [0.5] * 4).risk for i in range(500)] == [fresh.push(i * 0.04, [0.5] * 4).risk for i in range(500)]
 
@@ -302,7 +302,7 @@ def test_a_monitor_is_pickled_before_a_flight_and_refuses_during_one():
     assert type(pickle.loads(pickle.dumps(monitor))) is flagred.Monitor
 
 
-def test_a_moment_tells_which_rules_fired():
+def test_a_moment_lists_the_rules_that_fired():
     assessment = flagred.assess(CSV.encode(), "flagred-paper")
     moment = assessment.moment(20.04)
     assert moment["t_s"] == 20.04
@@ -337,7 +337,7 @@ def test_signals_are_arrays_and_frames(flight):
     assert polars.DataFrame(roll).columns == ["t_s", "roll_deg"]
 
 
-def test_what_is_not_a_log_is_told_with_the_remedy(steady):
+def test_other_files_are_reported_with_a_remedy(steady):
     with pytest.raises(flagred.DataError, match=r"`list` is not a flight log\n  help: take one log at a time: `\[flagred"):
         flagred.assess([steady])
     with pytest.raises(flagred.DataError, match="`int` is not a flight log\n  help: give a path"):

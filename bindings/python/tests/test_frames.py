@@ -105,7 +105,7 @@ def test_our_own_table():
     assert isinstance(again(table), flagred.types.Table)
 
 
-def test_a_kept_value_crosses_batches():
+def test_a_previous_value_is_kept_across_batches():
     polars = library("polars")
     keeps = flagred.loads(KEEPS)
     part = polars.DataFrame({"heat": [30.0, 22.0]})
@@ -144,7 +144,7 @@ def test_any_frame_keeps_the_order_of_its_rows(rows, data):
 
 
 class Capsules:
-    """A table that gives what it was made of, once or ever again."""
+    """A table that returns its capsules once or repeatedly."""
 
     def __init__(self, kind, capsules):
         self.kind, self.capsules = kind, capsules
@@ -194,7 +194,7 @@ def test_capsules_that_are_used_up_or_do_not_fit_are_refused(capfd):
     ]:
         with pytest.raises(flagred.DataError, match=told):
             MODEL(Capsules(kind, capsules))
-    # No message of a panic of the library behind it.
+    # Without a message of a panic of the underlying library.
     assert capfd.readouterr().err == ""
 
 
@@ -207,7 +207,7 @@ def test_a_column_that_is_there_twice_is_refused():
             MODEL(table)
         with pytest.raises(flagred.DataError, match="the column `food` more than once"):
             flagred.learn(MODEL, table, columns={"tip": "service"})
-    # One that no input needs may be.
+    # A column that no input needs may be duplicated.
     assert MODEL(twice.rename_columns(["service", "x", "x"]).append_column("food", pyarrow.array([1.0]))).num_rows == 1
 
 

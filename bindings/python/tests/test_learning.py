@@ -32,7 +32,7 @@ def fan() -> flagred.Model:
 
 
 def frames(columns: dict) -> list:
-    """The columns in each library that is there."""
+    """The columns in each installed library."""
     made = [columns]
     for name, make in [
         ("pandas", lambda module: module.DataFrame(columns)),
@@ -70,7 +70,7 @@ def test_all_frames_give_the_same_bits(fan):
     assert len(texts) == 1
 
 
-def test_settings_of_tuning_hold(fan):
+def test_settings_of_tuning_are_used(fan):
     data = {"heat": HEAT, "flow": SPEED}
     tuned = flagred.tune(fan, data, only=["speed"], columns={"speed": "flow"}, digits=2)
     assert tuned.model.inputs["heat"].terms == fan.inputs["heat"].terms
@@ -100,7 +100,7 @@ def test_rules_are_learned(fan):
     assert len(kept.model.rules) == 3 and kept.validation is None
 
 
-def test_learned_rules_that_do_not_rise_are_told(fan):
+def test_learned_rules_that_do_not_rise_are_reported(fan):
     data = {"heat": [1, 2, 38, 39], "speed": [8, 8, 2, 2]}
     learned = flagred.learn(fan, data, resolve="mean", rising=["heat"], validation=False)
     assert learned.counterexamples == [] and learned.moved > 0
@@ -124,8 +124,8 @@ def test_bad_rows_are_refused_or_left_out(fan):
 @pytest.mark.parametrize(
     ("data", "options", "message"),
     [
-        ({"heat": [1]}, {}, "no column `speed`\n  help: there are `heat`"),
-        ({"heat": [1, 2], "speed": [1]}, {}, "not of one length: 1, 2"),
+        ({"heat": [1]}, {}, "no column `speed`\n  help: the columns are `heat`"),
+        ({"heat": [1, 2], "speed": [1]}, {}, "different lengths: 1, 2"),
         ({"heat": ["a"], "speed": [1]}, {}, "text is not a number"),
         (7, {}, "`int` is not a table"),
         ({"heat": [1], "speed": [1]}, {"columns": {"spede": "x"}}, "not a variable of the rule set"),
@@ -203,7 +203,7 @@ def cars(count: int = 300) -> dict:
     return {"weight": weight, "year": year, "name": np.array([f"car {i}" for i in range(count)]), "mpg": mpg}
 
 
-def test_identifying_finds_what_matters_in_any_frame():
+def test_identifying_finds_the_relevant_inputs_in_any_frame():
     found = [flagred.identify(frame, "mpg", validation=False) for frame in frames(cars())]
     assert all(one.model == found[0].model for one in found)
     assert set(found[0].model.inputs) == {"weight", "year"}
@@ -212,7 +212,7 @@ def test_identifying_finds_what_matters_in_any_frame():
 
 @pytest.mark.parametrize("antecedents", ["partitions", "clusters"])
 @pytest.mark.parametrize("consequents", ["constants", "lines"])
-def test_identifying_is_judged_beside_a_line(antecedents, consequents):
+def test_identifying_is_compared_with_a_line(antecedents, consequents):
     found = flagred.identify(cars(), "mpg", antecedents=antecedents, consequents=consequents)
     worth = found.validation
     assert worth.ratio.value == pytest.approx(worth.identified.value / worth.linear.value)
@@ -220,7 +220,7 @@ def test_identifying_is_judged_beside_a_line(antecedents, consequents):
     assert found.model(*(cars()[name] for name in found.model.inputs)).shape == (300,)
 
 
-def test_identifying_refuses_what_it_cannot_use():
+def test_identifying_refuses_unusable_data():
     rows = cars()
     rows["weight"] = rows["weight"].copy()
     rows["weight"][7] = np.nan
@@ -284,7 +284,7 @@ def test_tuned_numbers_are_short_and_rows_must_count():
         flagred.tune(fan, rows | {"speed": np.append(rows["speed"][:-1], 1e308)})
 
 
-def test_what_data_made_is_written_into_the_rule_set():
+def test_the_provenance_is_written_into_the_rule_set():
     text = """# The fan.
 fuzzy: 1
 name: fan
@@ -300,7 +300,7 @@ rules:
     assert (step["command"], step["rows"], step["seed"]) == ("flagred.tune", len(HEAT), 0)
     assert step["loss"]["after"] == pytest.approx(tuned.after, rel=1e-5, abs=1e-12)
     assert len(step["moved"]) == len(tuned.moved) > 0 and "in 3 parts" in step["note"]
-    # Only numbers moved, so that comments stay.
+    # Only numbers changed, so comments stay.
     assert "# sensor 1" in tuned.model.text and "# quiet" in tuned.model.text
     assert not [finding for finding in tuned.model.check() if finding.code == "edited-since"]
     learned = flagred.learn(flagred.loads(text), rows)
@@ -336,7 +336,7 @@ def test_terms_from_data_by_c_means():
             call()
 
 
-def test_options_of_another_type_are_told_in_plain_words():
+def test_options_of_another_type_are_reported_in_plain_words():
     fan = flagred.load("flagred-paper")
     rows = {"margin": [0.1, 0.5], "spread": [0.1, 0.2], "risk": [50, 10]}
     for call, message in (

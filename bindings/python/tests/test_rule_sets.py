@@ -1,4 +1,4 @@
-"""Rule sets: reading, asking, explaining, maps, copies."""
+"""Rule sets: reading, evaluation, explanations, maps, copies."""
 
 import copy
 import math
@@ -25,7 +25,7 @@ def test_built_in_rule_sets_are_loaded_by_their_names():
         flagred.load("./flagred")
 
 
-def test_numbers_by_place_and_by_name(tip):
+def test_numbers_by_position_and_by_name(tip):
     value = tip(8, 9)
     assert type(value) is float
     assert value == tip(service=8, food=9) == tip({"food": 9, "service": 8}) == tip(8.0, np.float64(9))
@@ -38,7 +38,7 @@ def test_numbers_by_place_and_by_name(tip):
     assert repr(outcome).startswith("Outcome(value=18.39")
 
 
-def test_unknown_is_no_number(tip, gaps):
+def test_unknown_is_not_a_number(tip, gaps):
     for unknown in (None, math.nan, math.inf):
         assert math.isnan(tip(8, unknown))
         assert tip.evaluate(8, unknown).value is None
@@ -58,7 +58,7 @@ def test_unknown_is_no_number(tip, gaps):
         (lambda tip: tip(service=1), "input `food` has no value"),
         (lambda tip: tip(1, food=2), "values are given by place and by name"),
         (lambda tip: tip("a", "b"), "text is not a number"),
-        (lambda tip: tip([1, 2], [1, 2, 3]), "do not go together"),
+        (lambda tip: tip([1, 2], [1, 2, 3]), "cannot be broadcast together"),
         (lambda tip: tip([1], [2], threads=0), "at least 1"),
         (lambda tip: tip.map(bill=3), "there is no input `bill`"),
         (lambda tip: tip.map(points=1), "at least 2 points"),
@@ -69,13 +69,13 @@ def test_unknown_is_no_number(tip, gaps):
         (lambda tip: tip.check(rising=3), "3 is not a list of inputs"),
     ],
 )
-def test_mistakes_are_told(tip, ask, message):
+def test_mistakes_are_reported(tip, ask, message):
     with pytest.raises(flagred.DataError) as error:
         ask(tip)
     assert message in str(error.value)
 
 
-def test_a_model_that_must_fire_says_where_it_does_not():
+def test_a_model_that_must_fire_reports_where_it_does_not():
     model = flagred.loads(TIP.replace("high]}\nrules", "high], when_no_rule_fires: error}\nrules"))
     model.rules[1] = "IF service IS good AND food IS delicious THEN tip IS medium"
     del model.rules[2]
@@ -216,7 +216,7 @@ def test_findings_of_a_check(tip):
     assert "not-monotone" in [finding.code for finding in tip.check(falling="service")]
 
 
-def test_copies_are_apart(tip):
+def test_copies_are_independent(tip):
     for other in (copy.copy(tip), copy.deepcopy(tip), tip.copy(), pickle.loads(pickle.dumps(tip))):
         assert other == tip and type(other) is flagred.Model
         other.rules[0].weight = 0.5
@@ -386,7 +386,7 @@ def test_formats_are_those_of_the_command(tip, tmp_path):
         assert run.stdout == tip.to_text(format), run.stderr
 
 
-def test_what_a_format_cannot_say_is_refused_or_dropped_with_a_warning(tmp_path):
+def test_unsupported_features_of_a_format_are_refused_or_dropped_with_a_warning(tmp_path):
     lost = flagred.loads(COMMENTED.replace("name: fan # short", "name: fan")
                          .replace("partition: [slow, fast]}", "partition: [slow, fast], when_no_rule_fires: previous}"))
     refusing = []
@@ -401,7 +401,7 @@ def test_what_a_format_cannot_say_is_refused_or_dropped_with_a_warning(tmp_path)
     with pytest.raises(flagred.RuleSetError):
         lost.save(tmp_path / "lost.fis")
     assert not (tmp_path / "lost.fis").exists()
-    with pytest.raises(flagred.DataError, match="the endings are `.yaml`"):
+    with pytest.raises(flagred.DataError, match="the extensions are `.yaml`"):
         lost.save(tmp_path / "lost.txt")
     with pytest.raises(flagred.DataError, match="`doc` is not a format"):
         lost.to_text("doc")
@@ -423,7 +423,7 @@ def test_texts_come_as_bytes_and_from_open_files(tmp_path):
         flagred.loads(path)
 
 
-def test_rules_are_counted_from_one_where_people_read(tip):
+def test_rules_are_counted_from_one(tip):
     assert repr(tip.rules[0]).startswith("Rule(1: IF service IS poor")
     assert tip.rules[2].number == 3
     assert repr(tip.rules).splitlines()[2].startswith("3: ")
@@ -435,7 +435,7 @@ def test_degrees_of_a_term(tip):
     assert good(2.5) == 0.5 and isinstance(good(2.5), float)
     assert good([[0, 2.5], [5, 10]]).tolist() == [[0, 0.5], [1, 0]]
     assert math.isnan(good(None))
-    # Outside the range the ends count, as in an evaluation.
+    # Values outside the range are clamped, as in an evaluation.
     assert tip.inputs["service"]["excellent"](99) == tip.inputs["service"]["excellent"](10) == 1
     why = tip.explain(3.25, 9)
     assert why.inputs[0].terms == {term: tip.inputs["service"][term](3.25) for term in tip.inputs["service"]}
@@ -457,7 +457,7 @@ def test_surface(tip):
         tip.surface(figure.add_subplot())
 
 
-def test_help_names_what_matters_and_types_have_the_rest():
+def test_help_lists_the_main_names_and_types_the_rest():
     assert len(flagred.__all__) <= 22
     assert not {"Cause", "Peak", "Share", "Step"} & set(flagred.__all__)
     for name in flagred.types.__all__:

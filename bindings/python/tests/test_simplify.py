@@ -1,4 +1,4 @@
-"""The same said with fewer rules."""
+"""Simplification of rule sets."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def fan() -> flagred.Model:
     return flagred.loads(FAN)
 
 
-def test_fewer_rules_say_the_same(fan):
+def test_fewer_rules_give_the_same_outputs(fan):
     before = fan.copy()
     found = flagred.simplify(fan)
     assert fan == before
@@ -35,7 +35,7 @@ def test_fewer_rules_say_the_same(fan):
     assert np.allclose(found.model(heat, damp), fan(heat, damp), atol=1e-11)
 
 
-def test_a_tolerance_drops_what_changes_little(fan):
+def test_a_tolerance_drops_inputs_with_little_effect(fan):
     found = flagred.simplify(fan, tolerance=1)
     assert found.inputs == ["damp"]
     assert len(found.model.rules) == 2
@@ -44,7 +44,7 @@ def test_a_tolerance_drops_what_changes_little(fan):
     assert set(difference.inputs) == {"heat", "damp"}
 
 
-def test_rows_are_points_too(fan):
+def test_rows_are_added_to_the_points(fan):
     rows = {"heat": [1.0, 2.0], "wetness": [9.0, 8.5]}
     more = flagred.simplify(fan, rows, columns={"damp": "wetness"})
     assert more.points == flagred.simplify(fan).points + 2
@@ -52,7 +52,7 @@ def test_rows_are_points_too(fan):
     assert (alone.points, alone.inputs) == (2, ["damp"])
 
 
-def test_mistakes_are_told(fan):
+def test_mistakes_are_reported(fan):
     with pytest.raises(flagred.DataError, match="tolerance -1"):
         flagred.simplify(fan, tolerance=-1)
     with pytest.raises(flagred.DataError, match="there are no rows"):

@@ -112,7 +112,7 @@ def test_a_grid_is_searched():
     assert search.best_score_ > 0.3
 
 
-def test_weights_count(wave):
+def test_weights_are_used(wave):
     X, y = wave
     one = FuzzyRegressor(tune=False).fit(X, y, sample_weight=np.where(X[:, 0] < 3, 1, 0))
     two = FuzzyRegressor(tune=False).fit(X[X[:, 0] < 3], y[X[:, 0] < 3])
@@ -135,7 +135,7 @@ def test_settings_that_cannot_be_used(wave, settings, message):
         FuzzyRegressor(**settings).fit(*wave)
 
 
-def test_one_class_is_no_risk():
+def test_one_class_is_refused():
     with pytest.raises(ValueError, match="1 class"):
         FuzzyRiskClassifier().fit([[0.0], [1.0]], [1, 1])
 
@@ -185,7 +185,7 @@ def test_intervals_by_hand():
 
     X, y = np.arange(40.0)[:, None], np.arange(40.0)
     regressor = ConformalRegressor(Zero(), calibration_size=9 / 40, random_state=1).fit(X, y)
-    # Of 9 errors the 5th is the half width at 50 %: ceil(10 * 0.5) = 5; 90 % takes all 9.
+    # With 9 errors, the half width at 50 % is the 5th: ceil(10 * 0.5) = 5; 90 % uses all 9.
     assert len(regressor.errors_) == 9
     assert regressor.predict_interval([[3]], 0.5).tolist() == [[-regressor.errors_[4], regressor.errors_[4]]]
     assert regressor.predict_interval([[3]], 0.9)[0, 1] == regressor.errors_[8]
@@ -197,7 +197,7 @@ def test_groups_are_on_one_side_of_the_calibration():
     random = np.random.default_rng(5)
     X = random.uniform(0, 1, (200, 1))
     vehicle = np.repeat(np.arange(10), 20)
-    # Each vehicle has an offset of its own: errors on vehicles that were seen are smaller than those on others.
+    # Each vehicle has its own offset: errors on known vehicles are smaller than those on others.
     y = X[:, 0] + vehicle
     with_vehicle = np.column_stack((X, vehicle))
     plain = ConformalRegressor(FuzzyRegressor(n_terms=7), random_state=0).fit(with_vehicle, y)

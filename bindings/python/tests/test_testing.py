@@ -37,7 +37,7 @@ def test_a_snapshot_is_written_and_compared(tmp_path: Path, monkeypatch: pytest.
     changed = flagred.loads(FAN.replace("IS NOT hot THEN fan IS slow", "IS NOT hot THEN fan IS fast"))
     with pytest.raises(AssertionError, match="`fan` differs at .* of 25 points, most in row .*, at temperature = "):
         assert_map(changed, path)
-    # Where no rule fires there is no value, before and now.
+    # Where no rule fires there is no value, in the snapshot and now.
     assert any(line.endswith(",") for line in path.read_text().splitlines())
 
 

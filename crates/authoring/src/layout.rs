@@ -67,7 +67,7 @@ pub fn formatted(text: &str) -> Result<String, Unformatted> {
     }
 }
 
-/// Whether a tree has the first key of a rule set or a profile, with a number, or two keys of a rule set that lacks it.
+/// Whether a tree has the first key of a rule set or a profile, with a number, or at least two keys of a rule set without that first key.
 fn is_ours(tree: &Node) -> bool {
     let Value::Mapping(entries) = &tree.value else {
         return false;
@@ -133,7 +133,7 @@ rules:
     }
 
     #[test]
-    fn what_cannot_be_read_is_left_alone() {
+    fn unreadable_text_is_not_changed() {
         for broken in ["a: [1", ""] {
             let found = formatted(broken);
             assert!(matches!(found, Err(Unformatted::NotYaml(_))), "{broken}");

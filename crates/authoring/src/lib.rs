@@ -1,5 +1,5 @@
-//! What an editor of rule sets and profiles asks for, whatever program shows the text: its findings, what can be written at a
-//! place, what a name means, new names, one layout, parts that are added and removed, and numbers that change in place.
+//! Functions for an editor of rule sets and profiles, independent of the program that shows the text: findings, completion,
+//! descriptions of names, renaming, layout, adding and removing parts, and changing numbers in place.
 //!
 //! It implements no protocol, opens no file and prints nothing. Positions are offsets in bytes, changes are [`Edit`]s.
 //! If a profile names the file of a rule set, the caller provides its text.

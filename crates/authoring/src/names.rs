@@ -163,7 +163,7 @@ pub fn definition(document: &Document, offset: usize) -> Option<Range<usize>> {
     }
 }
 
-/// Refuses what is not a name of a variable or term.
+/// Refuses a text that is not a valid name of a variable or term.
 pub(crate) fn check_name(new: &str) -> Result<(), String> {
     let plain = rule::parse(&format!("IF {new} IS {new} THEN {new} IS {new}"));
     match plain.is_err() || new.contains(|c: char| c.is_whitespace() || "'\":#,[]{}".contains(c)) {
@@ -174,7 +174,7 @@ pub(crate) fn check_name(new: &str) -> Result<(), String> {
     }
 }
 
-/// All places of the name at a place, for a new one.
+/// Returns all positions of the name at an offset in bytes, if it can be renamed to `new`.
 ///
 /// # Errors
 /// The reason why it cannot be renamed.
@@ -255,7 +255,7 @@ rules:
     }
 
     #[test]
-    fn formulas_linear_functions_and_beaten_terms_follow() {
+    fn formulas_linear_functions_and_rejected_terms_are_renamed_too() {
         let expected = RULES.replace("\"heat\"", "t_in").replace("heat", "t_in");
         assert_eq!(renamed(RULES, "heat", "t_in").unwrap(), expected);
         let from_formula = renamed(RULES, "heat / 10", "t_in").unwrap();

@@ -208,7 +208,7 @@ rules:
     }
 
     #[test]
-    fn a_step_is_added_to_the_text_wherever_the_others_stand() {
+    fn a_step_is_added_beside_the_others_in_the_text() {
         let expected = FAN.replace("hot: 35", "hot: 30");
         let once = moved(FAN, "one");
         assert!(once.starts_with(&expected), "{once}");
@@ -237,7 +237,7 @@ rules:
     }
 
     #[test]
-    fn what_has_no_place_for_a_step_is_written_anew() {
+    fn a_text_without_room_for_a_step_is_rewritten() {
         let flow = FAN.replace("rules:", "provenance: [{command: by hand}]\nrules:");
         assert!(moved(&flow, "two").contains("command: by hand"));
         let json = "{\"fuzzy\": 1, \"name\": \"fan\", \"inputs\": {\"heat\": {\"range\": [0, 40], \"partition\": {\"cool\": 5, \"hot\": 35}}},
@@ -246,7 +246,7 @@ rules:
     }
 
     #[test]
-    fn what_cannot_be_read_back_is_refused() {
+    fn text_that_does_not_read_back_is_refused() {
         let mut model = fuzzy::yaml::parse(FAN).unwrap().model;
         model.outputs[0].variable.high = f64::NAN;
         assert!(rule_set(FAN, model, step("one")).is_err());

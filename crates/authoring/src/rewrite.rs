@@ -1,4 +1,4 @@
-//! The text of a rule set that was changed in a program: what did not change stays as it was written, comments included.
+//! Rewrites the text of a rule set that was changed in a program. Unchanged parts keep their text, including comments.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use fuzzy::{
 
 use crate::{Edit, edited, numbers};
 
-/// The text of a rule set that differs from the one in a text. Where its entries can be changed, added and removed in place,
-/// all other lines stay; otherwise it is written anew, below the comments at the head of the text.
+/// Returns `text` changed to the rule set `wanted`. If its entries can be changed, added and removed in place, all other lines are
+/// kept; otherwise the rule set is written anew, below the comments at the top of the text.
 ///
 /// ```
 /// let text = "fuzzy: 1
@@ -53,13 +53,13 @@ pub fn rewritten(text: &str, document: &Document, wanted: &Model) -> String {
     head(text) + &yaml::to_string(wanted)
 }
 
-/// The comments that a text begins with.
+/// The comments at the start of a text.
 pub(crate) fn head(text: &str) -> String {
     let lines = text.split_inclusive('\n');
     lines.take_while(|line| line.starts_with('#')).collect()
 }
 
-/// The edits of the entries that differ.
+/// The edits of the entries that differ; `None` if they cannot be changed in place.
 fn entries(text: &str, before: &Model, after: &Model) -> Option<Vec<Edit>> {
     let tree = yaml::read(text).ok()?;
     let mut changes = Changes {
@@ -80,7 +80,7 @@ impl<'t> Changes<'t> {
         self.edits.push(Edit { span, text });
     }
 
-    /// Changes what is `written` as far as `after` differs from `before`. `None` where it has no place.
+    /// Changes the node `written` where `after` differs from `before`. `None` if that is not possible in place.
     fn node(&mut self, written: &Node, before: &Node, after: &Node) -> Option<()> {
         if before == after {
             return Some(());
@@ -96,7 +96,7 @@ impl<'t> Changes<'t> {
             {
                 self.list(there, before, after)
             }
-            // A rule with keys of its own that is text alone otherwise.
+            // A rule with keys in the text whose model has no keys but the rule itself.
             (Value::Mapping(there), _, Value::Scalar(_)) => {
                 let (_, rule) = there.iter().find(|(key, _)| name(key) == Some("rule"))?;
                 let only = there.len() == 1;
@@ -191,14 +191,14 @@ impl<'t> Changes<'t> {
         Some(())
     }
 
-    /// Adds an entry behind another one: on a line of its own in a block, on the same line in `[...]` and `{...}`.
+    /// Adds an entry after another one: on a separate line in a block, on the same line in `[...]` and `{...}`.
     fn insert_behind(&mut self, start: usize, end: usize, mark: &str, entry: &str) -> Option<()> {
         match self.indent(start) {
             Some(before) => {
                 let indent = before.split('-').next()?;
                 let line = self.text.get(end..)?.find('\n').map(|length| end + length);
                 let at = line.unwrap_or(self.text.len());
-                // A list in a block that is the item of a list would need the space of its first line.
+                // A new entry of a list that is itself an item of a list would need the indentation of its first line.
                 let is_nested = before.matches('-').count() > mark.trim().len();
                 (!is_nested).then(|| self.replace(at..at, format!("\n{indent}{mark}{entry}")))
             }
@@ -209,7 +209,7 @@ impl<'t> Changes<'t> {
         }
     }
 
-    /// Removes an entry: its lines in a block, itself and a comma in `[...]` and `{...}`.
+    /// Removes an entry: its lines in a block, or the entry and a comma in `[...]` and `{...}`.
     fn remove(
         &mut self,
         entry: Range<usize>,
@@ -239,7 +239,7 @@ impl<'t> Changes<'t> {
         line.map_or(0, str::len)
     }
 
-    /// What stands before an entry on its line, where that is space and dashes: then it is in a block.
+    /// The text before an entry on its line, if it consists of spaces and dashes; then the entry is in a block.
     fn indent(&self, at: usize) -> Option<&'t str> {
         let text: &'t str = self.text;
         let line = text.get(..at)?.rsplit('\n').next()?;
@@ -247,7 +247,7 @@ impl<'t> Changes<'t> {
     }
 }
 
-/// The end of what is written, without space behind it.
+/// The end of a node's text, without trailing spaces.
 fn end(text: &str, node: &Node) -> usize {
     let written = text.get(node.span.clone()).unwrap_or("");
     node.span.start + written.trim_end().len()
@@ -368,7 +368,7 @@ rules:
     }
 
     #[test]
-    fn what_cannot_be_changed_in_place_is_written_anew_below_the_head() {
+    fn text_that_cannot_change_in_place_is_rewritten_below_the_header() {
         let reordered = changed(FAN, |model| {
             let mut damp = model.inputs[0].clone();
             damp.name = "damp".into();

@@ -1,4 +1,4 @@
-//! The part of a decision map that a picture shows: one or two inputs are the axes, the others are held at a value.
+//! The part of a decision map that a picture shows: one or two inputs are the axes, the others have fixed values.
 
 use flagred::gap::Filling;
 use fuzzy::{

@@ -39,7 +39,7 @@ mod tests {
     use crate::Document;
 
     #[test]
-    fn what_one_starts_from_has_no_mistake() {
+    fn starters_have_no_mistake() {
         let rules = Document::new(rules("fan"), |_| None);
         assert_eq!(rules.findings().0, []);
         assert_eq!(rules.model().unwrap().name, "fan");
@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_differs_from_the_shipped_one_by_its_name_alone() {
+    fn a_copy_differs_from_the_shipped_one_only_by_its_name() {
         for shipped in &PROFILES {
             let mut copy: Profile = profile("quad", shipped).parse().unwrap();
             assert_eq!(copy.name, "quad");
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_is_plain() {
+    fn a_starter_name_is_a_plain_word() {
         assert!(is_name("fan-2") && !is_name("2-fan") && !is_name("a/b") && !is_name(""));
     }
 }

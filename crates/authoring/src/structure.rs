@@ -1,5 +1,5 @@
-//! Variables, terms and rules that are added and removed in a text. Comments and layout stay, and what the edited text means is
-//! verified: no other variable, term or rule may change.
+//! Adds and removes variables, terms and rules in a text. Comments and layout are preserved. The edited text is parsed again to
+//! verify that no other variable, term or rule changed.
 
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ pub enum Part {
     Rule(usize),
 }
 
-/// Where the names and the rules of a rule set are, in bytes.
+/// The positions of the names and the rules of a rule set, in bytes.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Places {
     /// The name of each variable, inputs first, and the names of its terms.
@@ -37,7 +37,7 @@ pub struct Places {
     pub rules: Vec<Range<usize>>,
 }
 
-/// The places of all that can be renamed and removed; `None` of a text that is not a rule set.
+/// Returns the positions of everything that can be renamed or removed; `None` if the text is not a rule set.
 pub fn places(document: &Document) -> Option<Places> {
     let spans = &document.rules()?.spans;
     let variables = spans.inputs.iter().chain(&spans.outputs);
@@ -50,10 +50,10 @@ pub fn places(document: &Document) -> Option<Places> {
     })
 }
 
-/// The edits that add an input or output with two terms.
+/// Returns the edits that add an input or output with two terms.
 ///
 /// # Errors
-/// Why it cannot be added.
+/// The reason why it cannot be added.
 pub fn add_variable(
     document: &Document,
     name: &str,
@@ -120,10 +120,10 @@ pub fn add_variable(
     )
 }
 
-/// The edits that add a term to a variable, where its terms are farthest apart.
+/// Returns the edits that add a term to a variable, in the widest gap between its terms.
 ///
 /// # Errors
-/// Why it cannot be added.
+/// The reason why it cannot be added.
 pub fn add_term(document: &Document, variable: usize, name: &str) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     check_name(name)?;
@@ -195,10 +195,10 @@ pub fn add_term(document: &Document, variable: usize, name: &str) -> Result<Vec<
     )
 }
 
-/// The edits that add a rule behind the others.
+/// Returns the edits that add a rule after the others.
 ///
 /// # Errors
-/// Why it cannot be added.
+/// The reason why it cannot be added.
 pub fn add_rule(document: &Document, rule: &str) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     fuzzy::rule::parse(rule).map_err(|error| error.message)?;
@@ -208,7 +208,7 @@ pub fn add_rule(document: &Document, rule: &str) -> Result<Vec<Edit>, String> {
     let edit = match child(tree, "rules") {
         Some(list) if len(list) > 0 => inserted(text, list, len(list), &item),
         Some(empty) => {
-            // `rules: []`, or nothing behind the key.
+            // The list is `[]`, or nothing follows the key.
             let key = key_end(tree, "rules");
             let span = key.map(|key| match empty.span.is_empty() {
                 true => key..key,
@@ -236,10 +236,10 @@ pub fn add_rule(document: &Document, rule: &str) -> Result<Vec<Edit>, String> {
     )
 }
 
-/// The edits that give a rule other words. Its confidence, note and comments stay.
+/// Returns the edits that replace the text of a rule. Its confidence, note and comments are kept.
 ///
 /// # Errors
-/// Why it cannot be changed.
+/// The reason why it cannot be changed.
 pub fn change_rule(document: &Document, rule: usize, to: &str) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     fuzzy::rule::parse(to).map_err(|error| error.message)?;
@@ -257,10 +257,10 @@ pub fn change_rule(document: &Document, rule: usize, to: &str) -> Result<Vec<Edi
     verified(document, rules, vec![edit], Change::Other(Part::Rule(rule)))
 }
 
-/// The edits that remove a part that no rule needs.
+/// Returns the edits that remove a part that no rule uses.
 ///
 /// # Errors
-/// Why it cannot be removed.
+/// The reason why it cannot be removed.
 pub fn remove(document: &Document, part: Part) -> Result<Vec<Edit>, String> {
     let rules = readable(document)?;
     let (text, tree) = (document.text(), tree(document)?);
@@ -268,7 +268,7 @@ pub fn remove(document: &Document, part: Part) -> Result<Vec<Edit>, String> {
         Part::Rule(rule) => {
             let list = child(tree, "rules").ok_or(UNREADABLE)?;
             match key_end(tree, "rules") {
-                // An empty block means nothing; an empty list has to be written.
+                // A key without a value is not a list, so an empty list is written.
                 Some(key) if len(list) == 1 && !is_flow(text, list) => removed(text, list, rule)
                     .map(|lines| {
                         let empty = Edit {
@@ -334,7 +334,7 @@ pub fn remove(document: &Document, part: Part) -> Result<Vec<Edit>, String> {
 
 const UNREADABLE: &str = "this part of the text cannot be changed here; change it in the text";
 
-/// A change whose result is verified.
+/// A change to verify.
 enum Change {
     Added(Part),
     Removed(Part),
@@ -342,7 +342,7 @@ enum Change {
     Other(Part),
 }
 
-/// The names of variables and terms, and the rules: what must not change beside the part.
+/// The names of variables and terms, and the rules, which must not change except for one part.
 #[derive(PartialEq)]
 struct Outline {
     variables: Vec<(String, Vec<String>)>,
@@ -362,7 +362,7 @@ impl Outline {
         }
     }
 
-    /// Without a part; `None` where there is no such part.
+    /// Removes a part; `None` if there is no such part.
     fn without(mut self, part: Part) -> Option<Outline> {
         match part {
             Part::Variable(v) => {
@@ -378,7 +378,7 @@ impl Outline {
     }
 }
 
-/// The edits, where the edited text means what it should.
+/// Returns the edits if the edited text has only the intended change.
 fn verified(
     document: &Document,
     rules: &Partial,
@@ -436,7 +436,7 @@ fn is_singleton(term: &Term) -> bool {
     )
 }
 
-/// Refuses a variable, or a term of it, that a rule names.
+/// Refuses a variable or term that a rule uses.
 fn unused(rules: &Partial, variable: &str, term: Option<&str>) -> Result<(), String> {
     let mut users = Vec::new();
     for (index, rule) in rules.model.rules.iter().enumerate() {
@@ -481,7 +481,7 @@ fn child<'n>(node: &'n Node, key: &str) -> Option<&'n Node> {
         .map(|(_, value)| value)
 }
 
-/// The place behind the colon of a key.
+/// The position after the colon of a key.
 fn key_end(node: &Node, key: &str) -> Option<usize> {
     let Value::Mapping(pairs) = &node.value else {
         return None;
@@ -536,7 +536,7 @@ fn is_flow(text: &str, node: &Node) -> bool {
         .is_some_and(|text| text.starts_with(['[', '{']))
 }
 
-/// Where a node ends in the text, without what only separates it from the next one.
+/// The end of a node in the text, without the spaces before the next node.
 fn end(text: &str, node: &Node) -> usize {
     match &node.value {
         Value::List(_) | Value::Mapping(_) if !is_flow(text, node) => {
@@ -561,14 +561,14 @@ fn line_start(text: &str, at: usize) -> usize {
         .map_or(0, |newline| newline + 1)
 }
 
-/// The place behind the line break of a line.
+/// The position after the line break at the end of a line.
 fn line_end(text: &str, at: usize) -> usize {
     text.get(at..)
         .and_then(|rest| rest.find('\n'))
         .map_or(text.len(), |newline| at + newline + 1)
 }
 
-/// The space before the entries of a block.
+/// The indentation of the entries of a block.
 fn indent_of_entry<'t>(text: &'t str, node: &Node) -> &'t str {
     let first = entry(node, 0).map_or(node.span.start, |(first, _)| first.span.start);
     let line = text.get(line_start(text, first)..first).unwrap_or_default();
@@ -576,7 +576,7 @@ fn indent_of_entry<'t>(text: &'t str, node: &Node) -> &'t str {
     line.get(..width).unwrap_or_default()
 }
 
-/// The edit that inserts an entry before the one of an index, or behind all.
+/// The edit that inserts an entry before the one with this index, or after the last one.
 fn inserted(text: &str, node: &Node, index: usize, item: &str) -> Option<Edit> {
     let at = |place: usize, text: String| {
         Some(Edit {
@@ -611,7 +611,7 @@ fn inserted(text: &str, node: &Node, index: usize, item: &str) -> Option<Edit> {
     }
 }
 
-/// The edit that removes an entry. In a block its lines go, and comments on lines of their own stay.
+/// The edit that removes an entry. In a block its lines are removed; comments on separate lines are kept.
 fn removed(text: &str, node: &Node, index: usize) -> Option<Edit> {
     let (first, last) = entry(node, index)?;
     let behind = match last.span.is_empty() {
@@ -633,7 +633,7 @@ fn removed(text: &str, node: &Node, index: usize) -> Option<Edit> {
     })
 }
 
-/// A rule as a scalar of YAML.
+/// Writes a rule as a YAML scalar.
 fn scalar(rule: &str) -> String {
     let rule = rule.split_whitespace().collect::<Vec<_>>().join(" ");
     let is_plain = !rule.contains(": ")
@@ -645,7 +645,7 @@ fn scalar(rule: &str) -> String {
     }
 }
 
-/// The index and the middle of the widest gap between places and the ends of a range.
+/// The index and the middle of the widest gap between positions and the ends of a range.
 fn widest_gap(places: &[f64], low: f64, high: f64) -> (usize, f64) {
     let mut sorted: Vec<f64> = places.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -661,7 +661,7 @@ fn widest_gap(places: &[f64], low: f64, high: f64) -> (usize, f64) {
     (at, shortened((from + to) / 2.0, high - low))
 }
 
-/// The place of a shape, of which several are compared.
+/// The position of a shape, for comparison with others.
 fn middle(shape: &MembershipFunction) -> Option<f64> {
     let numbers: Vec<f64> = shape
         .parameters()
@@ -675,7 +675,7 @@ fn middle(shape: &MembershipFunction) -> Option<f64> {
     }
 }
 
-/// A number with three digits of the width of a range.
+/// Rounds a number to three digits of the width of a range.
 fn shortened(value: f64, width: f64) -> f64 {
     let digits = (2.0 - width.log10().floor()).clamp(0.0, 15.0) as usize;
     format!("{value:.digits$}").parse().unwrap_or(value)

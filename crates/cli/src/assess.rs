@@ -18,6 +18,7 @@ use flagred_report::{
 
 use crate::{
     failure::{Exit, Failure},
+    numbers,
     output::{self, Files, Output, Stdout},
     parallel, profile,
     range::RangeArgument,
@@ -29,7 +30,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-battery`, `flagred-paper`, or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, `flagred-battery`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
@@ -61,7 +62,7 @@ pub(crate) struct Arguments {
     fail_on: FailOn,
 
     /// Seconds between the steps shown; every motor sample is assessed
-    #[arg(long, value_name = "SECONDS", default_value_t = steps::STEP_S, value_parser = step)]
+    #[arg(long, value_name = "SECONDS", default_value_t = steps::STEP_S, value_parser = numbers::at_least_0)]
     step: f64,
 }
 
@@ -72,14 +73,7 @@ pub(crate) enum FailOn {
     Never,
 }
 
-fn step(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(step_s) if step_s >= 0.0 && step_s.is_finite() => Ok(step_s),
-        _ => Err("a step is a number of seconds, 0 or more".to_owned()),
-    }
-}
-
-/// Assesses every log; one that cannot be read does not stop the others.
+/// Assesses every log. A log that cannot be read does not stop the others.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let loaded = profile::load(&arguments.profile)?;
     let estimator = &loaded.estimator;
@@ -102,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut subjects = Vec::new();
     let documents: Vec<&Output> = html.iter().chain(&svg).collect();
     let mut out = Stdout::beside(&documents);
-    // Reports are written first: whoever reads standard output may stop at any time.
+    // Reports are written before standard output, whose reader may stop at any time.
     let mut waiting = Vec::new();
     let mut exit = Exit::Clean;
     let mut json = Vec::new();
@@ -172,7 +166,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         },
     );
     shown?;
-    // One that cannot be written keeps no other from being written, nor the verdict from being told.
+    // An error here is returned only after the remaining outputs, so that a failed report does not suppress the verdict.
     let reported = match (subjects.as_slice(), several) {
         ([], _) => Ok(()),
         ([subject], false) => write_reports(html.as_ref(), svg.as_ref(), subject, &loaded),
@@ -190,7 +184,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// Writes the files that were asked for of one flight.
+/// Writes the requested report and picture of one flight.
 fn write_reports(
     html: Option<&Output>,
     svg: Option<&Output>,
@@ -212,7 +206,7 @@ fn write_reports(
     Ok(())
 }
 
-/// An unknown risk is an exit code of its own, so that nobody takes it for GOOD.
+/// An unknown risk has its own exit code, so that it is not mistaken for GOOD.
 pub(crate) fn exit_of(verdict: &Verdict, fail_on: FailOn) -> Exit {
     match (verdict, fail_on) {
         (Verdict::NotAvailable(_), _) => Exit::Unreadable,

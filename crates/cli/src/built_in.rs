@@ -1,4 +1,4 @@
-//! Rule sets and profiles that are built in, by their names. A name wins over a file that is called so: `./flagred` is the file.
+//! Built-in rule sets and profiles, by name. A built-in name takes precedence over a file of that name; `./flagred` names the file.
 
 use std::path::Path;
 
@@ -6,27 +6,27 @@ use flagred::shipped::{PROFILES, RULE_SETS, Shipped};
 
 use crate::failure::Failure;
 
-/// The built-in rule set that a path names, if it names one.
+/// Returns the built-in rule set that a path names, if any.
 pub(crate) fn rule_set_at(path: &Path) -> Option<&'static Shipped> {
     RULE_SETS.iter().find(|known| path == Path::new(known.name))
 }
 
-/// The built-in profile that a path names, if it names one.
+/// Returns the built-in profile that a path names, if any.
 pub(crate) fn profile_at(path: &Path) -> Option<&'static Shipped> {
     PROFILES.iter().find(|known| path == Path::new(known.name))
 }
 
-/// The built-in rule set of a name.
+/// Returns the built-in rule set with this name.
 pub(crate) fn rule_set(name: &str) -> Result<&'static Shipped, Failure> {
     rule_set_at(Path::new(name)).ok_or_else(|| unknown(name))
 }
 
-/// The built-in profile of a name.
+/// Returns the built-in profile with this name.
 pub(crate) fn profile(name: &str) -> Result<&'static Shipped, Failure> {
     profile_at(Path::new(name)).ok_or_else(|| unknown(name))
 }
 
-/// How to change what is built in, where a path names it and no file is there.
+/// Explains how to edit a copy of a built-in item, if the path names one and no such file exists.
 pub(crate) fn help_to_edit(path: &Path) -> Option<String> {
     let known = profile_at(path).filter(|_| !path.exists())?;
     let name = known.name;
@@ -39,12 +39,12 @@ fn unknown(name: &str) -> Failure {
     Failure::usage(format!("there is no built-in `{name}`"))
 }
 
-/// The names of built-in rule sets and profiles, for an argument; each rule set has a profile of its name.
+/// The names of built-in rule sets and profiles, for an argument. Each rule set has a profile of the same name.
 pub(crate) fn names() -> clap::builder::PossibleValuesParser {
     clap::builder::PossibleValuesParser::new(profile_names())
 }
 
 /// The names of built-in profiles.
-pub(crate) fn profile_names() -> impl Iterator<Item = &'static str> {
+pub(crate) fn profile_names() -> impl Iterator<Item = &'static str> + Clone {
     PROFILES.iter().map(|known| known.name)
 }

@@ -1,4 +1,4 @@
-//! `flagred check`: errors, gaps and conflicts in a rule set; whether a profile fits its rule set.
+//! `flagred check`: errors, gaps and conflicts in a rule set; whether a profile matches its rule set.
 
 mod format;
 
@@ -24,6 +24,7 @@ use crate::{
     built_in,
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
+    numbers,
     output::{Files, Stdout},
     profile, rows,
 };
@@ -42,9 +43,9 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     claims: rows::Claims,
     /// Warn where no rule fires with at least this strength
-    #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = degree)]
+    #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = numbers::degree_above_0)]
     coverage: f64,
-    /// Exit with 1 for these, too, and not only for errors
+    /// Exit with 1 for findings of this severity, too; by default only for errors
     #[arg(long, value_name = "SEVERITY")]
     deny: Option<Deny>,
 }
@@ -55,13 +56,6 @@ enum Deny {
     Warnings,
     /// Warnings and notes
     Notes,
-}
-
-fn degree(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(degree) if degree > 0.0 && degree <= 1.0 => Ok(degree),
-        _ => Err("write a number above 0 and at most 1".into()),
-    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -83,7 +77,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     let mut sarif = Sarif::default();
     let mut exit = Exit::Clean;
     for path in &arguments.models {
-        // A name that is built in is that of a profile, as in `assess`.
+        // A built-in name is the profile of that name, as in `assess`.
         let text = match built_in::profile_at(path) {
             Some(known) => known.text.to_owned(),
             None => read_text(path)?,
@@ -99,7 +93,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
             (None, examine(&source, arguments)?)
         };
         let findings = &examined.findings;
-        // Only what people read has colours.
+        // Only text for people is coloured.
         let mut out = match format {
             Format::Text => Stdout::text(),
             _ => Stdout::data(),
@@ -161,7 +155,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     Ok(exit)
 }
 
-/// All findings, and the analysis where the rule set can be analysed.
+/// All findings, and the analysis if the rule set can be analysed.
 fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>, Failure> {
     let mut options = check::Options::default();
     options.coverage = arguments.coverage;
@@ -172,8 +166,8 @@ fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>
     })
 }
 
-/// A profile, all findings about it and the rule set that it names, and what its inputs reach alone. A rule set with
-/// errors is refused: they are in another file.
+/// Reads a profile; returns all findings about it and its rule set, and the risk that each of its inputs reaches alone. A rule set
+/// with errors is refused, since these are in another file.
 fn examine_profile(
     path: &Path,
     source: &Source,

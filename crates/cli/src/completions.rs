@@ -1,4 +1,4 @@
-//! `flagred completions`: what a shell needs to complete command lines.
+//! `flagred completions`: scripts with which a shell completes command lines.
 
 use std::io::Write as _;
 
@@ -33,8 +33,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// The script with the names of built-in profiles beside files, where `--profile` takes both. The generator knows names alone or
-/// files alone.
+/// Adds the names of built-in profiles to the script for `--profile`, which takes names and files. clap's generator supports only one of
+/// them.
 fn with_built_in(shell: Shell, script: &str) -> String {
     let names: Vec<&str> = built_in::profile_names().collect();
     let names = names.join(" ");

@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
     range: RangeArgument,
 }
 
-/// Writes the motor commands and signals of a log; warns where the log is damaged.
+/// Writes the motor commands and signals of a log, and warns if the log is damaged.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let options = arguments.range.options()?;
     let mut files = Files::reading([&arguments.log])?;

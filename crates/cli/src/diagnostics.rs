@@ -1,4 +1,4 @@
-//! Files with rule sets and profiles: reading them, and what is wrong with them on standard error.
+//! Reads files with rule sets and profiles, and reports their errors on standard error.
 
 use std::{
     fs,
@@ -14,7 +14,7 @@ use fuzzy::{
 
 use crate::failure::{Failure, cannot_read};
 
-/// Draws findings with their lines. `colored` text goes through `anstream`, which drops colours that a terminal lacks.
+/// Draws findings with their source lines. `colored` text goes through `anstream`, which removes colours that a terminal lacks.
 pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: bool) -> String {
     let style = Style {
         colored,
@@ -25,12 +25,12 @@ pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: boo
     diagnostics::draw(findings, file, text, style)
 }
 
-/// Whether a text is a rule set, of another program too, or a profile.
+/// Returns whether a text is meant as a profile or as a rule set, also one of another program.
 pub(crate) fn is_meant_as_rules(text: &str) -> bool {
     flagred_interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
 }
 
-/// The command that helps with a finding: the engine knows no commands.
+/// The command that helps with a finding. It is added here, since the engine does not contain commands.
 fn command(code: &str) -> Option<&'static str> {
     match code {
         "empty-file" => Some("`flagred new NAME` writes a rule set to start from"),
@@ -44,11 +44,11 @@ fn command(code: &str) -> Option<&'static str> {
 /// Draws findings on standard error.
 pub(crate) fn show(findings: &Findings, file: &str, text: &str) {
     let mut err = anstream::stderr().lock();
-    // Nothing is left to tell a user whose standard error is closed.
+    // If standard error is closed, there is no other way to report that.
     let _ = write!(err, "{}", draw(&findings.0, file, text, true));
 }
 
-/// Draws the findings that make a file unusable on standard error, and returns the exit code.
+/// Draws the findings that make a file unusable on standard error, and returns the failure.
 pub(crate) fn refuse(findings: &Findings, file: &str, text: &str) -> Failure {
     show(findings, file, text);
     Failure::shown(3)
@@ -66,16 +66,21 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     text(whole(bytes, &shown)?, &shown)
 }
 
-/// Reads the bytes of an open rule set or profile.
+/// Reads the bytes of a rule set or profile that is open already.
 pub(crate) fn read_bytes(file: fs::File, shown: &str) -> Result<Vec<u8>, Failure> {
     whole(read_up_to_limit(file), shown)
 }
 
-/// The bytes of a rule set or profile that could be read and is not too large.
+/// Reports a rule set or profile that cannot be read or is too large.
 fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
     let bytes = bytes.map_err(|error| cannot_read(shown, &error))?;
     match bytes.len() > LARGEST_BYTES {
         true => {
+            if flagred_flightlog::kind_of(&bytes) == Some("a flight log") {
+                let failure =
+                    Failure::unreadable(format!("`{shown}` is a flight log, not a rule set"));
+                return Err(failure.help(format!("`flagred assess {shown}` assesses a flight")));
+            }
             let limit = LARGEST_BYTES / 1_000_000;
             let failure = Failure::unreadable(format!("`{shown}` is larger than {limit} MB"));
             Err(failure.help("rule sets and profiles are small YAML files"))
@@ -84,19 +89,19 @@ fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
     }
 }
 
-/// The text of a rule set or profile.
+/// Decodes the text of a rule set or profile.
 pub(crate) fn text(bytes: Vec<u8>, shown: &str) -> Result<String, Failure> {
     decoded(bytes).map_err(|error| error.failure(shown))
 }
 
-/// Whether bytes are announced as UTF-16.
+/// Returns whether bytes begin with a byte order mark of UTF-16.
 pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
     matches!(bytes.get(..2), Some([0xff, 0xfe] | [0xfe, 0xff]))
 }
 
-/// Why bytes are no text.
+/// Why bytes are not text.
 struct NoText {
-    /// The line that holds the first byte that is none, and the byte; `None` in UTF-16.
+    /// The line with the first invalid byte, and that byte; `None` in UTF-16.
     at: Option<(usize, u8)>,
 }
 
@@ -109,7 +114,7 @@ impl NoText {
             None => format!("`{file}` is not UTF-16, which its first two bytes announce"),
         });
         failure.help(match self.at {
-            // A control character in Latin-1, and so hardly a text in it.
+            // Smaller bytes are control characters in Latin-1, so the file is probably not text in it.
             Some((_, byte)) if byte >= 0xa0 => {
                 let letter = char::from(byte);
                 format!("it may be Latin-1, where the byte is `{letter}`; save the file as UTF-8")
@@ -119,7 +124,7 @@ impl NoText {
     }
 }
 
-/// The text of a file: UTF-8, or UTF-16 behind a byte order mark.
+/// Decodes the text of a file: UTF-8, or UTF-16 after a byte order mark.
 fn decoded(bytes: Vec<u8>) -> Result<String, NoText> {
     let low_first = match bytes.get(..2) {
         Some([0xff, 0xfe]) => true,
@@ -155,7 +160,7 @@ fn decoded(bytes: Vec<u8>) -> Result<String, NoText> {
     }
 }
 
-/// All bytes, or one more than are allowed.
+/// Reads all bytes, or one more than the limit.
 fn read_up_to_limit(source: impl Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     source

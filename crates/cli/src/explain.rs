@@ -1,4 +1,4 @@
-//! `flagred explain`: how the outputs of a rule set come about at one point, or at each row of a table.
+//! `flagred explain`: how the outputs of a rule set are computed at one point, or at each row of a table.
 
 mod table;
 
@@ -43,9 +43,13 @@ pub(crate) struct Arguments {
     format: Format,
 }
 
-/// A value of an input, as `INPUT=VALUE`.
+/// Parses a value of an input, as `INPUT=VALUE`.
 fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f64), Failure> {
     let Some((name, value)) = text.split_once('=') else {
+        if std::path::Path::new(text).is_file() {
+            let failure = Failure::usage(format!("`{text}` is a file, not the value of an input"));
+            return Err(failure.help(format!("explain each row of a table with `--rows {text}`")));
+        }
         let inputs = model.inputs.iter();
         let names = inputs.zip(given.iter().map(Some).chain(std::iter::repeat(None)));
         let pairs = names.map(|(input, value)| {
@@ -63,18 +67,28 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
             let failure = Failure::usage(format!(
                 "`{value}` is not a finite number: the value of `{name}`"
             ));
-            Err(failure.help_if(number_advice(value)))
+            let term = model.inputs.iter().find(|input| input.name == name.trim());
+            let is_term =
+                term.is_some_and(|input| input.terms.iter().any(|term| term.name == value));
+            let advice = match is_term {
+                true => Some(format!("`{value}` is a term; write a number")),
+                false => number_advice(value),
+            };
+            Err(failure.help_if(advice))
         }
     }
 }
 
-/// What to write for a number with a decimal comma or a unit.
+/// Advice for a number with a decimal comma or a unit.
 fn number_advice(text: &str) -> Option<String> {
     if ["nan", "na", ""]
         .iter()
         .any(|unknown| text.eq_ignore_ascii_case(unknown))
     {
         return Some("an unknown value leaves nothing to explain; write a number".into());
+    }
+    if text.contains('=') {
+        return Some("separate the values by spaces".into());
     }
     let joined = text.replace([',', '_', ' ', '\''], "");
     if joined.contains('.') && joined != text && joined.parse::<f64>().is_ok() {
@@ -94,8 +108,31 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model].into_iter().chain(&arguments.rows))?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let output = files.optional(arguments.output.as_ref())?;
+    let model = arguments.model.display().to_string();
+    if model.contains('=') && !arguments.model.exists() {
+        let failure = Failure::usage(format!("`{model}` is not a rule set"));
+        return Err(failure.help("the rule set comes first, then the values of its inputs"));
+    }
     let engine = rule_set::load(&arguments.model)?;
     let model = engine.model();
+    let is_table = |path: &PathBuf| {
+        path.extension()
+            .is_some_and(|it| it == "csv" || it == "tsv")
+    };
+    if let (None, Some(path)) = (
+        &arguments.rows,
+        arguments.output.as_ref().filter(|it| is_table(it)),
+    ) {
+        let message = format!(
+            "`{}` is the name of a table, and this writes text",
+            path.display()
+        );
+        return Err(Failure::usage(message).help("`--rows` writes tables"));
+    }
+    if let (None, Some(option)) = (&arguments.rows, arguments.format.given()) {
+        let failure = Failure::usage(format!("`{option}` is for tables"));
+        return Err(failure.help("name a table with `--rows`, or leave the option out"));
+    }
     if let Some(points) = &arguments.rows {
         print(
             output.as_ref(),
@@ -126,7 +163,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// One value for each input, in the order of the model.
+/// Returns one value for each input, in the order of the model.
 fn values(model: &Model, given: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
     let names = || model.inputs.iter().map(|input| input.name.as_str());
     for (i, (name, _)) in given.iter().enumerate() {

@@ -1,18 +1,23 @@
-//! How a command ends: its exit code, and what it says when it cannot go on.
+//! Exit codes of commands, and the messages of commands that fail.
 
 use std::{fmt, io, io::Write, path::Path};
 
 use clap::error::{ContextKind, ContextValue};
-use fuzzy::drawing::{visible, visible_lines};
+use fuzzy::{
+    diagnostic::nearest,
+    drawing::{visible, visible_lines},
+};
 
-/// How a command that ran to its end ended. Of several inputs the last of these counts: a finding is known, whatever else is not.
+use crate::built_in;
+
+/// The result of a command that completed. For several inputs the last variant in this order counts, so that a finding is never hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Exit {
     /// Nothing to report: 0.
     Clean,
-    /// Ran, but some of the input could not be read or was no multirotor: 3.
+    /// Some of the input could not be read or was not a multirotor: 3.
     Unreadable,
-    /// Findings at or over what the user asked to fail on: 1.
+    /// Findings at or above the level that the user chose: 1.
     Findings,
 }
 
@@ -27,18 +32,18 @@ impl Exit {
     }
 }
 
-/// Why a command could not go on. Messages are lower case, hints say what to do.
+/// Why a command failed. Messages are lower case; the help contains what to do.
 #[derive(Debug)]
 pub(crate) struct Failure {
     code: u8,
     message: String,
-    /// What the message is about, one line each.
+    /// Details of the message, one line each.
     details: Vec<String>,
     help: Option<String>,
 }
 
 impl Failure {
-    /// The command line asks for something that cannot be done, or an output cannot be written: exit code 2.
+    /// A command line that cannot be executed, or an output that cannot be written: exit code 2.
     pub(crate) fn usage(message: impl fmt::Display) -> Self {
         Failure {
             code: 2,
@@ -48,7 +53,7 @@ impl Failure {
         }
     }
 
-    /// A file cannot be read or is not what it should be: exit code 3.
+    /// A file that cannot be read or has the wrong content: exit code 3.
     pub(crate) fn unreadable(message: impl fmt::Display) -> Self {
         Failure {
             code: 3,
@@ -58,7 +63,7 @@ impl Failure {
         }
     }
 
-    /// The findings have been shown already; only the exit code is left to give.
+    /// A failure whose findings have been shown already; only the exit code remains.
     pub(crate) fn shown(code: u8) -> Self {
         Failure {
             code,
@@ -68,13 +73,13 @@ impl Failure {
         }
     }
 
-    /// Adds what the message is about, one line each.
+    /// Adds details, one line each.
     pub(crate) fn details(mut self, details: Vec<String>) -> Self {
         self.details = details;
         self
     }
 
-    /// As [`Failure::unreadable`], for an error that may have several lines, such as findings: all but the first are details.
+    /// As [`Failure::unreadable`], for an error of several lines, such as findings: all lines but the first become details.
     pub(crate) fn unusable(what: impl fmt::Display, error: &impl fmt::Display) -> Self {
         let error = error.to_string();
         let mut lines = error.lines();
@@ -83,13 +88,13 @@ impl Failure {
         Failure::unreadable(format!("{what}: {first}")).details(details.collect())
     }
 
-    /// Adds what to do about it.
+    /// Adds help.
     pub(crate) fn help(mut self, help: impl fmt::Display) -> Self {
         self.help = Some(help.to_string());
         self
     }
 
-    /// Adds what to do about it, where that is known.
+    /// Adds help, if there is any.
     pub(crate) fn help_if(self, help: Option<impl fmt::Display>) -> Self {
         match help {
             Some(help) => self.help(help),
@@ -97,7 +102,7 @@ impl Failure {
         }
     }
 
-    /// What is wrong, without what to do about it.
+    /// Returns the message without its help.
     pub(crate) fn message(&self) -> &str {
         &self.message
     }
@@ -107,7 +112,7 @@ impl Failure {
         if !self.message.is_empty() {
             let mut err = anstream::stderr().lock();
             let red = anstyle::AnsiColor::Red.on_default().bold();
-            // Nothing is left to tell a user whose standard error is closed.
+            // If standard error is closed, there is no other way to report that.
             let _ = writeln!(err, "{red}error{red:#}: {}", visible(&self.message));
             for detail in &self.details {
                 let _ = writeln!(err, "  {}", visible(detail));
@@ -120,7 +125,7 @@ impl Failure {
     }
 }
 
-/// In plain words, for a reader who is not at the terminal.
+/// Without colours, for a reader who is not at the terminal.
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)?;
@@ -130,11 +135,14 @@ impl fmt::Display for Failure {
     }
 }
 
-/// A file where the command should stand, as in `flagred flight.bin`.
+/// Recognises a file in place of the command, as in `flagred flight.bin`.
 pub(crate) fn command_forgotten(error: &clap::Error) -> Option<Failure> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {
         return None;
     };
+    if word == "version" {
+        return Some(Failure::usage("`version` is not a command").help("`flagred --version`"));
+    }
     Path::new(word).exists().then(|| {
         let path = Path::new(word);
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -147,14 +155,20 @@ pub(crate) fn command_forgotten(error: &clap::Error) -> Option<Failure> {
     })
 }
 
-/// A file that cannot be read: exit code 3.
+/// Reports a file that cannot be read: exit code 3.
 pub(crate) fn cannot_read(shown: &str, error: &io::Error) -> Failure {
     match error.kind() {
         io::ErrorKind::IsADirectory => {
             Failure::unreadable(format!("`{shown}` is a folder")).help("name the files in it")
         }
         _ => {
-            Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
+            let failure = Failure::unreadable(format!("`{shown}` cannot be read: {error}"));
+            let built_in = built_in::profile_names();
+            failure.help(match nearest(shown, built_in) {
+                Some(name) => format!("did you mean the built-in `{name}`?"),
+                None if shown.contains('*') => "no file has a name of this form".to_owned(),
+                None => "check the path".to_owned(),
+            })
         }
     }
 }
@@ -166,17 +180,17 @@ impl From<flagred_flightlog::ReadError> for Failure {
     }
 }
 
-/// Reports a command line that clap refuses, or prints the help that it asks for, and returns the exit code. What the user
-/// typed is shown as text.
+/// Reports a command line that clap rejects, or prints the help that it requests, and returns the exit code. Control characters that
+/// the user typed are made visible.
 pub(crate) fn refuse(error: &clap::Error) -> u8 {
     let text = error.render().to_string();
     let mut shown = visible_lines(&text).into_owned();
-    if let Some(tip) = shown.find("  tip: to pass '--") {
-        // Nobody has a file of such a name.
+    if let Some(tip) = shown.find("  tip: to pass '-") {
+        // Removes the advice for values that begin with `-`: hardly anybody has one.
         let end = shown.get(tip..).and_then(|tip| tip.find("\n\n"));
         shown.replace_range(tip..end.map_or(shown.len(), |end| tip + end + 2), "");
     }
-    // Nobody is left to tell where the stream is closed.
+    // A closed stream cannot be reported.
     if shown == text {
         let _ = error.print();
     } else {
@@ -188,7 +202,7 @@ pub(crate) fn refuse(error: &clap::Error) -> u8 {
     }
 }
 
-/// Standard output could not be written: exit code 2. That its reader went is no error (`output::Stdout`).
+/// Standard output could not be written: exit code 2. A reader that closed the pipe is not an error (see `output::Stdout`).
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Failure::usage(format!("the output cannot be written: {error}"))

@@ -1,4 +1,4 @@
-//! Flights to learn from: logs that must be complete.
+//! Flights as training data: logs must be complete.
 
 use std::path::Path;
 
@@ -7,11 +7,11 @@ use flagred_flightlog::Flight;
 
 use crate::failure::Failure;
 
-/// Opens a flight that must carry motors, attitude and times in the air, with the named signals where it has them.
+/// Opens a flight, which must contain motors, attitude and times in the air. The named signals are read if present.
 ///
 /// # Errors
 ///
-/// Why it cannot be used; `cannot` says for what: `makes no rows`.
+/// The flight cannot be used; `cannot` completes the message, such as `makes no rows`.
 pub(crate) fn open_complete(
     path: impl AsRef<Path>,
     names: &[&str],

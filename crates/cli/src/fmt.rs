@@ -1,4 +1,4 @@
-//! `flagred fmt`: one layout for rule sets and profiles. Comments stay.
+//! `flagred fmt`: one layout for rule sets and profiles. Comments are kept.
 
 use std::{io::Write, path::PathBuf};
 

@@ -1,5 +1,5 @@
-//! What commands make of bytes, without files, sockets or a terminal: for the fuzz targets and the tests that share their
-//! bodies. No interface: it changes without notice.
+//! The commands applied to bytes, without files, sockets or a terminal, for the fuzz targets and the tests that share their
+//! code. This is not a public interface; it changes without notice.
 
 use std::{convert::Infallible, net::SocketAddr, sync::Arc};
 
@@ -29,51 +29,51 @@ use crate::{
     },
 };
 
-/// A profile and its rule set.
+/// A compiled profile with its rule set.
 pub struct Profile(Loaded);
 
 impl Profile {
-    /// A profile with a rule set, where they compile.
+    /// Compiles a profile with a rule set; `None` if that fails.
     pub fn new(profile_text: &str, rules_text: &str) -> Option<Profile> {
         let [profile, rules] = [profile_text, rules_text].map(Source::new);
         let loaded = loaded::with_rules::<Infallible>("the profile", profile, rules);
         loaded.ok().map(Profile)
     }
 
-    /// The default one.
+    /// Returns the default profile.
     pub fn shipped() -> Option<Profile> {
         Profile::new(shipped::PROFILES[0].text, shipped::RULE_SETS[0].text)
     }
 
-    /// It, compiled.
+    /// Returns the compiled profile and rule set.
     pub fn estimator(&self) -> &Estimator {
         &self.0.estimator
     }
 
-    /// What `export` writes, where there is a closed form: Rust and C.
+    /// Returns the Rust and C code that `export` writes; `None` if there is no closed form.
     pub fn exported(&self) -> Option<[String; 2]> {
         export::texts(&self.0.estimator).ok()
     }
 }
 
-/// What is said of a flight.
+/// The output about a flight.
 #[derive(Debug, Default)]
 pub struct Documents {
-    /// The words of `assess` and `inspect`.
+    /// The text of `assess` and `inspect`.
     pub words: Vec<u8>,
     /// The documents of `assess --json` and `inspect --json`.
     pub json: Vec<String>,
     /// The table of `assess --csv`.
     pub csv: Vec<u8>,
-    /// The report, the picture, and the comparison with itself.
+    /// The report, the picture, and the comparison of the flight with itself.
     pub pages: Vec<String>,
 }
 
-/// All that `assess` and `inspect` write of a flight.
+/// Returns everything that `assess` and `inspect` write about a flight.
 ///
 /// # Errors
 ///
-/// None: memory takes what is written.
+/// None in practice: the output goes to memory.
 pub fn documents(name: &str, flight: Flight, profile: &Profile) -> std::io::Result<Documents> {
     let mut all = Documents::default();
     let loaded = &profile.0;
@@ -97,18 +97,18 @@ pub fn documents(name: &str, flight: Flight, profile: &Profile) -> std::io::Resu
     Ok(all)
 }
 
-/// A flight as `convert` writes it.
+/// Returns a flight as `convert` writes it.
 ///
 /// # Errors
 ///
-/// None: memory takes what is written.
+/// None in practice: the output goes to memory.
 pub fn converted(flight: &Flight) -> std::io::Result<Vec<u8>> {
     let mut csv = Vec::new();
     flagred_report::table::write_flight(&mut csv, flight)?;
     Ok(csv)
 }
 
-/// The findings of `check`, drawn, and the analysis where there is one.
+/// Returns the findings of `check`, their drawing, and the analysis if there is one.
 pub fn checked(text: &str) -> (Findings, String, Option<check::Report>) {
     let source = Source::new(text);
     let (findings, report) = match examine(&source, &check::Options::default()) {
@@ -116,14 +116,14 @@ pub fn checked(text: &str) -> (Findings, String, Option<check::Report>) {
             examined.findings,
             examined.analysed.map(|(_, report)| report),
         ),
-        // Only claims are refused, and none are made.
+        // Only claims can be refused, and there are none.
         Err(finding) => (Findings(vec![*finding]), None),
     };
     let drawn = draw(&findings.0, "rules.yaml", text, false);
     (findings, drawn, report)
 }
 
-/// A watch in process, which tells everything in every way.
+/// A watch without sockets or files, which produces all kinds of output.
 pub struct Watch<'e> {
     session: Session<'e>,
     estimator: &'e Estimator,
@@ -134,30 +134,30 @@ pub struct Watch<'e> {
     told: Told,
 }
 
-/// What a watch said since it was asked last.
+/// Output of a watch since the previous call.
 #[derive(Debug, Default)]
 pub struct Told {
     /// Lines for people.
     pub words: Vec<String>,
     /// Lines for programs.
     pub json: Vec<String>,
-    /// Packets.
+    /// The packets to send.
     pub packets: Vec<Vec<u8>>,
 }
 
 /// The vehicle that is followed.
 #[derive(Debug, Clone, Copy)]
 pub struct Followed {
-    /// Its number.
+    /// Its MAVLink system number.
     pub system: u8,
     /// Whether it or its motor commands are lost.
     pub is_lost: bool,
-    /// Its clock at its latest sample.
+    /// The vehicle's clock at its latest sample.
     pub t_s: Option<f64>,
 }
 
 impl<'e> Watch<'e> {
-    /// A watch that speaks.
+    /// Creates a watch that also sends packets.
     pub fn new(estimator: &'e Estimator) -> Watch<'e> {
         Watch {
             session: Session::new(estimator, Some(Sender::new(191)), false),
@@ -170,7 +170,7 @@ impl<'e> Watch<'e> {
         }
     }
 
-    /// Takes in a datagram; gives the number of packets that are the vehicle's.
+    /// Processes a datagram, and returns the number of packets in it from the vehicle.
     pub fn receive(&mut self, now_s: f64, source: Option<SocketAddr>, datagram: &[u8]) -> usize {
         let mut taken = 0;
         self.stream.push(datagram);
@@ -183,30 +183,30 @@ impl<'e> Watch<'e> {
         taken
     }
 
-    /// Lets time pass.
+    /// Advances the clock.
     pub fn tick(&mut self, now_s: f64) {
         self.session.tick(now_s, &mut self.out);
         self.tell(now_s);
     }
 
-    /// Ends the watch.
+    /// Ends the watch and the current flight.
     pub fn finish(&mut self, now_s: f64) {
         self.session.finish(&mut self.out);
         self.tell(now_s);
     }
 
-    /// What was said since.
+    /// Returns the output since the previous call.
     pub fn told(&mut self) -> Told {
         std::mem::take(&mut self.told)
     }
 
-    /// The screen.
+    /// Returns the text of the screen.
     pub fn screen(&self, size: (usize, usize)) -> String {
         let view = self.session.view();
         self.screen.frame(view.as_ref(), self.estimator, size)
     }
 
-    /// The vehicle.
+    /// Returns the vehicle that is followed.
     pub fn followed(&self) -> Option<Followed> {
         self.session.view().map(|view| Followed {
             system: view.system,

@@ -1,4 +1,4 @@
-//! The examples under the help of each command. A test parses every line.
+//! The examples at the end of each command's help. A test parses every line.
 
 pub(crate) const FLAGRED: &str = "\
 Examples:
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn the_definitions_are_sound() {
+    fn the_definitions_of_arguments_are_valid() {
         Arguments::command().debug_assert();
     }
 }

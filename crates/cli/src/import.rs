@@ -1,4 +1,4 @@
-//! `flagred import`: a rule set of another program, in YAML.
+//! `flagred import`: converts a rule set of another program to YAML.
 
 use std::path::{Path, PathBuf};
 
@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// What to do with a file that is not of another program's format.
+/// Advice for a file that is not in the format of another program.
 fn advice(path: &Path, text: &str) -> Option<&'static str> {
     let is = |ending: &str| {
         path.extension()

@@ -1,4 +1,4 @@
-//! What `identify` and `tune` say of rows that were used, and of errors on rows left out.
+//! Output that `identify` and `tune` share: used and refused rows, and cross-validation errors.
 
 use std::io::Write;
 
@@ -7,10 +7,10 @@ use fuzzy::drawing::{short, visible};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// The reasons for rows without use that are shown.
+/// Maximum number of reasons for refused rows that are shown.
 const SHOWN: usize = 12;
 
-/// How many rows were used, and why others were not.
+/// Writes how many rows were used, and why others were refused.
 pub(crate) fn rows(out: &mut dyn Write, used: usize, refused: &[String]) -> std::io::Result<()> {
     writeln!(out, "rows        {used} used, {} refused", refused.len())?;
     for refused in refused.iter().take(SHOWN) {
@@ -19,12 +19,12 @@ pub(crate) fn rows(out: &mut dyn Write, used: usize, refused: &[String]) -> std:
     Ok(())
 }
 
-/// `2.9 [2.6, 3.2]`
+/// Formats a value with its interval: `2.9 [2.6, 3.2]`.
 pub(crate) fn figure(Interval { value, low, high }: &Interval) -> String {
     format!("{} [{}, {}]", short(*value), short(*low), short(*high))
 }
 
-/// The confusion table of rows left out; `name` gives the name of a class. Names are shown if all classes have one.
+/// Writes the confusion table of cross-validation. `name` returns the name of a class; names are shown if all classes have one.
 pub(crate) fn confusion(
     out: &mut dyn Write,
     confusion: &Confusion,
@@ -58,7 +58,7 @@ pub(crate) fn confusion(
     Ok(())
 }
 
-/// What cross-validation divides into parts.
+/// The unit that cross-validation divides into parts: rows or groups.
 pub(crate) fn divided(group_by: Option<&String>) -> String {
     match group_by {
         Some(column) => format!("groups of `{}`", visible(column)),

@@ -1,6 +1,6 @@
 //! The `flagred` command: assess flights; author, check and explain fuzzy rule sets.
 //!
-//! Each command has a file; this one reads the command line and dispatches.
+//! Each command has its own file; this one parses the command line and dispatches.
 
 mod assess;
 mod built_in;
@@ -27,6 +27,7 @@ mod lsp;
 mod man;
 mod map;
 mod new;
+mod numbers;
 mod output;
 mod parallel;
 mod plot;
@@ -52,10 +53,10 @@ use std::{
     io::{self, Write as _},
 };
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use failure::{Exit, Failure};
 
-/// Estimates from its motor commands the risk that a multirotor loses control; checks, explains and learns fuzzy rule sets.
+/// Estimates the risk that a multirotor loses control from its motor commands; checks, explains and learns fuzzy rule sets.
 ///
 /// Exit codes: 0 done; 1 done, with findings (the help of a command names them); 2 wrong usage, or an output cannot be written;
 /// 3 no answer: the input cannot be read or used.
@@ -134,7 +135,7 @@ enum Command {
     /// Convert a rule set of another program (FIS, FLL, FCL, FML) to YAML
     #[command(after_help = help::IMPORT)]
     Import(import::Arguments),
-    /// Export a profile as code for firmware, or a rule set for another program
+    /// Export a profile or rule set as code (Rust, C, Lua), or a rule set for another program (FIS, FLL, FCL, FML)
     #[command(after_help = help::EXPORT)]
     Export(export::Arguments),
     /// Print the JSON Schema of a format: rule set, profile, or what a command prints
@@ -186,7 +187,7 @@ impl Command {
     }
 }
 
-/// `flagred help --help` is `flagred help help`.
+/// Rewrites `flagred help --help` to `flagred help help`.
 fn help_of_help(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let mut arguments: Vec<OsString> = arguments.collect();
     if let [_, command, option, ..] = arguments.as_mut_slice()
@@ -198,9 +199,21 @@ fn help_of_help(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     arguments
 }
 
-/// Runs the command of a command line, which begins with the name of the program, and returns its exit code.
+/// Parses a command line. `-1` is a value of the option before it, whose parser has the better message.
+fn parse(arguments: Vec<OsString>) -> Result<Arguments, clap::Error> {
+    let mut command = Arguments::command().mut_subcommands(|subcommand| {
+        subcommand.mut_args(|argument| {
+            let takes_value = argument.get_action().takes_values() && !argument.is_positional();
+            argument.allow_negative_numbers(takes_value)
+        })
+    });
+    let matches = command.try_get_matches_from_mut(arguments)?;
+    Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+}
+
+/// Runs a command line, which begins with the name of the program, and returns its exit code.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> u8 {
-    let code = match Arguments::try_parse_from(help_of_help(arguments)) {
+    let code = match parse(help_of_help(arguments)) {
         Ok(arguments) => match arguments.command.run() {
             Ok(exit) => exit.code(),
             Err(failure) => failure.report(),
@@ -210,8 +223,8 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> u8 {
             None => failure::refuse(&error),
         },
     };
-    // A process that is not a Rust program, such as Python, does not flush Rust's buffer when it ends. Nobody is left to
-    // tell of an output that cannot be written here.
+    // A process that is not a Rust program, such as Python, does not flush Rust's buffer when it ends. An output that cannot be
+    // written here cannot be reported any more.
     let _ = io::stdout().flush();
     code
 }

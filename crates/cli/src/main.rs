@@ -1,4 +1,4 @@
-//! The program. All of it is in the library, where fuzz targets and tests reach it.
+//! The program. All its code is in the library, which fuzz targets and tests can call.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! `flagred man`: the manual, made of the same definitions as the help.
+//! `flagred man`: the manual, generated from the same definitions as the help.
 
 use std::{fs, io::Write as _, path::PathBuf};
 
@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut flagred = crate::Arguments::command().propagate_version(true);
-    // Gives the commands the names of their pages: flagred-assess.
+    // Sets the names of the pages, such as flagred-assess.
     flagred.build();
     let commands = || {
         let commands = flagred.get_subcommands();
@@ -29,7 +29,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     if let Some(folder) = &arguments.folder {
         fs::create_dir_all(folder).map_err(|error| {
-            Failure::usage(format!("`{}` cannot be made: {error}", folder.display()))
+            let shown = folder.display();
+            match folder.is_file() {
+                true => Failure::usage(format!("`{shown}` is a file, not a folder")),
+                false => Failure::usage(format!("`{shown}` cannot be made: {error}")),
+            }
         })?;
         let mut files = Files::reading::<PathBuf>([])?;
         for command in std::iter::once(&flagred).chain(commands()) {
@@ -59,7 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// A page in the language of `man`.
+/// Returns a page in the format of `man`.
 fn page(command: &Command) -> Result<String, Failure> {
     let mut page = Vec::new();
     clap_mangen::Man::new(command.clone()).render(&mut page)?;

@@ -1,4 +1,4 @@
-//! `flagred new`: a commented rule set or profile to start from.
+//! `flagred new`: writes a commented rule set or profile as a starting point.
 
 use std::{io::Write, path::PathBuf};
 

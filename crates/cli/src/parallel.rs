@@ -1,12 +1,12 @@
-//! Work on many files: on all cores, handed over in order, in bounded memory, with a progress bar.
+//! Work on many files: on all cores, with results in order, in bounded memory, with a progress bar.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
-/// Works on all items on all cores and takes the results in the order of the items; `take` says whether to go on. Only the
-/// results of a few items for each core are held at a time.
+/// Works on all items on all cores, and passes the results to `take` in the order of the items, until it returns false. Only the
+/// results of a few items per core are kept at a time.
 ///
-/// Shows a progress bar on standard error where that is a terminal; `unit` is what the items are.
+/// Shows a progress bar on standard error if that is a terminal; `unit` names the items.
 pub(crate) fn in_order<T: Sync, R: Send>(
     items: &[T],
     unit: &'static str,
@@ -34,7 +34,7 @@ pub(crate) fn in_order<T: Sync, R: Send>(
     progress.finish_and_clear();
 }
 
-/// A bar over so many items; hidden for a single one and where standard error is no terminal.
+/// A progress bar; hidden for a single item, or if standard error is not a terminal.
 pub(crate) fn progress(items: usize, unit: &'static str) -> ProgressBar {
     if items < 2 {
         return ProgressBar::hidden();
@@ -59,7 +59,7 @@ mod tests {
             &items,
             "numbers",
             |item| {
-                // The first ones take longest.
+                // The first items take longest.
                 std::thread::sleep(std::time::Duration::from_micros(200 - item));
                 item * item
             },
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn taking_can_stop() {
+    fn the_consumer_can_stop_early() {
         let items: Vec<u64> = (0..10_000).collect();
         let mut taken = 0;
         in_order(

@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     svg: Option<PathBuf>,
 }
 
-/// Points of a curve.
+/// Number of points of a curve.
 const POINTS: usize = 401;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -43,8 +43,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// The outputs over the only input; none where there are more. Each point is evaluated once for all outputs: in a chain one output
-/// needs those before it.
+/// The outputs over the only input; none if there are more inputs. Each point is evaluated once for all outputs, since in a chain an
+/// output reads those before it.
 fn curves(engine: &Engine) -> Result<Vec<Slice>, Failure> {
     let model = engine.model();
     let [input] = &model.inputs[..] else {

@@ -1,4 +1,4 @@
-//! `--profile`: a shipped profile by its name, or a file, with the rule set it names.
+//! `--profile`: a built-in profile by its name, or a file, with the rule set that it names.
 
 use std::path::{Path, PathBuf};
 
@@ -16,17 +16,17 @@ use crate::{
 
 pub(crate) use flagred::loaded::{Loaded, examine};
 
-/// The profile that is used where none is named.
+/// The profile that is used by default.
 pub(crate) const DEFAULT: &str = "flagred";
 
-/// Compiles a profile, which is a shipped one's name or a file, with its rule set. Warnings are drawn on standard error.
+/// Compiles a built-in profile or a file, with its rule set. Warnings are drawn on standard error.
 pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
     let loaded = loaded::load(name, |path| read_profile(name, path)).map_err(failure)?;
     show(&loaded.warnings, name, loaded.profile.text());
     Ok(loaded)
 }
 
-/// As [`load`], of a text that was read from a file.
+/// As [`load`], for a text that was read from a file already.
 pub(crate) fn from_source(path: &Path, source: Source) -> Result<Loaded, Failure> {
     let name = path.display().to_string();
     let is_stdin = path == Path::new("-");
@@ -36,22 +36,22 @@ pub(crate) fn from_source(path: &Path, source: Source) -> Result<Loaded, Failure
     Ok(loaded)
 }
 
-/// The rule set that a profile names. It compiles.
+/// Returns the rule set that a profile names, after compiling it.
 pub(crate) fn rule_set(profile: &Profile, folder: Option<&Path>) -> Result<Source, Failure> {
     loaded::rule_set(profile, folder, read_text).map_err(failure)
 }
 
-/// Reads a profile without its rule set: also what it was written as, and of a file the folder it is in.
+/// Reads a profile without its rule set. Also returns its text and, for a file, its folder.
 pub(crate) fn read(name: &str) -> Result<(Profile, Source, Option<PathBuf>), Failure> {
     loaded::read(name, |path| read_profile(name, path)).map_err(failure)
 }
 
-/// The file and the text of the rule set that a profile names.
+/// Returns the file name and the text of the rule set that a profile names.
 pub(crate) fn rules(profile: &Profile, folder: Option<&Path>) -> Result<(String, String), Failure> {
     loaded::rules(profile, folder, read_text).map_err(failure)
 }
 
-/// The text of a profile, or of the rule set that it names.
+/// Reads the text of a profile, or of the rule set that it names.
 fn read_profile(profile: &str, path: &Path) -> Result<String, Failure> {
     match path == Path::new(profile) {
         true => file_text(path),
@@ -59,7 +59,7 @@ fn read_profile(profile: &str, path: &Path) -> Result<String, Failure> {
     }
 }
 
-/// The text of a file that may be the misspelt name of a shipped profile.
+/// Reads a file whose name may be a misspelt name of a built-in profile.
 pub(crate) fn file_text(path: &Path) -> Result<String, Failure> {
     read_text(path).map_err(|failure| {
         let names = shipped::profile_names().join(", ");
@@ -67,7 +67,7 @@ pub(crate) fn file_text(path: &Path) -> Result<String, Failure> {
     })
 }
 
-/// Whether a profile of this name is shipped.
+/// Returns whether a built-in profile has this name.
 pub(crate) fn is_shipped(name: &str) -> bool {
     shipped::PROFILES.iter().any(|known| known.name == name)
 }

@@ -1,4 +1,4 @@
-//! The step that a command writes into a rule set: the data it comes from.
+//! The provenance step that a command writes into a rule set, with the data files.
 
 use std::{
     fs::File,
@@ -15,7 +15,7 @@ use sha2::{Digest as _, Sha256};
 
 use crate::failure::Failure;
 
-/// The text of a rule set that a command made of another one, with the step that made it.
+/// Returns the text of a rule set that a command derived from another one, with the provenance step.
 pub(crate) fn rule_set(begun_with: &str, model: Model, step: Step) -> Result<String, Failure> {
     flagred_authoring::provenance::rule_set(begun_with, model, step).map_err(|findings| {
         let problems = findings.0.into_iter().map(|finding| finding.message);
@@ -25,13 +25,13 @@ pub(crate) fn rule_set(begun_with: &str, model: Model, step: Step) -> Result<Str
     })
 }
 
-/// The files that data come from.
+/// Returns the names and hashes of data files.
 pub(crate) fn data(tables: &[PathBuf]) -> Result<Vec<DataFile>, Failure> {
     tables.iter().map(|path| data_file(path)).collect()
 }
 
 fn data_file(path: &Path) -> Result<DataFile, Failure> {
-    // Of standard input and of pipes nothing is left.
+    // The content of standard input and pipes cannot be read again for a hash.
     let sha256 = match path.is_file() {
         true => Some(sha256(path).map_err(|error| {
             Failure::unreadable(format!("`{}` cannot be read: {error}", path.display()))

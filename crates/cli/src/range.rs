@@ -1,4 +1,4 @@
-//! `--range`: the range of the motor outputs where a log or a vehicle does not report it.
+//! `--range`: the range of the motor outputs if a log or a vehicle does not report it.
 
 use flagred_flightlog::{Options, PulseRange};
 
@@ -6,7 +6,7 @@ use crate::failure::Failure;
 
 #[derive(clap::Args)]
 pub(crate) struct RangeArgument {
-    /// Range of the motor outputs in us, only where the log or the vehicle reports none: `--range 1100 1900`
+    /// Range of the motor outputs in us, used if the log or the vehicle reports none: `--range 1100 1900`
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = pulse_width)]
     range: Option<Vec<u16>>,
 }
@@ -19,7 +19,7 @@ fn pulse_width(text: &str) -> Result<u16, String> {
 }
 
 impl RangeArgument {
-    /// The given range, if any.
+    /// Returns the given range, if any.
     pub(crate) fn given(&self) -> Result<Option<PulseRange>, Failure> {
         let Some(&[low_us, high_us]) = self.range.as_deref() else {
             return Ok(None);
@@ -29,7 +29,7 @@ impl RangeArgument {
         Ok(Some(range))
     }
 
-    /// Options that read a log whole, with the given range.
+    /// Returns options that read a whole log, with the given range.
     pub(crate) fn options(&self) -> Result<Options, Failure> {
         let mut options = Options::default();
         options.range = self.given()?;

@@ -1,6 +1,9 @@
-//! What `identify`, `learn`, `tune` and `simplify` share: their arguments, and rows from tables, each with its place for messages.
+//! Shared by `identify`, `learn`, `tune` and `simplify`: arguments, and rows of tables with their positions for messages.
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
+};
 
 use clap::ValueEnum;
 use flagred_evaluation::learning::Row;
@@ -70,7 +73,7 @@ pub(crate) struct FromRows {
 }
 
 impl FromRows {
-    /// What is read and what is written.
+    /// Returns the inputs and the output.
     pub(crate) fn files(&self) -> Result<(Files, Output), Failure> {
         let Rewrite {
             model,
@@ -78,6 +81,7 @@ impl FromRows {
             force,
             ..
         } = &self.rewrite;
+        distinct(&self.data)?;
         let mut files = Files::reading(self.data.iter().chain([model]))?;
         let output = files.output(output, Replace::forced(*force))?;
         Ok((files, output))
@@ -101,7 +105,7 @@ impl Claims {
         self.rising.is_empty() && self.falling.is_empty()
     }
 
-    /// The claims, those about rising inputs first.
+    /// Returns the claims; those about rising inputs come first.
     ///
     /// # Errors
     ///
@@ -123,7 +127,21 @@ impl Claims {
             .collect())
     }
 
-    /// The claims about the only output that is learned.
+    /// Refuses claims about inputs that the rule set does not have.
+    pub(crate) fn check_inputs(&self, model: &Model) -> Result<(), Failure> {
+        let names = || model.inputs.iter().map(|input| input.name.as_str());
+        let claims = self.rising.iter().chain(&self.falling);
+        let mut inputs = claims.map(|claim| claim.split(':').next().unwrap_or(claim));
+        match inputs.find(|input| !names().any(|name| name == *input)) {
+            None => Ok(()),
+            Some(input) => {
+                let failure = Failure::usage(format!("the rule set has no input `{input}`"));
+                Err(failure.help_if(fuzzy::diagnostic::suggest(input, names())))
+            }
+        }
+    }
+
+    /// Returns the claims for the only output that is learned.
     ///
     /// # Errors
     ///
@@ -133,12 +151,9 @@ impl Claims {
         for claim in &mut claims {
             match claim.output.replace(output.to_owned()) {
                 Some(other) if other != output => {
-                    let message = format!(
-                        "`{other}` is not learned: the claim about `{}`",
-                        claim.input
-                    );
+                    let message = format!("`{}:{other}`: `{other}` is not learned", claim.input);
                     return Err(Failure::usage(message)
-                        .help(format!("name `{output}`, or the input alone")));
+                        .help(format!("write `{0}` or `{0}:{output}`", claim.input)));
                 }
                 _ => {}
             }
@@ -147,13 +162,13 @@ impl Claims {
     }
 }
 
-/// The word of the command line for a value.
+/// Returns the command-line word for a value.
 pub(crate) fn word(value: &impl ValueEnum) -> String {
     let word = value.to_possible_value();
     word.map_or_else(String::new, |word| word.get_name().to_owned())
 }
 
-/// Rows, and those that cannot be used, with the reason.
+/// Rows with their positions, and the reasons why other rows cannot be used.
 pub(crate) struct Data {
     pub(crate) rows: Vec<(Row, String)>,
     pub(crate) refused: Vec<String>,
@@ -165,7 +180,7 @@ pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure>
     let names: Vec<&str> = variables.iter().map(|v| v.name.as_str()).collect();
     let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
     let format = &arguments.rewrite.format;
-    // The names of constants: `failed` in place of 1.
+    // Names of constants may replace their numbers, such as `failed` for 1.
     let terms = variables.last().map(|output| output.terms.iter());
     let labels: Vec<(String, f64)> = terms
         .into_iter()
@@ -206,7 +221,19 @@ fn clamp(data: &mut Data, variables: &[&Variable]) {
     }
 }
 
-/// The tables, each read when it is asked for.
+/// Refuses a file that is given twice: its rows would be in training and in test rows.
+pub(crate) fn distinct(files: &[PathBuf]) -> Result<(), Failure> {
+    let mut seen = BTreeSet::new();
+    match files.iter().find(|file| !seen.insert(*file)) {
+        None => Ok(()),
+        Some(file) => {
+            let message = format!("`{}` is given twice", file.display());
+            Err(Failure::usage(message).help("name each file once"))
+        }
+    }
+}
+
+/// Returns the tables; each is read when the iterator reaches it.
 pub(crate) fn tables<'a>(
     paths: &'a [PathBuf],
     format: &'a Format,
@@ -214,8 +241,8 @@ pub(crate) fn tables<'a>(
     paths.iter().map(|path| Table::read(path, format.delimiter))
 }
 
-/// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows. `labels` are the
-/// words that stand for values of the last variable.
+/// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows. `labels` are words
+/// that may replace values of the last variable.
 pub(crate) fn columns(
     tables: impl Iterator<Item = Result<Table, Failure>>,
     format: &Format,
@@ -231,6 +258,13 @@ pub(crate) fn columns(
     for table in tables {
         let table = table?;
         let columns = format.columns(names, &table.header)?;
+        if let Some((output, inputs)) = columns.split_last()
+            && inputs.contains(output)
+        {
+            let column = table.header.name(*output);
+            let message = format!("column `{column}` is both an input and the output");
+            return Err(Failure::usage(message).help("correct `--column`"));
+        }
         let optional = |name: Option<&str>| {
             name.map(|name| table.header.require(name, "or leave that option out"))
                 .transpose()
@@ -241,10 +275,7 @@ pub(crate) fn columns(
             let mut bad = Vec::new();
             let mut number = |column: usize| {
                 table.number(row, column).unwrap_or_else(|cell| {
-                    bad.push(format!(
-                        "`{}`, line {}, column `{}`: {}",
-                        table.header.file, cell.line, cell.column, cell.problem
-                    ));
+                    bad.push(format!("column `{}`: {}", cell.column, cell.problem));
                     f64::NAN
                 })
             };
@@ -264,8 +295,9 @@ pub(crate) fn columns(
                 _ => columns.iter().map(|column| number(*column)).collect(),
             };
             let weight = weight.map_or(1.0, &mut number);
+            let place = format!("`{}`, line {}", table.header.file, table.line(row));
             if !bad.is_empty() {
-                data.refused.append(&mut bad);
+                data.refused.push(format!("{place}, {}", bad.join("; ")));
                 continue;
             }
             let group = group.map(|column| {
@@ -273,7 +305,6 @@ pub(crate) fn columns(
                 let name = table.text(row, column).to_owned();
                 *groups.entry(name).or_insert(next)
             });
-            let place = format!("`{}`, line {}", table.header.file, table.line(row));
             let row = Row {
                 values,
                 weight,
@@ -285,7 +316,37 @@ pub(crate) fn columns(
     Ok(data)
 }
 
-/// Rows as columns, and those that cannot be used, with the reason.
+/// Refuses rows with a value outside the range of its input or, if `and_output`, of the output.
+pub(crate) fn in_range(read: Data, model: &Model, and_output: bool) -> Data {
+    let Data { rows, mut refused } = read;
+    let inputs = model.inputs.len();
+    let variables: Vec<&Variable> = model.measured_variables().collect();
+    let is_outside = |(column, (value, variable)): &(usize, (&f64, &&Variable))| {
+        let is_checked = and_output || *column < inputs;
+        is_checked && !(variable.low..=variable.high).contains(*value)
+    };
+    let mut kept = Vec::with_capacity(rows.len());
+    for (row, place) in rows {
+        let mut values = row.values.iter().zip(&variables).enumerate();
+        match values.find(is_outside) {
+            None => kept.push((row, place)),
+            Some((_, (value, variable))) => {
+                let Variable {
+                    name, low, high, ..
+                } = variable;
+                refused.push(format!(
+                    "{place}, column `{name}`: {value} is outside the range from {low} to {high}"
+                ));
+            }
+        }
+    }
+    Data {
+        rows: kept,
+        refused,
+    }
+}
+
+/// Converts rows to columns. Also returns the reasons why other rows cannot be used.
 pub(crate) fn in_columns(
     read: Data,
     inputs: usize,
@@ -311,15 +372,7 @@ pub(crate) fn in_columns(
     (data, refused)
 }
 
-/// A share on the command line.
-pub(crate) fn share(text: &str) -> Result<f64, String> {
-    let share: Option<f64> = text.parse().ok();
-    share
-        .filter(|share| (0.0..1.0).contains(share))
-        .ok_or_else(|| "write a share, at least 0 and less than 1".into())
-}
-
-/// Rows that cannot be used, as a failure.
+/// Reports rows that cannot be used, as a failure.
 pub(crate) fn refuse(refused: &[String], purpose: &str) -> Failure {
     const SHOWN: usize = 20;
     let mut shown: Vec<String> = refused.iter().take(SHOWN).cloned().collect();

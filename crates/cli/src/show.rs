@@ -1,4 +1,4 @@
-//! `flagred show`: a built-in profile or rule set as it is written, with its comments.
+//! `flagred show`: prints a built-in profile or rule set as it is written, with its comments.
 
 use std::io::Write;
 
@@ -10,7 +10,7 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A built-in profile
+    /// The name of a built-in profile
     #[arg(value_name = "NAME", value_parser = built_in::names())]
     name: String,
     /// Print the rule set of the profile instead

@@ -1,4 +1,4 @@
-//! `flagred simplify`: the same said with fewer rules.
+//! `flagred simplify`: a rule set with fewer rules and the same outputs.
 
 use std::{io::Write, path::PathBuf};
 
@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use crate::{
     failure::{Exit, Failure},
+    numbers,
     output::{Files, Replace, Stdout},
     provenance, rows, rule_set,
 };
@@ -27,7 +28,7 @@ pub(crate) struct Arguments {
     data: Vec<PathBuf>,
 
     /// Largest difference of an output, in its unit [default: 1e-12 of its range]
-    #[arg(long, value_name = "VALUE", value_parser = tolerance)]
+    #[arg(long, value_name = "VALUE", value_parser = numbers::at_least_0)]
     tolerance: Option<f64>,
 
     /// Compare outputs only at the rows of DATA; elsewhere they may differ by any amount
@@ -35,15 +36,8 @@ pub(crate) struct Arguments {
     rows_only: bool,
 
     /// Random seed (test points)
-    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = numbers::seed)]
     seed: u64,
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    let tolerance: Option<f64> = text.parse().ok();
-    tolerance
-        .filter(|tolerance| *tolerance >= 0.0 && tolerance.is_finite())
-        .ok_or_else(|| "write a number from 0, in the unit of the output".into())
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -53,6 +47,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let name = rewrite.model.display().to_string();
     let source = rule_set::read(&rewrite.model)?;
     let model = rule_set::engine(&source, &name)?.model();
+    let widest = model
+        .outputs
+        .iter()
+        .map(|output| output.variable.high - output.variable.low);
+    let widest = widest.fold(0.0, f64::max);
+    if let Some(tolerance) = arguments.tolerance.filter(|tolerance| *tolerance >= widest) {
+        let message = format!(
+            "a tolerance of {} allows any output: the widest range is {}",
+            short(tolerance),
+            short(widest)
+        );
+        return Err(Failure::usage(message)
+            .help("write a smaller `--tolerance`, in the unit of the output"));
+    }
     let (rows, refused) = rows(arguments, model)?;
     let mut settings = SimplifySettings::default();
     settings.tolerance = arguments.tolerance;
@@ -90,7 +98,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// A column for each input, and why other rows cannot be used.
+/// A column for each input, and the reasons why other rows cannot be used.
 fn rows(arguments: &Arguments, model: &Model) -> Result<(Vec<Vec<f64>>, Vec<String>), Failure> {
     if arguments.data.is_empty() {
         return Ok((Vec::new(), Vec::new()));
@@ -124,7 +132,7 @@ struct Outcome<'a> {
 }
 
 impl Outcome<'_> {
-    /// What is allowed, in words.
+    /// The allowed difference, as text.
     fn allowed(&self) -> String {
         match self.arguments.tolerance {
             Some(tolerance) => format!("{tolerance}"),
@@ -141,7 +149,7 @@ impl Outcome<'_> {
         }
     }
 
-    /// The rule set with the step that made it.
+    /// The rule set with a provenance step for this command.
     fn rule_set(&self, model_text: &str) -> Result<String, Failure> {
         let after = self.simplified.model.clone();
         let step = Step {
@@ -227,7 +235,7 @@ impl Outcome<'_> {
         Ok(())
     }
 
-    /// The inputs at which a difference was seen.
+    /// The names and values of the inputs at a difference.
     fn named<'a>(&'a self, difference: &'a Difference) -> impl Iterator<Item = OfInput<'a>> {
         let inputs = self.model.inputs.iter().zip(&difference.inputs);
         inputs.map(|(input, value)| OfInput {
@@ -283,7 +291,7 @@ fn size(difference: &Difference) -> f64 {
     (difference.after - difference.before).abs()
 }
 
-/// A number that may be far below 1.
+/// Formats a number that may be far below 1.
 fn tiny(value: f64) -> String {
     if value < 1e-3 {
         format!("{value:.1e}")
@@ -292,19 +300,19 @@ fn tiny(value: f64) -> String {
     }
 }
 
-/// `rules 2, 3`
+/// Lists rule numbers: `rules 2, 3`.
 fn listed(rules: &[usize]) -> String {
     let numbers: Vec<String> = rules.iter().map(|rule| (rule + 1).to_string()).collect();
     let plural = if numbers.len() == 1 { "" } else { "s" };
     format!("rule{plural} {}", numbers.join(", "))
 }
 
-/// The word of the format for what OR is.
+/// The word in the rule format for the function that evaluates OR.
 fn disjunction(model: &Model) -> &'static str {
     fuzzy::format::word_of_or(model.operators.or)
 }
 
-/// The version of the document's layout.
+/// The version of the JSON document.
 const SCHEMA: &str = "flagred.simplify/1";
 
 /// The document of `--json`.

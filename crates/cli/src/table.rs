@@ -1,8 +1,8 @@
-//! Tables of numbers from CSV files: one reader for all commands, every bad cell with its place.
+//! Tables of numbers from CSV files: one reader for all commands, which reports the position of every bad cell.
 
 use std::{
     fs::File,
-    io::{self, Read},
+    io::{self, BufRead, BufReader, Cursor, Read},
     path::Path,
     sync::{
         Arc,
@@ -14,15 +14,15 @@ use fuzzy::diagnostic::quoted;
 
 use crate::failure::{Failure, cannot_read};
 
-/// Bytes of a row, with the comments above it.
+/// Maximum number of bytes of a row, including the comments above it.
 const LONGEST_ROW: usize = 1_000_000;
-/// Cells of a table that is read whole.
+/// Maximum number of cells of a table that is read as a whole.
 const MOST_CELLS: usize = 20_000_000;
 
-/// A source of rows of which each is bounded: a single one could fill the memory.
+/// A source with a limit on the length of each row, since a single row could exhaust memory.
 struct Bounded {
     source: Box<dyn Read + Send>,
-    /// The bytes that are left for a row.
+    /// Remaining bytes for the current row.
     left: Arc<AtomicUsize>,
 }
 
@@ -40,20 +40,37 @@ impl Read for Bounded {
     }
 }
 
+/// A table whose comment lines above the header are replaced by empty lines, so that line numbers stay right.
+type Uncommented = io::Chain<Cursor<Vec<u8>>, BufReader<Bounded>>;
+
+fn uncommented(mut source: BufReader<Bounded>) -> io::Result<Uncommented> {
+    let mut empty_lines = Vec::new();
+    let mut line = Vec::new();
+    while matches!(
+        source.fill_buf()?,
+        [b'#' | b'\n', ..] | [0xef, 0xbb, 0xbf, b'#', ..]
+    ) {
+        line.clear();
+        source.read_until(b'\n', &mut line)?;
+        empty_lines.push(b'\n');
+    }
+    Ok(Cursor::new(empty_lines).chain(source))
+}
+
 /// Reads the rows of a table.
 pub(crate) struct Reader {
-    csv: csv::Reader<Bounded>,
+    csv: csv::Reader<Uncommented>,
     left: Arc<AtomicUsize>,
 }
 
 impl Reader {
-    /// Reads a row, and says whether there was one.
+    /// Reads a row, and returns whether there was one.
     pub(crate) fn read_byte_record(&mut self, record: &mut csv::ByteRecord) -> csv::Result<bool> {
         self.left.store(LONGEST_ROW, Ordering::Relaxed);
         self.csv.read_byte_record(record)
     }
 
-    /// As [`Reader::read_byte_record`], of text.
+    /// As [`Reader::read_byte_record`], for text.
     fn read_record(&mut self, record: &mut csv::StringRecord) -> csv::Result<bool> {
         self.left.store(LONGEST_ROW, Ordering::Relaxed);
         self.csv.read_record(record)
@@ -96,7 +113,15 @@ fn delimiter(text: &str) -> Result<u8, String> {
 }
 
 impl Format {
-    /// The place of the column of each variable.
+    /// The first of these options that differs from its default.
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        let column = (!self.column.is_empty()).then_some("--column");
+        let delimiter = (self.delimiter != b',').then_some("--delimiter");
+        let skip = self.skip_bad_rows.then_some("--skip-bad-rows");
+        column.or(delimiter).or(skip)
+    }
+
+    /// Returns the column index of each variable.
     pub(crate) fn columns(&self, names: &[&str], header: &Header) -> Result<Vec<usize>, Failure> {
         if let Some((stray, _)) = self
             .column
@@ -119,15 +144,15 @@ impl Format {
 
 /// The first row of a table.
 pub(crate) struct Header {
-    /// The table, as the user knows it.
+    /// The name of the table for messages.
     pub(crate) file: String,
-    /// The names of the columns, without spaces around them.
+    /// The names of the columns, without surrounding spaces.
     pub(crate) names: Vec<String>,
     delimiter: u8,
 }
 
 /// Opens a table and reads its header; `-` is standard input. Rows may have more or fewer cells than the header, and cells
-/// spaces around them.
+/// may have spaces around them.
 pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failure> {
     const BUFFER: usize = 1 << 18;
     let file = path.display().to_string();
@@ -140,12 +165,16 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
         Box::new(File::open(path).map_err(|error| cannot_read(&file, &error))?)
     };
     let left = Arc::new(AtomicUsize::new(LONGEST_ROW));
-    let source = Bounded {
+    let mut source = BufReader::new(Bounded {
         source,
         left: Arc::clone(&left),
-    };
+    });
+    let unreadable = |error: io::Error| cannot_read(&file, &error);
+    if let Some(kind) = not_a_table(source.fill_buf().map_err(unreadable)?) {
+        return Err(kind.failure(&file));
+    }
+    let source = uncommented(source).map_err(unreadable)?;
     let mut csv = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
         .delimiter(delimiter)
         .trim(csv::Trim::Headers)
         .flexible(true)
@@ -155,6 +184,7 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
     let names: Vec<String> = names.iter().map(str::to_owned).collect();
     if names.iter().all(String::is_empty) {
         let message = match names.len() {
+            0 if path == Path::new("-") => "standard input is empty".to_owned(),
             0 => format!("`{file}` is empty"),
             cells => format!("the header of `{file}` names none of its {cells} columns"),
         };
@@ -170,12 +200,12 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
 }
 
 impl Header {
-    /// The place of a column.
+    /// Returns the index of a column.
     pub(crate) fn column(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|column| column == name)
     }
 
-    /// The place of a column that must be there; `help` says what else could be done.
+    /// Returns the index of a required column; `help` is added to the message if it is missing.
     pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
         if name.is_empty() {
             // A column without a name in the header cannot be requested.
@@ -188,6 +218,9 @@ impl Header {
         }
         self.column(name).ok_or_else(|| {
             let failure = Failure::unreadable(format!("`{}` has no column `{name}`", self.file));
+            if self.names.first().is_some_and(|name| name.starts_with("sep=")) {
+                return failure.help("delete the first line; `--delimiter` has its meaning");
+            }
             if let Some(other) = self.other_delimiter() {
                 return failure.help(format!(
                     "its cells seem to be separated by another character: `--delimiter {other}`"
@@ -199,12 +232,22 @@ impl Header {
             }
             let columns = self.names.iter().map(String::as_str);
             let columns = columns.filter(|name| !name.is_empty());
+            // Capitals are the commonest difference.
+            if let Some(column) = columns.clone().find(|it| it.eq_ignore_ascii_case(name)) {
+                let column = quoted(column);
+                return failure.help(format!("did you mean `{column}`? then add `--column {name}={column}`"));
+            }
+            if let [only] = self.names.as_slice()
+                && only.contains(' ')
+            {
+                return failure.help("the first line must hold the names of the columns; cells are separated by `--delimiter`");
+            }
             let meant = fuzzy::diagnostic::suggest(name, columns).unwrap_or_default();
             failure.help(format!("{meant}; {help}"))
         })
     }
 
-    /// What seems to separate the cells, where it is not what was said.
+    /// The probable delimiter, if it differs from the chosen one.
     fn other_delimiter(&self) -> Option<&'static str> {
         let [only] = self.names.as_slice() else {
             return None;
@@ -216,7 +259,20 @@ impl Header {
         found.next().map(|(_, word)| word)
     }
 
-    /// What is wrong with a row of so many cells.
+    /// Advice for a row whose number of cells is not that of the header.
+    pub(crate) fn misfit_help(&self) -> String {
+        match self.other_delimiter() {
+            Some(other) => format!(
+                "its cells seem to be separated by another character: `--delimiter {other}`"
+            ),
+            None if self.delimiter == b',' => {
+                "every row has as many cells as the header; a decimal comma splits a number: write a point".to_owned()
+            }
+            None => "every row has as many cells as the header".to_owned(),
+        }
+    }
+
+    /// The problem of a row with this number of cells, if any.
     pub(crate) fn misfit(&self, cells: usize) -> Option<String> {
         let expected = self.names.len();
         (cells != expected).then(|| {
@@ -227,18 +283,18 @@ impl Header {
         })
     }
 
-    /// What to call a column.
+    /// The name of a column.
     pub(crate) fn name(&self, column: usize) -> &str {
         self.names.get(column).map_or("", String::as_str)
     }
 }
 
-/// What a cell says of a number.
+/// The number in a cell, if any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Cell {
     /// A finite number.
     Number(f64),
-    /// Empty, `NA` or `NaN`.
+    /// Empty, `NA`, `NaN` or `#N/A`, as spreadsheets write it.
     Unknown,
     /// Anything else.
     Bad,
@@ -247,33 +303,88 @@ pub(crate) enum Cell {
 impl Cell {
     pub(crate) fn of(text: &[u8]) -> Cell {
         let text = text.trim_ascii();
-        // A number is ASCII.
+        // Numbers contain only ASCII characters.
         let number = str::from_utf8(text)
             .ok()
             .and_then(|text| text.parse::<f64>().ok());
         match number {
             Some(number) if number.is_finite() => Cell::Number(number),
             Some(number) if number.is_nan() => Cell::Unknown,
-            None if text.is_empty() || text == b"NA" => Cell::Unknown,
+            None if text.is_empty() || text == b"NA" || text == b"#N/A" => Cell::Unknown,
             _ => Cell::Bad,
         }
     }
 
-    /// Why a cell is [`Cell::Bad`].
+    /// Explains why a cell is [`Cell::Bad`].
     pub(crate) fn problem(text: &[u8]) -> String {
         let text = String::from_utf8_lossy(text.trim_ascii());
         let shown = quoted(&text);
         match text.parse::<f64>() {
             Ok(_) => format!("`{shown}` is not a finite number"),
             Err(_) if text.is_empty() => "the cell is empty".to_owned(),
-            Err(_) => match text.replacen(',', ".", 1).parse::<f64>() {
-                Ok(_) if text.contains(',') => {
-                    format!("`{shown}` is not a number: the decimal mark is a point")
-                }
-                _ => format!("`{shown}` is not a number"),
+            Err(_) => match advice(&text) {
+                Some(advice) => format!("`{shown}` is not a number: {advice}"),
+                None => format!("`{shown}` is not a number"),
             },
         }
     }
+}
+
+/// What to write instead of a number with a decimal comma, separators of thousands or a unit.
+fn advice(text: &str) -> Option<String> {
+    if let Some((whole, thousands)) = text.split_once(',')
+        && thousands.len() == 3
+    {
+        let joined = format!("{whole}{thousands}");
+        if joined.parse::<f64>().is_ok() {
+            return Some(format!(
+                "write `{joined}`, or `{whole}.{thousands}` if the comma is a decimal mark"
+            ));
+        }
+    }
+    if text.contains(',') && text.replacen(',', ".", 1).parse::<f64>().is_ok() {
+        return Some("the decimal mark is a point".to_owned());
+    }
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)))?;
+    let (number, unit) = text.split_at_checked(end)?;
+    let is_unit = !unit.contains(|c: char| c.is_ascii_digit());
+    (number.parse::<f64>().is_ok() && is_unit).then(|| format!("write `{number}`, without a unit"))
+}
+
+/// A file that is not a table.
+struct Foreign {
+    is: &'static str,
+    help: &'static str,
+}
+
+impl Foreign {
+    fn failure(&self, file: &str) -> Failure {
+        let file = if file == "-" { "standard input" } else { file };
+        Failure::unreadable(format!("`{file}` is {}, not a table", self.is)).help(self.help)
+    }
+}
+
+/// Recognises other files by their first bytes.
+fn not_a_table(start: &[u8]) -> Option<Foreign> {
+    let is = |is, help| Some(Foreign { is, help });
+    if let [0xff, 0xfe, ..] | [0xfe, 0xff, ..] = start {
+        return is("text in UTF-16", "save it as UTF-8");
+    }
+    let kind = flagred_flightlog::kind_of(start);
+    if let Some(kind) = kind {
+        return is(
+            kind,
+            "a table is CSV text, with the names of the columns first",
+        );
+    }
+    let mut lines = start.split(|byte| *byte == b'\n');
+    if lines.any(|line| line.starts_with(b"fuzzy:") || line.starts_with(b"flagred:")) {
+        return is(
+            "a rule set or profile",
+            "the rule set comes first, then the tables: see `--help`",
+        );
+    }
+    None
 }
 
 /// A whole table.
@@ -310,7 +421,7 @@ impl Table {
             if let Some(misfit) = header.misfit(record.len()) {
                 return Err(
                     Failure::unreadable(format!("`{file}`, line {line}: {misfit}"))
-                        .help("every row has as many cells as the header"),
+                        .help(header.misfit_help()),
                 );
             }
             records.push((line, record.clone()));
@@ -343,7 +454,7 @@ impl Table {
             .trim()
     }
 
-    /// The finite number in a cell.
+    /// Returns the finite number in a cell.
     pub(crate) fn number(&self, row: usize, column: usize) -> Result<f64, BadCell> {
         let text = self.text(row, column).as_bytes();
         match Cell::of(text) {
@@ -355,13 +466,13 @@ impl Table {
         }
     }
 
-    /// The finite number in a column of this name; `None` where there is none.
+    /// Returns the finite number in the column with this name; `None` if there is no such column.
     pub(crate) fn named_number(&self, row: usize, name: &str) -> Result<Option<f64>, BadCell> {
         let column = self.header.column(name);
         column.map(|column| self.number(row, column)).transpose()
     }
 
-    /// A finding about a cell.
+    /// Reports a problem with a cell.
     pub(crate) fn bad(&self, row: usize, column: usize, problem: String) -> BadCell {
         BadCell {
             line: self.line(row),
@@ -371,13 +482,13 @@ impl Table {
     }
 }
 
-/// What is wrong with the text of a table, and where.
+/// Reports a malformed table, with the line.
 pub(crate) fn broken(file: &str, error: &csv::Error) -> Failure {
     let line = error.position().map_or(1, csv::Position::line);
     match error.kind() {
         csv::ErrorKind::Utf8 { .. } => {
-            Failure::unreadable(format!("`{file}`, line {line}: invalid UTF-8"))
-                .help("the file must be CSV text, a header first")
+            Failure::unreadable(format!("`{file}`, line {line}: not UTF-8"))
+                .help("save the table as UTF-8")
         }
         _ => Failure::unreadable(format!("`{file}` cannot be read: {error}")),
     }
@@ -388,7 +499,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cell_is_a_number_or_says_why_not() {
+    fn a_cell_is_a_number_or_an_error_with_a_reason() {
         for (text, cell) in [
             ("1.5", Cell::Number(1.5)),
             (" -2e-3\t", Cell::Number(-0.002)),
@@ -397,6 +508,7 @@ mod tests {
             ("NA", Cell::Unknown),
             ("nan", Cell::Unknown),
             ("NaN", Cell::Unknown),
+            ("#N/A", Cell::Unknown),
             ("na", Cell::Bad),
             ("inf", Cell::Bad),
             ("1e999", Cell::Bad),
@@ -411,6 +523,15 @@ mod tests {
                 "20,5",
                 "`20,5` is not a number: the decimal mark is a point",
             ),
+            (
+                "1,000",
+                "`1,000` is not a number: write `1000`, or `1.000` if the comma is a decimal mark",
+            ),
+            (
+                "15.48 %",
+                "`15.48 %` is not a number: write `15.48`, without a unit",
+            ),
+            ("2-3", "`2-3` is not a number"),
             ("a,b", "`a,b` is not a number"),
             (" much ", "`much` is not a number"),
         ] {

@@ -1,4 +1,4 @@
-//! `flagred validate`: how good are the risks of profiles, beside predictors that need no rules?
+//! `flagred validate`: how good are the risks of profiles, compared with predictors without rules?
 
 use std::{
     io::Write,
@@ -13,6 +13,7 @@ use flagred_evaluation::{
 use crate::{
     dataset::summary::refuse,
     failure::{Exit, Failure},
+    numbers,
     output::{self, Files, Stdout},
     parallel, profile,
     table::Table,
@@ -24,7 +25,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
     flights: Vec<PathBuf>,
 
-    /// Validate with a table with a row for each flight instead of logs, as `flagred dataset --profile NAME` writes it
+    /// Validate on this table instead of logs: a row for each flight, as `flagred dataset --profile NAME` writes it
     #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
     rows: Option<PathBuf>,
 
@@ -33,7 +34,7 @@ pub(crate) struct Arguments {
     profiles: Vec<String>,
 
     /// How many seconds ahead the risk should predict
-    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = horizon, conflicts_with = "rows")]
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = numbers::positive, conflicts_with = "rows")]
     horizon: f64,
 
     /// Print a JSON document instead of text
@@ -43,13 +44,6 @@ pub(crate) struct Arguments {
     /// Also write an SVG picture of the ROC curves and the reliability to this file
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
-}
-
-fn horizon(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(horizon_s) if horizon_s > 0.0 && horizon_s.is_finite() => Ok(horizon_s),
-        _ => Err("a horizon is a number of seconds above 0".to_owned()),
-    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -62,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(table) => (rows(table, &estimators)?, Exit::Clean),
         None => flights(arguments, &estimators)?,
     };
-    // Flights in folders are known only now.
+    // Only now are the flights in folders known.
     let mut files = Files::reading(evaluation.records().iter().map(Record::file))?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let drawn = match &svg {
@@ -83,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// The shipped profiles that read the motors alone, and those that were asked for.
+/// The built-in profiles that read only the motors, and the requested ones.
 fn estimators(asked: &[String]) -> Result<Estimators, Failure> {
     let mut estimators = Estimators::default();
     let shipped = shipped::motor_profile_names().map(str::to_owned);
@@ -95,7 +89,7 @@ fn estimators(asked: &[String]) -> Result<Estimators, Failure> {
     Ok(estimators)
 }
 
-/// Evaluates every flight; one that cannot be read stops no other.
+/// Evaluates every flight. A flight that cannot be read does not stop the others.
 fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation, Exit), Failure> {
     let files = files(&arguments.flights)?;
     let mut records = Vec::new();
@@ -109,7 +103,7 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
                 Ok(record) => records.push(record),
                 Err(why) => {
                     left_out.push(LeftOut::new(file.path.display().to_string(), &why));
-                    // A folder may hold other things than flights.
+                    // A folder may contain other files than flights.
                     if file.is_named {
                         Failure::from(why).report();
                         exit = Exit::Unreadable;
@@ -130,7 +124,7 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
     Ok((evaluation, exit))
 }
 
-/// Evaluates a table with a row for each flight.
+/// Evaluates a table that has a row for each flight.
 fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
     let table = Table::read(path, b',')?;
     table.header.require(
@@ -153,7 +147,7 @@ fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
     }))
 }
 
-/// Scores the estimators with a progress bar.
+/// Scores the estimators, with a progress bar.
 fn scored<T>(estimators: &Estimators, score: impl FnOnce(&(dyn Fn() + Sync)) -> T) -> T {
     let bar = parallel::progress(estimators.names().count(), "estimators");
     let scored = score(&|| bar.inc(1));

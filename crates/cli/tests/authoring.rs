@@ -1,5 +1,5 @@
-//! Wrong and right rule sets: every file of `tests/authoring` is a case, and what is said of it stands beside it.
-//! A new case is a new file; `INSTA_UPDATE=always cargo test -p flagred-cli --test authoring` writes its snapshot.
+//! Correct and wrong rule sets: every file of `tests/authoring` is a case, and its findings are a snapshot next to it.
+//! To add a case, add a file; `INSTA_UPDATE=always cargo test -p flagred-cli --test authoring` writes its snapshot.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::{
@@ -33,7 +33,7 @@ fn cases(name: &str) -> Vec<(String, PathBuf)> {
     cases
 }
 
-/// Beside the case, under its name.
+/// Settings that put the snapshot next to the case, under its name.
 fn snapshots_in(name: &str) -> insta::Settings {
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path(folder(name));
@@ -43,7 +43,7 @@ fn snapshots_in(name: &str) -> insta::Settings {
 }
 
 #[test]
-fn every_wrong_file_is_told_what_is_wrong_where_and_what_to_do() {
+fn every_invalid_file_has_messages_with_positions_and_help() {
     let cases = cases("err");
     assert!(cases.len() >= 60);
     let mut poor = Vec::new();
@@ -61,7 +61,7 @@ fn every_wrong_file_is_told_what_is_wrong_where_and_what_to_do() {
         let text = fs::read_to_string(path).unwrap();
         let findings = match fuzzy::yaml::parse(&text) {
             Err(findings) => findings,
-            // What can be read, to be learned, and is an error to whoever checks it.
+            // A rule set without rules can be parsed, for learning, but is an error in `check`.
             Ok(document) if document.model.rules.is_empty() => document.warnings,
             Ok(_) => panic!("{name} reads well"),
         };
@@ -86,7 +86,7 @@ fn every_wrong_file_is_told_what_is_wrong_where_and_what_to_do() {
 }
 
 #[test]
-fn every_right_file_is_the_tree_it_should_be() {
+fn every_valid_file_has_the_expected_tree() {
     for (name, path) in cases("ok") {
         let text = fs::read_to_string(path).unwrap();
         let document = fuzzy::yaml::parse(&text).unwrap_or_else(|f| panic!("{name}:\n{f}"));

@@ -1,4 +1,4 @@
-//! Rule blocks, activation methods and previous values, through the commands.
+//! Rule blocks, activation methods and previous values in the commands.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
@@ -21,7 +21,7 @@ rules: [IF heat IS low THEN speed IS slow AND lamp IS off, IF heat IS high THEN 
 #[test]
 fn eval_keeps_the_previous_value_from_row_to_row() {
     let mut points = String::from("heat\n22\n10\n");
-    // More rows than are read at once.
+    // There are more rows than in one block.
     for _ in 0..9000 {
         points += "22\n";
     }
@@ -39,7 +39,7 @@ fn eval_keeps_the_previous_value_from_row_to_row() {
 }
 
 #[test]
-fn what_has_no_row_before_says_so() {
+fn explain_and_map_report_a_missing_previous_row() {
     let folder = folder(&[("fan.yaml", FAN)]);
     let (_, text, _) = flagred(folder.path(), &["explain", "fan.yaml", "heat=22"]);
     for told in [
@@ -54,7 +54,7 @@ fn what_has_no_row_before_says_so() {
     assert!(errors.contains(note), "{errors}");
 }
 
-/// The paper's rules with something more.
+/// The paper's rules with an addition.
 fn paper(more: &str) -> tempfile::TempDir {
     let rules = include_str!("../../../rules/flagred-paper.yaml").replace("\nrules:\n", more);
     let profile = include_str!("../../../rules/profiles/flagred-paper.yaml")

@@ -1,11 +1,11 @@
-//! Rule sets whose outputs read other outputs, through the commands.
+//! Rule sets whose outputs read other outputs, in the commands.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
 
 use common::{flagred, folder};
 
-/// `fan` reads `comfort`, which has a value below 30 °C alone.
+/// `fan` reads `comfort`, which has a value only below 30 °C.
 const FAN: &str = "
 fuzzy: 1
 name: fan
@@ -20,7 +20,7 @@ rules:
 ";
 
 #[test]
-fn explain_shows_the_chain_and_why_it_ends() {
+fn explain_shows_the_chain_and_the_reason_for_its_end() {
     let folder = folder(&[("fan.yaml", FAN)]);
     let explain = |heat: &str| flagred(folder.path(), &["explain", "fan.yaml", heat]).1;
     let known = explain("heat=12");
@@ -70,7 +70,7 @@ fn a_map_has_the_values_of_eval() {
         let (map, eval) = (second(map).unwrap(), second(eval).unwrap());
         assert!((map - eval).abs() < 1e-6, "{map}, {eval}");
     }
-    // Above 30 °C the fan has no value, whatever its default is.
+    // Above 30 °C the fan has no value, even if it has a default.
     assert_eq!(map.lines().last().and_then(second), None, "{map}");
 }
 

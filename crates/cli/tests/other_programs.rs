@@ -32,7 +32,7 @@ fn tipper(folder: &tempfile::TempDir, ending: &str) -> PathBuf {
 }
 
 #[test]
-fn commands_take_the_files_of_other_programs_as_they_are() {
+fn commands_accept_files_of_other_programs() {
     let folder = tempfile::tempdir().unwrap();
     let point = ["service=8", "food=9"];
     let value = |file: &str| {
@@ -45,7 +45,7 @@ fn commands_take_the_files_of_other_programs_as_they_are() {
     for ending in ["fis", "fll", "fcl", "fml"] {
         let file = tipper(&folder, ending);
         let file = file.to_str().unwrap();
-        // fuzzylite samples.
+        // fuzzylite integrates numerically.
         let tolerance = if ending == "fll" { 1e-3 } else { 1e-9 };
         assert!(
             (value(file) - expected).abs() < tolerance,
@@ -67,7 +67,7 @@ fn commands_take_the_files_of_other_programs_as_they_are() {
 }
 
 #[test]
-fn what_a_format_cannot_say_is_refused_or_told() {
+fn features_that_a_format_lacks_are_refused_or_reported() {
     let refused = flagred(&["export", "--fis", "tests/onboard/blocks.yaml"]);
     assert_eq!(refused.status.code(), Some(3));
     assert!(refused.stdout.is_empty());
@@ -77,7 +77,7 @@ fn what_a_format_cannot_say_is_refused_or_told() {
             && told.contains("\n  help: `--lossy`"),
         "{told}"
     );
-    // A FIS has numbers or fuzzy sets as terms of its outputs, and this rule set both.
+    // In a FIS an output has either numbers or fuzzy sets as terms, but this rule set uses both.
     let refused = flagred(&["export", "--fis", "--lossy", "tests/onboard/blocks.yaml"]);
     assert_eq!(refused.status.code(), Some(3));
     assert!(text(&refused.stderr).contains("error[two-defuzzifiers]"));
@@ -88,7 +88,7 @@ fn what_a_format_cannot_say_is_refused_or_told() {
 }
 
 #[test]
-fn what_is_no_such_file_is_told() {
+fn files_of_the_wrong_format_are_reported() {
     let output = flagred(&["import", "rules/tipper.yaml"]);
     assert_eq!(output.status.code(), Some(3));
     assert!(

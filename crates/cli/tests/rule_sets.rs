@@ -1,4 +1,4 @@
-//! The commands for those who write rule sets, run as a user runs them.
+//! The commands for authors of rule sets, as a user runs them.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::{
@@ -19,7 +19,7 @@ fn flagred(arguments: &[&str], input: &str) -> (Output, String) {
         .unwrap();
     let mut stdin = child.stdin.take().unwrap();
     let input = input.to_owned();
-    // Beside reading what it prints, or both would wait for each other. A command that reads nothing may have ended.
+    // Writes in another thread, since both processes would otherwise wait for each other. A command that ignores its input may have ended.
     let writer = std::thread::spawn(move || drop(stdin.write_all(input.as_bytes())));
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap();
@@ -32,7 +32,7 @@ fn errors(output: &Output) -> String {
 }
 
 #[test]
-fn check_shows_what_the_papers_rules_leave_open() {
+fn check_shows_the_gaps_of_the_papers_rules() {
     let (output, text) = flagred(&["check", "flagred-paper.yaml"], "");
     assert_eq!(output.status.code(), Some(0));
     insta::assert_snapshot!(text);
@@ -41,7 +41,7 @@ fn check_shows_what_the_papers_rules_leave_open() {
 }
 
 #[test]
-fn check_holds_outputs_against_what_their_author_says() {
+fn check_verifies_claims_about_outputs() {
     let claims = [
         "check",
         "flagred-paper.yaml",
@@ -72,7 +72,7 @@ fn check_holds_outputs_against_what_their_author_says() {
 }
 
 #[test]
-fn check_reads_standard_input_and_tells_what_cannot_be_read() {
+fn check_reads_standard_input_and_reports_unreadable_files() {
     let (output, text) = flagred(&["check", "-"], "fuzzy: 9\n");
     assert_eq!(output.status.code(), Some(1));
     assert!(text.contains("--> -:1:8"), "{text}");
@@ -83,7 +83,7 @@ fn check_reads_standard_input_and_tells_what_cannot_be_read() {
 }
 
 #[test]
-fn a_text_in_utf_16_is_read_and_in_latin_1_is_told() {
+fn utf_16_is_read_and_latin_1_is_reported() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("encodings");
     fs::create_dir_all(&folder).unwrap();
     let text = fs::read_to_string(
@@ -206,7 +206,7 @@ fn plot_draws_the_terms_and_the_curve_of_one_input() {
         svg.contains("room [°C]<") && svg.contains("power [%] over room [°C]<"),
         "{svg}"
     );
-    // With more inputs there is no curve.
+    // There is no curve for several inputs.
     let (_, text) = flagred(&["plot", "tipper.yaml"], "");
     assert!(
         text.contains("service") && !text.contains(" over "),
@@ -217,7 +217,7 @@ fn plot_draws_the_terms_and_the_curve_of_one_input() {
 }
 
 #[test]
-fn explain_asks_for_what_is_missing() {
+fn explain_names_missing_inputs() {
     for (arguments, said) in [
         (&["margin=0.1"][..], "input `spread` has no value"),
         (&["margin=0.1", "sprad=0.1"], "did you mean `spread`?"),
@@ -264,9 +264,9 @@ fn eval_adds_the_outputs_with_all_digits() {
     assert_eq!(rows[2][3].parse().ok(), value(0.05, 0.12));
 }
 
-/// A row comes out for every row, whatever is wrong with it.
+/// Every row has an output row, even if it is invalid.
 #[test]
-fn eval_says_of_each_row_how_its_value_comes_about() {
+fn eval_explains_the_value_of_each_row() {
     let points = "id,spread,margin\na,0.12,0.13\nb,0,0\nc,NA,0.1\nd,9,-0.05\ne,wide,inf\nf,0.1\ng,,nan\n\
         \"#h\",0.1,\"0,1\"\ni,0,0,0\n";
     let with = [
@@ -280,7 +280,7 @@ fn eval_says_of_each_row_how_its_value_comes_about() {
     insta::assert_snapshot!(text + "\n" + &errors(&output));
 
     let (output, text) = flagred(&["eval", "flagred-paper.yaml", "--skip-bad-rows"], points);
-    // Rows are left out as asked; others still have no value.
+    // Bad rows are skipped as requested; some other rows still have no value.
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(text.lines().count(), 6, "{text}");
     assert!(
@@ -296,7 +296,7 @@ fn eval_says_of_each_row_how_its_value_comes_about() {
 }
 
 #[test]
-fn eval_names_columns_by_output_and_goes_on_where_no_rule_fires() {
+fn eval_names_columns_by_output_and_continues_where_no_rule_fires() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("eval");
     fs::create_dir_all(&folder).unwrap();
     let model = folder.join("two.yaml");
@@ -337,7 +337,7 @@ fn eval_names_columns_by_output_and_goes_on_where_no_rule_fires() {
 }
 
 #[test]
-fn eval_writes_a_file_whole_or_not_at_all() {
+fn eval_writes_a_complete_file_or_none() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("eval-file");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
@@ -350,7 +350,7 @@ fn eval_writes_a_file_whole_or_not_at_all() {
         fs::read_to_string(&file).unwrap(),
         "margin,spread,risk\n0.1,0.1,50\n"
     );
-    // A folder opens, and cannot be read.
+    // A folder can be opened but not read.
     let (output, _) = flagred(&["eval", "flagred-paper.yaml", ".", "-o", out], "");
     assert_eq!(output.status.code(), Some(3), "{}", errors(&output));
     assert!(fs::read_to_string(&file).unwrap().starts_with("margin"));
@@ -358,7 +358,7 @@ fn eval_writes_a_file_whole_or_not_at_all() {
 }
 
 #[test]
-fn eval_keeps_order_over_blocks_and_threads() {
+fn eval_keeps_the_order_of_rows_across_blocks_and_threads() {
     let mut points = String::from("margin,spread\n");
     for i in 0..40_000 {
         points += &format!(
@@ -375,7 +375,7 @@ fn eval_keeps_order_over_blocks_and_threads() {
 }
 
 #[test]
-fn eval_says_what_is_wrong_with_points() {
+fn eval_reports_mistakes_in_points() {
     for (points, code, said) in [
         ("", 3, "is empty"),
         ("margin\n0.1\n", 3, "has no column `spread`"),
@@ -421,7 +421,7 @@ fn new_writes_a_rule_set_that_passes_check() {
     }
     let (output, _) = flagred(&["explain", file, "temperature=24", "humidity=70"], "");
     assert_eq!(output.status.code(), Some(0));
-    // Nobody's work is overwritten.
+    // An existing file is not overwritten.
     let (output, _) = flagred(&["new", "fan-control", "--output", file], "");
     assert_eq!(output.status.code(), Some(2));
     let (output, _) = flagred(&["new", "../evil"], "");
@@ -442,7 +442,7 @@ fn a_new_profile_is_the_default_one_under_another_name() {
     for line in lines {
         assert!(profile.lines().any(|own| own == line), "{line}");
     }
-    // The verdicts are those of the default profile, too.
+    // The verdicts are the same as with the default profile.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.yaml");
     fs::write(&path, &profile).unwrap();
@@ -466,7 +466,7 @@ fn a_new_profile_is_the_default_one_under_another_name() {
 }
 
 #[test]
-fn commands_take_the_names_of_what_is_built_in() {
+fn commands_accept_built_in_names() {
     let folder = tempfile::tempdir().unwrap();
     let points = folder.path().join("points.csv");
     fs::write(&points, "margin,spread\n0.1,0.2\n").unwrap();
@@ -493,7 +493,7 @@ fn commands_take_the_names_of_what_is_built_in() {
             assert!(!text.is_empty(), "{arguments:?}");
         }
     }
-    // The default of `export` works with each format that can carry it.
+    // The default rule set can be exported to each format that supports it.
     assert_eq!(
         flagred(&["export", "--fll"], "").1,
         flagred(&["export", "--fll", "flagred"], "").1
@@ -517,7 +517,7 @@ fn commands_take_the_names_of_what_is_built_in() {
 }
 
 #[test]
-fn a_built_in_name_wins_over_a_file_and_a_path_is_the_file() {
+fn a_built_in_name_takes_precedence_over_a_file_unless_a_path_is_given() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("flagred"), "fuzzy: 1\nname: mine\n").unwrap();
     let run = |name: &str| {
@@ -529,7 +529,7 @@ fn a_built_in_name_wins_over_a_file_and_a_path_is_the_file() {
 }
 
 #[test]
-fn commands_that_change_files_say_how_to_copy_what_is_built_in() {
+fn commands_that_change_files_explain_how_to_copy_built_in_ones() {
     for arguments in [
         &["fmt", "flagred"][..],
         &["fmt", "--check", "flagred"],
@@ -548,7 +548,7 @@ fn commands_that_change_files_say_how_to_copy_what_is_built_in() {
 }
 
 #[test]
-fn fmt_leaves_files_of_other_programs_alone() {
+fn fmt_refuses_files_of_other_programs() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("compose.yaml");
     let file = path.to_str().unwrap();

@@ -1,4 +1,4 @@
-//! `flagred simplify` on files.
+//! `flagred simplify` with files.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -32,7 +32,7 @@ fn simplify(more: &[&str]) -> (Option<i32>, String, String, Option<String>) {
 }
 
 #[test]
-fn what_became_of_the_rules_is_told_and_written() {
+fn changes_to_rules_are_printed_and_written() {
     let (code, out, err, written) = simplify(&[]);
     assert_eq!((code, err.as_str()), (Some(0), ""));
     insta::assert_snapshot!(out);
@@ -46,7 +46,7 @@ fn what_became_of_the_rules_is_told_and_written() {
 }
 
 #[test]
-fn what_is_little_is_said_by_the_author() {
+fn the_author_sets_the_tolerance() {
     let (code, out, _, written) = simplify(&["--tolerance", "1"]);
     assert_eq!(code, Some(0));
     insta::assert_snapshot!(out);
@@ -54,7 +54,7 @@ fn what_is_little_is_said_by_the_author() {
 }
 
 #[test]
-fn rows_are_points_too_or_all_there_are() {
+fn rows_can_extend_or_replace_the_points() {
     let (_, out, _, _) = simplify(&["rows.csv"]);
     assert!(out.contains(" points, 4 of them rows;"), "{out}");
     let (_, out, _, written) = simplify(&["rows.csv", "--rows-only", "--tolerance", "0.2"]);

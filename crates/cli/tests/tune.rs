@@ -1,4 +1,4 @@
-//! `flagred tune` on files.
+//! `flagred tune` with files.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -18,7 +18,7 @@ rules:
   - IF heat IS hot THEN speed IS fast
 ";
 
-/// The fan turns slowly up to 20 degrees, fast from 30 degrees on; four rooms.
+/// The fan turns slowly up to 20 degrees, and fast from 30 degrees on; four rooms.
 fn rows() -> String {
     let mut rows = String::from("heat,speed,is_loud,room\n");
     for i in 0..=80 {
@@ -39,7 +39,7 @@ fn tune(files: &[(&str, &str)], more: &[&str]) -> (Option<i32>, String, String, 
 }
 
 #[test]
-fn what_moved_is_told_and_written() {
+fn moved_numbers_are_printed_and_written() {
     let (code, out, err, written) = tune(&[], &["--round", "2", "--group-by", "room"]);
     assert_eq!((code, err.as_str()), (Some(0), ""));
     assert!(
@@ -67,7 +67,7 @@ fn what_moved_is_told_and_written() {
 }
 
 #[test]
-fn check_tells_what_made_a_rule_set_and_whether_it_was_edited_since() {
+fn check_reports_the_provenance_and_later_edits() {
     let (.., written) = tune(&[], &["--round", "2", "--no-validation"]);
     let written = written.unwrap();
     let described = written.replace("name: fan", "name: attic\ndescription: A fan");
@@ -86,7 +86,7 @@ fn check_tells_what_made_a_rule_set_and_whether_it_was_edited_since() {
 }
 
 #[test]
-fn only_what_may_move_does() {
+fn only_free_parameters_move() {
     let (_, _, _, written) = tune(
         &[],
         &["--only", "heat", "--fix", "heat.cool", "--no-validation"],
@@ -117,7 +117,7 @@ fn rows_that_do_not_fit_the_loss_are_refused() {
 }
 
 #[test]
-fn a_checkpoint_is_begun_with_and_another_rule_set_is_none() {
+fn a_checkpoint_is_the_starting_point_unless_it_is_of_another_rule_set() {
     let better = FAN.replace("cool: 5, hot: 35", "cool: 19, hot: 31");
     let (_, out, _, _) = tune(
         &[("best.yaml", &better)],
@@ -135,7 +135,7 @@ fn a_checkpoint_is_begun_with_and_another_rule_set_is_none() {
 }
 
 #[test]
-fn what_is_not_monotone_to_begin_with_is_refused() {
+fn a_start_that_is_not_monotone_is_refused() {
     let (code, _, err, _) = tune(&[], &["--falling", "heat"]);
     assert_eq!(code, Some(3));
     assert!(
@@ -144,9 +144,9 @@ fn what_is_not_monotone_to_begin_with_is_refused() {
     );
 }
 
-/// Nothing counts, or what counts is so large that errors overflow: the file that was there stays.
+/// All weights are 0, or values are so large that errors overflow: the existing file is kept.
 #[test]
-fn rows_that_say_nothing_or_overflow_are_refused() {
+fn rows_without_information_or_with_overflow_are_refused() {
     let weightless = rows().replace(",1,", ",0,");
     let extreme = "heat,speed,w\n10,2,1\n30,1e308,1\n";
     let heavy = "heat,speed,w\n10,2,1e308\n30,8,1\n";
@@ -172,7 +172,7 @@ fn rows_that_say_nothing_or_overflow_are_refused() {
         assert_eq!((code, written.as_deref()), (Some(3), Some("good")), "{err}");
         assert!(err.contains(told), "{err}");
     }
-    // Some rows that do not count are nothing special.
+    // Some rows with weight 0 are allowed.
     let (code, _, err, written) = tune(&[], &["--weight", "is_loud", "--folds", "30"]);
     assert_eq!(code, Some(0), "{err}");
     assert!(!written.unwrap().contains(".nan"));
@@ -191,9 +191,9 @@ rules:
   - IF heat IS hot THEN speed IS fast
 ";
 
-/// The rows lie on a line that is at 14 where `hot` is highest.
+/// The rows are on a line that reaches 14 where `hot` is highest.
 #[test]
-fn constants_stay_in_the_range_unless_asked() {
+fn constants_stay_in_the_range_by_default() {
     let mut rows = String::from("heat,speed\n");
     for heat in 5..=25 {
         writeln!(rows, "{heat},{}", 2.0 + 0.4 * f64::from(heat - 5)).unwrap();
@@ -214,7 +214,7 @@ fn constants_stay_in_the_range_unless_asked() {
     assert!(written.contains("fast: {constant: 10}"), "{written}");
 }
 
-/// Rows in other units than the range: the constants end at its end, and the report says why.
+/// The rows use other units than the range: the constants stop at its end, and the report explains why.
 #[test]
 fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
     let rows = "heat,speed\n5,1400\n15,1500\n25,1600\n35,1700\n";
@@ -238,14 +238,14 @@ fn constants_that_the_rows_pull_out_of_the_range_are_reported() {
         out.contains("\"at_bounds\": [\n    \"speed.slow\""),
         "{out}"
     );
-    // The file tuned once more: nothing can move.
+    // When the tuned file is tuned again, nothing moves.
     let files = [("fan.yaml", &*written), ("rows.csv", rows)];
     let (_, out, ..) = tune(&files, &arguments);
     assert!(out.contains("nothing: no step within the range"), "{out}");
 }
 
 #[test]
-fn numbers_are_rounded_to_three_digits_unless_asked() {
+fn numbers_are_rounded_to_three_digits_by_default() {
     let mut rows = String::from("heat,speed\n");
     for heat in 0..=40 {
         writeln!(rows, "{heat},{}", 3.123_456 + 0.123_456 * f64::from(heat)).unwrap();
@@ -303,16 +303,16 @@ rules:
       note: as the old one did
 ";
 
-/// Without its digits.
+/// The text without its digits.
 fn shape(text: &str) -> String {
     text.chars()
         .filter(|c| !c.is_ascii_digit() && *c != '.' && *c != '-')
         .collect()
 }
 
-/// Comments, order, quotes and layout stay.
+/// Comments, order, quotes and layout are kept.
 #[test]
-fn numbers_change_in_the_text_where_they_stand() {
+fn numbers_change_in_place_in_the_text() {
     let mut rows = String::from("heat,damp,speed\n");
     for i in 0..200 {
         let (heat, damp) = (f64::from(i * 7 % 41), f64::from(i * 13 % 20) / 20.0);
@@ -336,7 +336,7 @@ fn numbers_change_in_the_text_where_they_stand() {
     }
     assert!(provenance.contains("command: flagred tune"), "{written}");
 
-    // A second step stands behind the first.
+    // A second step is appended to the first.
     let files = [("fan.yaml", &*written), ("rows.csv", &*rows)];
     let (code, _, err, again) = tune(&files, &["--only", "speed", "--no-validation"]);
     assert_eq!(code, Some(0), "{err}");
@@ -348,9 +348,9 @@ fn numbers_change_in_the_text_where_they_stand() {
     );
 }
 
-/// An anchor stands for two terms: the rule set is written anew, and right.
+/// Two terms share an anchor: the whole rule set is written anew, with correct values.
 #[test]
-fn what_cannot_change_in_place_is_written_anew() {
+fn a_text_that_cannot_change_in_place_is_rewritten() {
     let shared = FAN.replace(
         "terms: {slow: {singleton: 2}, fast: {singleton: 8}}",
         "terms: {slow: &n {singleton: 3}, fast: {singleton: 8}, idle: *n}",
@@ -361,10 +361,10 @@ fn what_cannot_change_in_place_is_written_anew() {
     assert!(written.starts_with("# A fan for the attic.\nfuzzy: 1\n") && !written.contains("&n"));
 }
 
-/// Files cannot grow over 512 bytes, but a pipe can.
+/// Files cannot grow beyond 512 bytes, but a pipe can transfer more.
 #[test]
 #[cfg(unix)]
-fn a_full_disk_keeps_no_other_output_from_being_written() {
+fn other_outputs_are_written_despite_a_full_disk() {
     let long = FAN.replace(
         "name: fan\n",
         &format!("name: fan\ndescription: {}\n", "x".repeat(600)),
@@ -402,7 +402,7 @@ fn a_full_disk_keeps_no_other_output_from_being_written() {
     assert!(folder.path().join("moved.svg").exists());
 }
 
-/// Numbers that the user fixed stay as they are, whatever a checkpoint has.
+/// Numbers that the user fixed keep their values, even if a checkpoint has others.
 #[test]
 fn a_checkpoint_with_other_fixed_numbers_is_refused() {
     let moved = FAN.replace("{singleton: 8}", "{singleton: 7}");
@@ -440,7 +440,7 @@ fn a_checkpoint_with_other_fixed_numbers_is_refused() {
     }
 }
 
-/// At 1e15 one of two constants was named, and at 1e20 the report said that no step helps.
+/// At 1e15 only one of two constants was named, and at 1e20 the report claimed that no step helps.
 #[test]
 fn targets_that_leave_no_digit_of_the_loss_are_refused() {
     for target in ["1e8", "-1e15", "1e20", "1e49"] {
@@ -455,7 +455,7 @@ fn targets_that_leave_no_digit_of_the_loss_are_refused() {
     }
 }
 
-/// Other rules, another range or another operator are not what was tuned.
+/// A checkpoint with other rules, another range or another operator does not belong to this rule set.
 #[test]
 fn a_checkpoint_that_differs_in_more_than_numbers_is_refused() {
     let rules = "  - IF heat IS cool THEN speed IS slow\n  - IF heat IS hot THEN speed IS fast\n";
@@ -476,7 +476,7 @@ fn a_checkpoint_that_differs_in_more_than_numbers_is_refused() {
 }
 
 #[test]
-fn a_header_without_names_is_told() {
+fn a_header_without_names_is_reported() {
     let (code, _, err, _) = tune(&[("rows.csv", ",,\n1,2,3\n")], &[]);
     assert_eq!(code, Some(3));
     assert!(

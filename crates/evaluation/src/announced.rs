@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn a_warning_is_false_where_nothing_comes_of_it() {
+    fn a_warning_without_a_later_episode_is_false() {
         let table = [
             ((40.0, 45.0), false),
             ((40.0, 39.9), true),
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flight_that_ends_in_the_air_proves_no_warning_false() {
+    fn a_flight_that_ends_in_the_air_does_not_make_a_warning_false() {
         assert!(!run(&[(80.0, 95.0)], &[], Some(101.0)).warnings[0].is_false);
         assert!(run(&[(60.0, 85.0)], &[], Some(101.0)).warnings[0].is_false);
     }

@@ -24,7 +24,7 @@ pub fn rmse_deg<'a>(attitudes: impl IntoIterator<Item = &'a Attitude>) -> Option
 
 /// Returns the risk that corresponds to an attitude error, in %: `100 min(1, rmse / critical)`.
 ///
-/// The paper gives the critical error ([`CRITICAL_ERROR_DEG`](flagred::profile::CRITICAL_ERROR_DEG)) but no scaling; this one is ours.
+/// The paper gives the critical error ([`CRITICAL_ERROR_DEG`](flagred::profile::CRITICAL_ERROR_DEG)) but no scaling.
 ///
 /// # Example
 /// ```
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rmse_is_over_samples_and_leaves_unknown_ones_out() {
+    fn rmse_is_over_samples_and_ignores_unknown_ones() {
         let attitudes = [1.0, f64::NAN, 7.0].map(|roll_deg| Attitude {
             roll_des_deg: 0.0,
             roll_deg,

@@ -12,7 +12,7 @@ use flagred::{
 /// use flagred_evaluation::Baseline;
 ///
 /// let lowest = Baseline::all().into_iter().find(|baseline| baseline.name == "lowest_motor").ok_or("gone")?;
-/// // The less margin the lowest motor has, the more critical.
+/// // The less margin the lowest motor has, the higher the score.
 /// assert!(lowest.score(0.01) > lowest.score(0.3));
 /// # Ok::<(), &str>(())
 /// ```
@@ -218,7 +218,7 @@ impl<'a> BaselineObserver<'a> {
         }
     }
 
-    /// The score of each baseline; `None` where it is unknown.
+    /// The score of each baseline; `None` if unknown.
     pub fn scores(&self) -> impl Iterator<Item = Option<f64>> + '_ {
         self.baselines
             .iter()

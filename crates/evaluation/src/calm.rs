@@ -1,4 +1,4 @@
-//! Calm stretches of a flight, in which nothing happens.
+//! Calm stretches of a flight: times without a critical error or a steep tilt.
 
 use flagred::profile::CRITICAL_ERROR_DEG;
 use flagred_flightlog::Attitude;
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn what_happens_ends_calm_ten_seconds_before_and_after() {
+    fn an_event_ends_calm_ten_seconds_before_and_after() {
         let never = (-1.0, -1.0);
         assert_eq!(calm(never, never, never), [[5.0, 120.0]]);
         let steep = calm(never, (60.0, 61.0), never);

@@ -9,7 +9,7 @@ use crate::span::Span;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Incomplete {
-    /// The log exceeds the limits of what is kept.
+    /// The log exceeds the limits of a reader, which left part of it out.
     #[error("not all of it is kept, which leaves out {0}")]
     LeftOut(LeftOut),
     /// Required information is missing from the log.
@@ -35,8 +35,8 @@ pub fn complete_options(names: &[&str]) -> Options {
     options
 }
 
-/// Checks that a flight can be used for learning and evaluation: it needs motors, attitude and times in the air, and
-/// nothing may be left out.
+/// Checks that a flight can be used for learning and evaluation: it must contain motors, attitude and times in the air, and
+/// the reader must not have left anything out.
 ///
 /// # Errors
 /// The missing information.
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn judged_time_leaves_out_take_off_and_landing() {
+    fn assessed_time_excludes_take_off_and_landing() {
         let settings = VerdictSettings::default();
         let air = Span {
             from_s: 10.0,

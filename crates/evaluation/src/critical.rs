@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_quiet_until_the_error_is_critical_and_again_a_while_after() {
+    fn a_flight_is_quiet_until_the_error_is_critical_and_again_some_time_after() {
         let record = record(25, &[(10.0, 30.0)]);
         let episode = record.episodes()[0];
         for (t_s, is_quiet) in [

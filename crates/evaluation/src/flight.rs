@@ -89,7 +89,7 @@ pub(crate) struct Said {
 /// The reason why a flight cannot be evaluated.
 #[derive(Debug, thiserror::Error)]
 pub enum Unusable {
-    /// It cannot be read, or is not a flight log.
+    /// The file cannot be read, or is not a flight log.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// Motors, attitude or times in the air are missing.
@@ -100,7 +100,7 @@ pub enum Unusable {
         /// The missing information.
         lacks: Incomplete,
     },
-    /// The baselines cannot be computed for it.
+    /// The baselines cannot be computed for the flight.
     #[error("`{name}` cannot be evaluated: {problem}")]
     Baselines {
         /// The name of the flight for the user.
@@ -134,7 +134,7 @@ impl Record {
     /// Evaluates a flight; the risk should predict critical errors within `horizon_s` seconds.
     ///
     /// # Errors
-    /// If motors, attitude or times in the air are missing, or if the flight was not kept completely.
+    /// If motors, attitude or times in the air are missing, or if the reader left part of the flight out.
     pub fn new(
         name: &str,
         flight: &Flight,

@@ -422,7 +422,7 @@ rules: []
     }
 
     #[test]
-    fn an_even_relation_is_predicted_on_rows_that_were_left_out() {
+    fn a_linear_relation_is_predicted_on_held_out_rows() {
         let validate = |groups, order: fn(&mut Vec<Row>)| {
             let mut rows = rows(groups);
             order(&mut rows);
@@ -449,7 +449,7 @@ rules: []
     }
 
     #[test]
-    fn a_rule_left_out_is_made_up_for_by_its_neighbours() {
+    fn neighbours_replace_a_missing_rule() {
         let methods = GapMethod::ALL;
         let compared = leave_one_rule_out(&learned(), &rows(None), &methods, None).unwrap();
         assert_eq!(compared.rules, 10);
@@ -463,7 +463,7 @@ rules: []
     }
 
     #[test]
-    fn many_groups_are_left_out_in_tenths_whatever_their_numbers() {
+    fn many_groups_are_held_out_in_tenths() {
         let mut rows = rows(Some(60));
         let validate = |rows: &[Row]| {
             let gap = GapSettings::default();
@@ -477,7 +477,7 @@ rules: []
     }
 
     #[test]
-    fn the_only_rule_leaves_nothing_to_fill_its_gap_from() {
+    fn without_its_only_rule_a_gap_has_no_prediction() {
         let mut only = learned();
         only.rules.truncate(1);
         let compared = leave_one_rule_out(&only, &rows(None), &GapMethod::ALL, None).unwrap();

@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_numbers_are_those_of_the_authors_program() {
+    fn random_numbers_agree_with_the_authors_program() {
         // The first outputs of the reference implementation in C by Sebastiano Vigna for the seed 1234567.
         let mut random = Random::new(1_234_567);
         assert_eq!(random.next(), 6_457_827_717_110_365_317);
@@ -36,7 +36,7 @@ mod tests {
     }
 
     #[test]
-    fn all_numbers_below_come_up_alike() {
+    fn random_numbers_below_a_limit_are_uniform() {
         let mut random = Random::new(1);
         let mut counts = [0; 6];
         for _ in 0..60_000 {

@@ -170,7 +170,7 @@ impl Ranking {
     /// and other predictions. It measures whether scores predict the time, and not only the group. `None` if no group
     /// has both.
     ///
-    /// # Example: two flights that the score tells apart, but not their moments
+    /// # Example: the score distinguishes two flights, but not the moments within them
     /// ```
     /// use flagred_evaluation::{Prediction, Ranking};
     ///
@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn areas_are_those_of_scikit_learn() {
+    fn areas_agree_with_scikit_learn() {
         let ranking = Ranking::new(predictions());
         let areas = ranking.areas().unwrap();
         assert_eq!((ranking.len(), ranking.critical()), (200, 68));
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn intervals_are_those_of_a_bootstrap_in_numpy() {
+    fn intervals_agree_with_a_bootstrap_in_numpy() {
         let ranking = Ranking::new(predictions());
         let found = ranking.bootstrap(2000, 7).unwrap();
         // 20,000 resamples of the ten groups with numpy's own generator, areas by scikit-learn.
@@ -399,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn a_risk_falls_into_its_tenth() {
+    fn a_risk_is_counted_in_its_tenth() {
         let at = |score| Prediction {
             score,
             critical: score > 50.0,

@@ -18,7 +18,7 @@ pub(crate) const SEED: u64 = 1;
 /// The number of steps along the drawn curve.
 const ROC_STEPS: u32 = 200;
 
-/// A step or a flight that was predicted.
+/// A step or a flight with its outcome and scores.
 pub struct Case {
     /// The index of its flight.
     pub group: u32,

@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_the_case_for_a_while_is_a_span() {
+    fn a_condition_over_a_time_is_a_span() {
         let (mut spans, mut open) = (Vec::new(), false);
         for (t_s, is_so) in [
             (0.0, false),

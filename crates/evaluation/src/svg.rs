@@ -70,7 +70,7 @@ mod tests {
     use crate::scores::Scores;
 
     #[test]
-    fn a_picture_holds_every_estimator_by_name_and_area() {
+    fn a_picture_contains_every_estimator_with_its_area() {
         let cases = (0..200_u32).map(|i| Prediction {
             score: f64::from(i) / 2.0,
             critical: (i * 53) % 97 + i > 150,

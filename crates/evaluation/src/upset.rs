@@ -102,7 +102,7 @@ mod tests {
     };
 
     #[test]
-    fn an_alarm_before_an_upset_is_one_that_was_on_in_the_last_ten_seconds_of_that_flight() {
+    fn an_alarm_precedes_an_upset_if_it_was_on_in_the_ten_seconds_before() {
         let before = |lead_s| UpsetAlarm::Before { lead_s };
         for (alarm, upset_s, expected) in [
             ((20.0, 25.0), 30.0, before(10.0)),
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn the_attitude_is_lost_by_its_error_or_by_a_tilt_that_nobody_commanded() {
+    fn the_attitude_is_lost_by_its_error_or_by_an_uncommanded_tilt() {
         // At 10 Hz; a roll from 40 s on, for a fifth of a second or permanently.
         let upset = |roll_deg: f64, roll_des_deg: f64, until_s: f64| {
             let attitudes: Vec<(f64, Attitude)> = (0..600)

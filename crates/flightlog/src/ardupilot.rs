@@ -303,7 +303,7 @@ mod tests {
 
     /// Limits that no speed controller has would hide a motor at its limit.
     #[test]
-    fn limits_that_cannot_be_are_no_limits() {
+    fn impossible_limits_are_ignored() {
         for (low, high) in [
             (100.0, 1100.0),
             (1000.0, 5e4),
@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn functions_name_motors() {
+    fn functions_determine_the_motors() {
         for (function, motor) in [
             (32, None),
             (33, Some(1)),

@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_pauses_and_boots() {
+    fn damage_pauses_and_boots_are_told_apart() {
         let cases: &[(&str, &[f64], &[f64])] = &[
             ("plain", &[5.0, 5.1, 5.2], &[5.0, 5.1, 5.2]),
             ("one wild time", &[5.0, 5.1, 9e9, 5.2], &[5.0, 5.1, 5.2]),
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn late_is_believed_and_far_ahead_is_not() {
+    fn late_times_are_accepted_and_times_far_ahead_are_not() {
         let mut latest = Latest::new(60.0);
         let told: Vec<bool> = [100.0, 3.0, 1e6, 101.0, 5e6, 5.00001e6, 102.0]
             .into_iter()

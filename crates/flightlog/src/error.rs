@@ -74,7 +74,13 @@ impl ReadError {
     /// Advice on what to do, in addition to the message.
     pub fn help(&self) -> Option<&str> {
         match self {
-            Self::Io { source, .. } => match source.kind() {
+            Self::Io { source, path, .. } => match source.kind() {
+                ErrorKind::NotFound if path.starts_with("http") => {
+                    Some("download the log first, and name the file")
+                }
+                ErrorKind::NotFound if path.contains('*') => {
+                    Some("no file has a name of this form")
+                }
                 ErrorKind::NotFound => Some("check the path"),
                 ErrorKind::IsADirectory => Some("name the logs in it"),
                 _ => None,

@@ -58,8 +58,11 @@ pub enum VehicleKind {
 }
 
 impl VehicleKind {
-    /// The kind that is displayed as `name`; `Unknown` for any other name.
-    pub(crate) fn from_name(name: &str) -> Self {
+    /// Advice for a name that is not one of a kind.
+    pub(crate) const NAMES_HELP: &str = "there are `multirotor`, `helicopter`, `plane`, `VTOL plane`, `rover`, `submarine` and `other vehicle`";
+
+    /// The kind that is displayed as `name`, in small or capital letters.
+    pub(crate) fn from_name(name: &str) -> Option<Self> {
         [
             Self::Multirotor,
             Self::Helicopter,
@@ -68,10 +71,10 @@ impl VehicleKind {
             Self::Rover,
             Self::Submarine,
             Self::Other,
+            Self::Unknown,
         ]
         .into_iter()
-        .find(|kind| kind.to_string() == name)
-        .unwrap_or_default()
+        .find(|kind| kind.to_string().eq_ignore_ascii_case(name))
     }
 }
 

@@ -166,7 +166,7 @@ impl Gap {
                 Csv => "add a column in_air",
             },
             Self::NoAttitude => {
-                "ArduPilot: set bit 0 or 1 (attitude) of LOG_BITMASK; PX4: log vehicle_attitude and vehicle_attitude_setpoint"
+                "ArduPilot: set bit 0 or 1 (attitude) of LOG_BITMASK; PX4: log vehicle_attitude and vehicle_attitude_setpoint; flight CSV: add the columns roll_deg, roll_des_deg and so on"
             }
             Self::TooSlow { format, .. } => match format {
                 DataFlash | DataFlashText => "set bit 0 (fast attitude) of LOG_BITMASK",

@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parameters_tell_number_and_boots() {
+    fn parameters_contain_vehicle_number_and_boots() {
         let mut vehicle = Vehicle::default();
         let pairs = [
             ("SYSID_THISMAV", 7.0),
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_told_is_not_known() {
+    fn missing_identity_is_unknown() {
         let mut vehicle = Vehicle::default();
         let pairs = [
             ("MAV_SYS_ID", 300.0),
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn a_board_names_itself_before_a_person_does() {
+    fn the_serial_number_of_a_board_precedes_a_given_name() {
         let mut vehicle = Vehicle::default();
         name(&mut vehicle, "0002".into(), "sys_uuid");
         add(
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn the_long_id_comes_first_and_zeros_are_none() {
+    fn the_long_id_comes_first_and_zeros_are_ignored() {
         let of = |uid: &[u8], uid2: &[u8]| of_version(uid, uid2).map(|(id, _)| id);
         assert_eq!(of(&[1, 2], &[0, 0xAB]).as_deref(), Some("00ab"));
         assert_eq!(of(&[1, 2], &[0, 0]).as_deref(), Some("0201"));

@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn near_intervals_are_one() {
+    fn near_intervals_are_merged() {
         let changes = [
             (1.0, true),
             (3.0, false),

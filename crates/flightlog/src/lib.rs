@@ -63,7 +63,7 @@ pub use interval::{Interval, Intervals};
 pub use known::{KnownSignal, known_signals};
 pub use parameters::Parameter;
 pub use pulse_range::{PulseRange, PulseRangeError};
-pub use read::{Options, open, read};
+pub use read::{Options, kind_of, open, read};
 pub use report::{LeftOut, Report};
 pub use signal::{Hold, Label, Series, Signal};
 pub use statistics::Statistics;

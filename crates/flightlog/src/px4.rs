@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn functions_name_motors() {
+    fn functions_determine_the_motors() {
         let found = actuator_outputs(
             &parameters(&[("PWM_AUX_FUNC1", 102.0), ("PWM_AUX_FUNC4", 101.0)]),
             1,

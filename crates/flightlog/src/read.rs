@@ -190,6 +190,19 @@ const OTHER_FILES: &[(&[u8], &str)] = &[
 /// The label of the only field of sdlog2's time messages.
 const SDLOG2: &[u8] = b"StartTime\0";
 
+/// What a file is by its first bytes: a flight log in a binary format, or a file of another kind that is not text; `None`
+/// for text.
+pub fn kind_of(start: &[u8]) -> Option<&'static str> {
+    match sniff(start) {
+        Content::DataFlash | Content::ULog | Content::Tlog | Content::Sdlog2 => {
+            Some("a flight log")
+        }
+        Content::Other(what) if [TEXT, RULES, PROFILE, SEMICOLONS].contains(&what) => None,
+        Content::Other(what) => Some(what),
+        Content::DataFlashText | Content::Csv | Content::Empty => None,
+    }
+}
+
 /// The kind of content, from the first bytes of a log or, if these are damaged, from the following ones.
 fn sniff(start: &[u8]) -> Content {
     if start.is_empty() {

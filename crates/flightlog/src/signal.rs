@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn holds_the_latest_value() {
+    fn a_signal_keeps_the_latest_value() {
         let series = series();
         let signal = series.signals().next().unwrap();
         let mut hold = signal.hold();

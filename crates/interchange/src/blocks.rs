@@ -42,7 +42,7 @@ pub(crate) fn aggregate(model: &mut Model, found: &[Option<Aggregation>]) {
     }
 }
 
-/// Reports a loss if the aggregation of an output with computed values joins rules, because a rule set weighs each rule
+/// Reports a loss if the aggregation of an output with computed values joins rules, because a rule set weights each rule
 /// separately.
 pub(crate) fn joined(draft: &mut Draft<'_>, output: &str, part: &str, help: &str) {
     let rules = draft.model.rules.iter();

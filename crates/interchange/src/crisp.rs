@@ -67,7 +67,7 @@ fn rectangles(variable: &Variable) -> Option<Vec<Term>> {
     variable.terms.iter().map(rectangle).collect()
 }
 
-/// A note about the first two terms that both contain their common limit.
+/// A note about the first two terms that both contain their shared limit.
 fn shared(variable: &Variable) -> Option<Diagnostic> {
     let sides = |term: &Term| match term.membership_function {
         MembershipFunction::Rectangle { left, right } => Some((left, right)),

@@ -77,7 +77,7 @@ impl<'t> Draft<'t> {
             .push(Diagnostic::note(code, self.span(part), message).help(help));
     }
 
-    /// A number; otherwise an error is reported.
+    /// Parses a number; reports an error if it is not one.
     pub(crate) fn number(&mut self, word: &str) -> Option<f64> {
         let number = number(word);
         if number.is_none() {

@@ -34,7 +34,7 @@ pub(crate) fn read(
     }
 }
 
-/// A name in the syntax of formulas.
+/// Returns a name in the syntax of formulas.
 pub(crate) fn quoted(name: &str) -> String {
     match is_name(name) {
         true => name.to_owned(),
@@ -42,7 +42,7 @@ pub(crate) fn quoted(name: &str) -> String {
     }
 }
 
-/// Names, numbers and signs of a formula.
+/// Splits a formula into names, numbers and signs.
 pub(crate) fn words(text: &str) -> Vec<&str> {
     let mut words = vec![];
     let mut rest = text.trim_start();
@@ -123,7 +123,7 @@ fn apply(word: &str, mut operands: Vec<Written>) -> Written {
         && operands.len() == 2
         && let (Some(right), Some(left)) = (operands.pop(), operands.pop())
     {
-        // Powers get brackets on both sides, because not all programs nest them to the right.
+        // Powers are put in brackets on both sides, because not all programs nest them to the right.
         let left = left.within(binds + u8::from(word == "^"));
         let text = format!("{left} {word} {}", right.within(binds + 1));
         return Written { text, binds };
@@ -163,7 +163,7 @@ mod tests {
         "x / (y * 2) * 4",
     ];
 
-    /// The values of both at some points.
+    /// Asserts that both formulas have the same values at some points.
     fn assert_same(before: &Formula, after: &Formula, names: [&str; 2]) {
         for x in [-1.5, 0.0, 0.25, 2.0] {
             for y in [0.5, 1.0, 3.0] {
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_reads_back_with_the_same_values() {
+    fn written_formulas_read_back_with_the_same_values() {
         for text in FORMULAS {
             let formula: Formula = text.parse().unwrap();
             let written = write(&formula, None);

@@ -89,7 +89,7 @@ impl Paper {
             .push(Diagnostic::note(code, 0..0, message).help(help));
     }
 
-    /// The word of the format for an operator or a defuzzifier; `what` is its kind for messages.
+    /// The word of the format for an operator or a defuzzifier; `what` names its kind in messages.
     pub(crate) fn word<T: Copy + PartialEq + Debug>(
         &mut self,
         words: &Words<T>,

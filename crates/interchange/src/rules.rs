@@ -196,7 +196,7 @@ impl<'r> Reader<'r, '_, '_> {
         }))
     }
 
-    /// `variable is hedge* term`. A hedge that no term follows is a term, except `any`, which needs none.
+    /// Reads `variable is hedge* term`. A hedge without a term after it is a term, except `any`, which needs none.
     fn proposition(&mut self, what: &str) -> Option<(Name, Vec<Hedge>, Option<Name>)> {
         let variable = self.name(what)?;
         self.expect("is")?;

@@ -169,7 +169,7 @@ pub(crate) fn is_name(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') && word.chars().all(is_letter)
 }
 
-/// Whether the defuzzifier weighs a number for each rule.
+/// Whether the defuzzifier is a weighted mean or sum of one number per rule.
 pub(crate) fn is_weighted(defuzzifier: Defuzzifier) -> bool {
     matches!(
         defuzzifier,

@@ -267,7 +267,7 @@ fn measured(model: &Model, format: Format) -> &'static str {
 }
 
 #[test]
-fn the_table_of_features_is_measured() {
+fn the_documented_table_of_features_is_measured() {
     let mut table =
         String::from("| in a rule set | FIS | FLL | FCL | FML |\n|---|---|---|---|---|\n");
     for (feature, place, text) in FEATURES {

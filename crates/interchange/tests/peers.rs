@@ -141,7 +141,7 @@ fn as_fuzzylite_in_cpp(_: &str, model: &mut Model) {
     }
 }
 
-/// The same, with 1000 samples.
+/// As [`as_fuzzylite_in_cpp`], with 1000 samples.
 fn as_fuzzylite(name: &str, model: &mut Model) {
     as_fuzzylite_in_cpp(name, model);
     for output in &mut model.outputs {
@@ -160,7 +160,7 @@ fn as_fuzzylite(name: &str, model: &mut Model) {
 /// rules take from outputs, the kind of a hybrid system, and hedges that Octave reads as cubes.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn the_twins_of_fuzzylites_models_equal_them() {
+fn copies_of_fuzzylites_models_have_the_same_values() {
     for (file, refused) in [
         (
             "model.fis",
@@ -228,7 +228,7 @@ fn fcl_models_equal_jfuzzylogic() {
         };
         let model = document.model;
         let file = name_of(&file);
-        // In hundredths, truncated, or unchanged.
+        // The values are in hundredths and truncated, or unchanged.
         let is_cut = !table.starts_with(|c: char| c.is_ascii_digit());
         let unit = if is_cut { 0.01 } else { 1.0 };
         let memberships = table.starts_with("inVar");
@@ -268,7 +268,7 @@ fn fcl_models_equal_jfuzzylogic() {
     assert!(compared > 3_000, "{compared}");
 }
 
-/// Every usable model is written in its own format and read back: the model is equal, or its values are.
+/// Every usable model is written in its own format and read back: the model or its values are equal.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
 fn models_are_written_back_and_read_again_as_they_were() {

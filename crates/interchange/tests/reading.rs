@@ -1,4 +1,4 @@
-//! Errors that the readers report, and that no text makes them panic.
+//! Errors that the readers report. No text makes the readers panic.
 
 #![allow(
     clippy::expect_used,
@@ -134,7 +134,7 @@ fn bracketed(deep: usize) -> [String; 2] {
 
 /// The nesting of brackets is limited by counting, so a small stack is enough.
 #[test]
-fn brackets_in_each_other_are_bounded_and_need_little_stack() {
+fn nested_brackets_are_bounded_and_use_little_stack() {
     let read = || {
         for (deep, is_read) in [(64, true), (65, false), (100_000, false)] {
             for text in bracketed(deep) {
@@ -206,7 +206,7 @@ fn each_format_becomes_a_rule_set() {
 
 /// Each error is made by replacing a part of a text.
 #[test]
-fn mistakes_are_told_with_their_place() {
+fn mistakes_are_reported_with_their_position() {
     let mistakes = [
         (Format::Fis, "'wtaver'", "'centroid'"),
         (Format::Fis, "'gaussmf',[1.5 0]", "'gausmf',[1.5 0]"),
@@ -273,7 +273,7 @@ fn mistakes_are_told_with_their_place() {
 }
 
 #[test]
-fn what_a_rule_set_cannot_say_is_a_warning_where_losses_are_accepted() {
+fn unsupported_features_are_warnings_where_losses_are_accepted() {
     let text = FLL.replace("  range: 0 40", "  enabled: false\n  range: 0 40");
     assert!(flagred_interchange::read(&text, Format::Fll, Losses::Refuse).is_err());
     let document = flagred_interchange::read(&text, Format::Fll, Losses::Accept).unwrap();
@@ -338,7 +338,7 @@ fn one_function_block_of_several_is_read_by_its_name() {
     assert_eq!(findings.0[0].help.as_deref(), Some("did you mean `twice`?"));
 }
 
-/// A file that ends within a section lacks rules or terms: what is left would be another rule set.
+/// A file that ends within a section lacks rules or terms: the rest would be another rule set.
 #[test]
 fn an_fcl_that_is_cut_off_is_refused() {
     let lines: Vec<&str> = FCL.lines().collect();
@@ -354,13 +354,13 @@ fn an_fcl_that_is_cut_off_is_refused() {
 }
 
 #[test]
-fn no_damage_makes_a_reader_panic() {
+fn damaged_texts_do_not_cause_a_panic() {
     damage(2_000);
 }
 
 #[test]
 #[ignore = "takes half a minute"]
-fn twenty_thousand_damaged_texts_of_each_format_make_no_reader_panic() {
+fn twenty_thousand_damaged_texts_of_each_format_do_not_cause_a_panic() {
     damage(20_000);
 }
 
@@ -422,7 +422,7 @@ fn codes(text: &str, format: Format) -> (bool, Vec<&'static str>) {
 }
 
 #[test]
-fn a_fis_that_lacks_what_it_announces_gets_a_warning() {
+fn a_fis_with_fewer_parts_than_declared_has_a_warning() {
     assert_eq!(codes(FIS, Format::Fis), (true, vec![]));
     for (before, after) in [
         ("NumRules=2", "NumRules=3"),
@@ -444,7 +444,7 @@ fn a_fis_that_lacks_what_it_announces_gets_a_warning() {
 }
 
 #[test]
-fn a_fis_may_calculate_with_numbers_and_pi() {
+fn a_fis_may_contain_arithmetic_with_numbers_and_pi() {
     let text = FIS.replace("Range=[0 10]\nNumMFs=2", "Range=[-pi/4 3*(pi-1)]\nNumMFs=2");
     let text = text.replace("[1.5 0]", "[1/2 -2*pi]");
     let model = flagred_interchange::read(&text, Format::Fis, Losses::Refuse)
@@ -475,7 +475,7 @@ fn a_fis_may_calculate_with_numbers_and_pi() {
 }
 
 #[test]
-fn octaves_cube_is_read_where_a_product_gives_it() {
+fn octaves_cube_is_read_where_a_product_equals_it() {
     let values = |rule: &str, and: &str| {
         let text = FIS.replace("1 -1, 1 (1) : 2", rule).replace("'prod'", and);
         let document = flagred_interchange::read(&text, Format::Fis, Losses::Refuse)?;
@@ -616,7 +616,7 @@ fn a_flag_of_an_fll_is_true_or_false() {
 }
 
 #[test]
-fn where_no_rule_fires_maxima_have_no_value_unless_a_default_is_written() {
+fn maxima_without_a_firing_rule_have_no_value_unless_a_default_is_written() {
     for method in [
         "SmallestOfMaximum",
         "MeanOfMaximum",

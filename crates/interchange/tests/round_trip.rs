@@ -109,7 +109,7 @@ fn same_values(before: &Model, after: &Model, context: &str) {
 }
 
 #[test]
-fn what_is_written_is_read_again_and_gives_the_same_values() {
+fn written_rule_sets_are_read_again_with_the_same_values() {
     let mut refused = String::new();
     for (name, text) in SETS {
         let model: Model = text
@@ -141,7 +141,7 @@ fn what_is_written_is_read_again_and_gives_the_same_values() {
 }
 
 #[test]
-fn steps_are_rectangles_elsewhere_and_steps_again() {
+fn steps_are_exported_as_rectangles_and_read_back_as_steps() {
     let model: Model = STEPS.parse().unwrap();
     for format in Format::ALL {
         let written = flagred_interchange::write(&model, format, Losses::Refuse).unwrap();
@@ -210,7 +210,7 @@ fn names_of_rule_sets_are_written_so_that_they_can_be_read() {
 
 /// A name that the format allows is kept, even if another one before it would be converted to the same name.
 #[test]
-fn valid_names_stay_beside_names_that_change() {
+fn valid_names_are_kept_beside_names_that_change() {
     let text = "fuzzy: 1\nname: names\n\
                 inputs: {my temp: {range: [0, 1], partition: [too low, too_low]}, my_temp: {range: [0, 1], partition: [low, high]}}\n\
                 outputs: {y: {range: [0, 1], defuzzifier: weighted_average, terms: {low: {constant: 0}, high: {constant: 1}}}}\n\
@@ -232,7 +232,7 @@ fn valid_names_stay_beside_names_that_change() {
 }
 
 #[test]
-fn what_no_format_can_carry_is_refused_even_where_losses_are_accepted() {
+fn features_of_no_format_are_refused_even_where_losses_are_accepted() {
     let tsukamoto =
         "defuzzifier: tsukamoto, terms: {a: {left_shoulder: [0, 1]}, b: {right_shoulder: [0, 1]}}";
     let model = with_output("tsukamoto", tsukamoto);
@@ -251,7 +251,7 @@ fn what_no_format_can_carry_is_refused_even_where_losses_are_accepted() {
 }
 
 #[test]
-fn what_means_something_else_elsewhere_is_a_loss() {
+fn features_with_another_meaning_elsewhere_are_a_loss() {
     let mut model = with_output("weak", NUMBERS);
     model.least_strength = 0.25;
     let text = "fuzzy: 1\nname: chain\ninputs: {x: {range: [0, 1], partition: [low, high]}}\n\

@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_outside_is_not_drawn() {
+    fn points_outside_are_not_drawn() {
         assert_eq!(
             path([(0.0, 1.0), (200.0, 1.0)].into_iter(), STRETCH, 2.0, 1),
             ""
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_peak_of_one_step_is_seen_and_the_unknown_is_marked() {
+    fn a_peak_of_one_step_is_drawn_and_unknown_values_are_marked() {
         let mut points: Vec<(f64, Option<f64>)> =
             (0..400).map(|i| (i as f64 * 0.1, Some(10.0))).collect();
         points[200].1 = Some(100.0);
@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_draw_is_nothing() {
+    fn an_empty_curve_draws_nothing() {
         assert_eq!(over_time_text(&[], 40), "");
         assert!(over_time_text(&[(3.0, Some(50.0))], 10).contains("3 s"));
     }

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_moment_has_its_step_and_the_rules_that_gave_it() {
+    fn a_moment_has_its_step_and_the_rules_that_fired() {
         let [moment] = &at(&[10.04])[..] else {
             panic!("one moment")
         };
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn before_the_first_step_and_in_a_hole_nothing_is_known() {
+    fn a_moment_before_the_first_step_or_in_a_hole_is_unknown() {
         for moment in at(&[-1.0, 25.0]) {
             assert!(moment["step"].is_null() && moment["rules"] == serde_json::json!([]));
         }

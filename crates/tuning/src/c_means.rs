@@ -244,7 +244,7 @@ mod tests {
     /// squares: c = (u^2 - (1 - u)^2) / (u^2 + 1/4 + (1 - u)^2). With u - (1 - u) = 2c / (1 + c^2) = s this is
     /// c = s / ((1 + s^2) / 2 + 1/4).
     #[test]
-    fn three_rows_by_hand() {
+    fn three_rows_have_memberships_computed_by_hand() {
         let settings = Settings {
             clusters: 2,
             ..Settings::default()
@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn heaps_have_a_center_each_and_degrees_sum_to_one() {
+    fn each_group_has_a_center_and_degrees_sum_to_one() {
         let mut random = Rng::with_seed(3);
         let heaps = [(0.0, 0.0), (10.0, 1.0), (5.0, 9.0)];
         let rows: Vec<Vec<f64>> = (0..300)
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_clustered_is_refused() {
+    fn data_that_cannot_be_clustered_is_refused() {
         let of = |values: &[f64], clusters| {
             let settings = Settings {
                 clusters,

@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_prediction_counts_as_the_middle_and_moves_nothing() {
+    fn an_unknown_prediction_counts_as_the_middle_and_has_no_gradient() {
         let data = Data {
             truths: vec![1.0],
             ..Data::default()

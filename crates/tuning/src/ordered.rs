@@ -191,7 +191,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zeros_are_the_positions_it_was_made_of() {
+    fn zeros_give_the_original_positions() {
         let positions = [(0.0, false), (0.2, false), (0.5, false)];
         let ordered = Ordered::new(&positions, 0.0, 1.0, 0.05);
         // The first one stays at the end of the range.
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_fixed_stays() {
+    fn fixed_positions_stay() {
         let ordered = Ordered::new(&[(0.2, false), (0.5, true), (0.7, false)], 0.0, 1.0, 0.0);
         let moved = ordered.positions(&[3.0, -2.0]);
         assert_eq!(moved[1], 0.5);

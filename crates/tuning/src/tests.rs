@@ -60,7 +60,7 @@ rules:
 }
 
 #[test]
-fn a_model_is_found_again_from_what_it_says() {
+fn a_model_is_recovered_from_its_outputs() {
     let hidden = tipper([1.0, 4.0, 9.0], [3.0, 14.0, 27.0]);
     let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
     let data = rows_of(&hidden, 500, 1);
@@ -89,7 +89,7 @@ fn a_model_is_found_again_from_what_it_says() {
 }
 
 #[test]
-fn rounded_numbers_have_so_many_digits_and_keep_most_of_the_gain() {
+fn rounded_numbers_have_the_requested_digits_and_keep_most_of_the_gain() {
     let data = rows_of(&tipper([1.04, 4.13, 9.02], [3.0, 14.0, 27.0]), 500, 1);
     let settings = Settings {
         digits: Some(2),
@@ -130,7 +130,7 @@ fn the_same_arguments_give_the_same_model() {
 }
 
 #[test]
-fn a_search_that_is_ended_keeps_the_best_so_far() {
+fn an_interrupted_search_keeps_the_best_so_far() {
     let data = rows_of(&tipper([1.0, 4.0, 9.0], [3.0, 14.0, 27.0]), 200, 2);
     let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
     let mut seen = Vec::new();
@@ -206,7 +206,7 @@ fn classes(rows: usize) -> Data {
 }
 
 #[test]
-fn classes_are_told_apart_better_by_both_losses() {
+fn both_losses_improve_classification() {
     let data = classes(600);
     for (loss, at_most) in [(Loss::Log, 0.25), (Loss::Ranking, 0.02)] {
         let settings = Settings {
@@ -268,7 +268,7 @@ fn a_learning_curve_ends_with_the_validation_and_falls() {
 
 /// Consequents tuned with log loss turn predictions that were far too high into probabilities.
 #[test]
-fn consequents_moved_by_log_loss_are_calibrated_on_rows_left_out() {
+fn consequents_tuned_by_log_loss_are_calibrated_on_held_out_rows() {
     let data = classes(800);
     let model = tipper([2.0, 6.0, 8.0], [24.0, 27.0, 30.0]);
     let settings = Settings {
@@ -346,7 +346,7 @@ fn wrong_rows_are_errors() {
 
 /// A part of the rows may have no weight: it is not used in cross-validation.
 #[test]
-fn rows_without_weight_change_no_figure() {
+fn rows_without_weight_do_not_change_figures() {
     let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
     let data = rows_of(&tipper([1.0, 4.0, 9.0], [3.0, 14.0, 27.0]), 60, 2);
     let mut more = data.clone();
@@ -386,7 +386,7 @@ rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
 /// Whether fitted or searched, constants end at the best value within the range: the error is the minimum over all
 /// values.
 #[test]
-fn constants_end_at_the_best_place_within_the_range() {
+fn constants_are_optimal_within_the_range() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
     let truths: Vec<f64> = heat.iter().map(|heat| 4.0 + 1.2 * heat).collect();
     let data = Data {
@@ -476,7 +476,7 @@ fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
 
 /// One constant is far beyond the range and the other inside: the latter has its best value and is not affected.
 #[test]
-fn a_constant_inside_is_at_its_best_place_beside_one_at_the_end() {
+fn a_constant_inside_the_range_is_optimal_beside_one_at_its_end() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();
     let truths = heat.iter().map(|heat| if *heat <= 2.0 { 6.0 } else { 1e4 });
     let data = Data {
@@ -517,7 +517,7 @@ fn a_peak_ends_at_the_end_of_the_range_exactly() {
 }
 
 #[test]
-fn numbers_of_another_model_are_taken_where_it_has_the_same_terms() {
+fn numbers_of_another_model_with_the_same_terms_are_used() {
     let (one, other) = (constants([1.0, 2.0]), constants([3.0, 4.0]));
     assert_eq!(with_numbers_of(&one, &other), Some(other));
     let tip = tipper([1.0, 4.0, 9.0], [3.0, 14.0, 27.0]);

@@ -2,11 +2,11 @@
 //! library.
 //!
 //! `flagred export --rust` writes a profile and its rule set as a [`Plan`] of plain data, and the type of the [`Storage`] that
-//! its [`Monitor`] needs. On a computer, [`Estimator::plan`](crate::estimator::Estimator::plan) makes the plan and
+//! its [`Monitor`] needs. On a computer, [`Estimator::plan`](crate::estimator::Estimator::plan) creates the plan and
 //! `OwnedMemory` allocates. The results are bit for bit those of
 //! [`flagred::monitor::Monitor`](crate::monitor::Monitor).
 //!
-//! # Example: a flight with a plan made on a computer
+//! # Example: a flight with a plan created on a computer
 //!
 //! ```
 //! use flagred::{board::OwnedMemory, sample::Sample, shipped};
@@ -383,7 +383,7 @@ impl<'a> Monitor<'a> {
         is_known.then_some(()).ok_or(Refused::Geometry)
     }
 
-    /// Takes the next sample of the flight.
+    /// Processes the next sample of the flight.
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         let plan = self.plan;
         let mut room = Room {

@@ -148,7 +148,7 @@ impl Threshold {
 mod tests {
     use super::*;
 
-    /// Every code has one meaning, and every meaning one code.
+    /// Every code has one meaning, and every meaning has one code.
     #[test]
     fn codes_are_read_back() {
         let all = 0..1000;

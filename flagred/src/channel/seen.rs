@@ -327,7 +327,7 @@ impl Channel {
         }
     }
 
-    /// The values of the motors, NaN where one is unknown.
+    /// The values of the motors; NaN if unknown.
     fn over(&self, mut motors: impl Iterator<Item = f64> + Clone) -> Moments {
         if let Motors::One(motor) = self.motors {
             let one = motors.nth(motor as usize);

@@ -112,7 +112,7 @@ fn message(one: &Alone, profile: &Profile) -> String {
     )
 }
 
-/// `0 (empty)`
+/// Formats a value with its term: `0 (empty)`.
 fn at(one: &Alone) -> String {
     let value = shown_value(one.value);
     match &one.term {
@@ -129,7 +129,7 @@ fn help(one: &Alone) -> String {
     )
 }
 
-/// At most four digits.
+/// Formats a value with at most four digits.
 fn shown_value(x: f64) -> String {
     let digits: f64 = format!("{x:.3e}").parse().unwrap_or(x);
     format!("{digits}")

@@ -41,7 +41,7 @@ fn fit(text: &str, rules: &str) -> (Findings, Option<Estimator>) {
     )
 }
 
-/// What is found after a part of the profile or of the rule set is replaced: the text that each finding is about, and
+/// The findings after a part of the profile or of the rule set is replaced: the text that each finding is about, and
 /// the finding.
 fn found(replaced: &str, by: &str) -> Vec<String> {
     let (text, model) = (PROFILE.replace(replaced, by), RULES.replace(replaced, by));
@@ -67,7 +67,7 @@ fn a_profile_that_fits_its_rule_set_has_no_finding() {
 }
 
 #[test]
-fn what_does_not_fit_is_told_at_its_place() {
+fn misfits_are_reported_at_their_positions() {
     let cases = [
         ("  battery: {last: battery_remaining_pct}\n", ""),
         ("  battery: {last", "  batery: {last"),
@@ -140,14 +140,14 @@ fn what_does_not_fit_is_told_at_its_place() {
 }
 
 #[test]
-fn a_mistake_in_the_profile_is_told_first() {
+fn a_mistake_in_the_profile_is_reported_first() {
     let (findings, estimator) = fit("flagred: 1\nname: x", RULES);
     assert!(estimator.is_none());
     assert!(findings.0.iter().all(|one| one.code == "missing-key"));
 }
 
 #[test]
-fn the_levels_of_another_risk_are_checked_at_their_place() {
+fn the_levels_of_another_risk_are_checked_at_their_position() {
     let rules = RULES.replace(
         "rules:",
         "  tip_over: {range: [0, 100], partition: [low, medium, high]}\nrules:\n  - IF margin IS low THEN tip_over IS high\n  - IF margin IS high THEN tip_over IS low",
@@ -166,7 +166,7 @@ fn the_levels_of_another_risk_are_checked_at_their_place() {
 
 /// The battery is one more vote in the default rules, or a risk of its own.
 #[test]
-fn an_input_beside_the_motors_that_raises_no_level_alone_is_outvoted() {
+fn an_input_that_raises_no_level_alone_is_reported_as_outvoted() {
     let rules = crate::shipped::RULE_SETS[0].text;
     let input = "inputs:\n  battery: {range: [0, 100], partition: {empty: 20, ok: 35}}\n";
     let rules = rules.replacen("inputs:\n", input, 1);

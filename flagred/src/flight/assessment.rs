@@ -9,9 +9,9 @@ use crate::{monitor::Estimate, profile::Profile};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Assessment {
-    /// How risky the flight was.
+    /// The verdict of the flight.
     pub verdict: Verdict,
-    /// The findings, the gravest first, those of equal level in order of time; at most 1,000.
+    /// The findings, the most severe first, those of equal level in order of time; at most 1,000.
     pub findings: Vec<Finding>,
     /// The number of findings that were left out.
     pub findings_left_out: u64,
@@ -19,7 +19,7 @@ pub struct Assessment {
     pub summary: Summary,
     /// The names of the inputs of the rule set, in the order of [`Step::inputs`].
     pub inputs: Vec<String>,
-    /// The inputs whose values were assumed, at least until their signals came.
+    /// The inputs whose values were assumed, at least until their signals were known.
     pub assumed_inputs: Vec<AssumedInput>,
     /// The risk over time.
     pub steps: Vec<Step>,

@@ -1,4 +1,4 @@
-//! The findings of a flight, with the names of what raised the risk.
+//! The findings of a flight, with the names of their causes.
 
 use alloc::string::{String, ToString};
 use core::{fmt, ops::Deref};
@@ -79,7 +79,7 @@ pub struct Cause {
 }
 
 impl fmt::Display for Cause {
-    /// `unsteady_now violent`.
+    /// Writes the input and the term, such as `unsteady_now violent`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.input, self.term)
     }
@@ -123,7 +123,7 @@ inputs:
         Estimator::new(&profile, &rules).unwrap()
     }
 
-    /// The cause at values of the inputs, by the engine and by its plan on board.
+    /// The cause at values of the inputs, according to the engine and to its plan on board.
     fn cause(estimator: &Estimator, inputs: [f64; 2]) -> Option<String> {
         let risk_pct = estimator.at(&inputs).unwrap().risk_pct;
         let found = estimator.cause(&inputs, risk_pct, &mut Memory::of(estimator));
@@ -194,7 +194,7 @@ rules:
 
     /// A hedge, and an alternative that is not true.
     #[test]
-    fn a_term_is_told_with_its_hedges_and_only_where_it_holds() {
+    fn a_term_is_reported_with_its_hedges_and_only_where_it_applies() {
         let rules = RULES.replace(
             "shake IS violent THEN",
             "(at_limit IS much OR shake IS very violent) THEN",
@@ -213,7 +213,7 @@ rules:
     }
 
     #[test]
-    fn only_limits_of_motors_are_about_a_motor() {
+    fn only_findings_about_motor_limits_name_a_motor() {
         let estimator = shipped::flagred();
         let plan = estimator.plan().unwrap();
         let about = (0..6).map(|input| is_of_limits((plan.channels, plan.inputs), input, 0));

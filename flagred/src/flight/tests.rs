@@ -39,7 +39,7 @@ fn time_on_the_ground_is_not_in_the_air() {
 }
 
 #[test]
-fn risk_just_after_take_off_and_just_before_landing_is_not_judged() {
+fn risk_just_after_take_off_and_just_before_landing_is_not_assessed() {
     let flown = fly(&[
         (2.0, true, LIMIT),
         (20.0, true, HOVER),
@@ -76,7 +76,7 @@ fn a_flight_of_unknown_motors_has_no_verdict() {
 }
 
 #[test]
-fn a_known_time_in_the_air_decides_what_is_enough() {
+fn a_flight_with_too_little_known_risk_has_no_verdict() {
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
     for i in 0..1000 {
         let t_s = f64::from(i) * 0.02;
@@ -98,7 +98,7 @@ fn a_known_time_in_the_air_decides_what_is_enough() {
 }
 
 #[test]
-fn a_second_flight_begins_anew() {
+fn a_second_flight_starts_without_the_state_of_the_first() {
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
     let mut fly = |from_s: f64, motors: [f64; 4]| {
         for i in 0..1000 {
@@ -116,7 +116,7 @@ fn a_second_flight_begins_anew() {
     assert_eq!(fly(30.0, HOVER).verdict, Verdict::Known(Level::Good));
 }
 
-/// The paper's inputs, with the rules about the spread fed by a signal that is not a motor at its limit.
+/// The paper's inputs; the rules about the spread read a signal that is not a motor at its limit.
 #[test]
 fn a_motor_is_named_only_where_motors_near_a_limit_are_the_cause() {
     let paper = shipped::flagred_paper();
@@ -217,13 +217,13 @@ fn a_lasting_fault_stays_a_finding_until_landing() {
         assert!(found.to_s > 119.0, "{found:?}");
         assert_eq!(found.severity, Level::Warn);
     }
-    // As before: nothing differs.
+    // Without the fault, nothing differs.
     let (flown, levels) = with_a_dead_motor(1e9);
     assert_eq!((flown.findings, levels), (vec![], vec![]));
 }
 
 #[test]
-fn a_flight_with_information_alone_is_good() {
+fn a_flight_with_only_information_is_good() {
     let mut profile = shipped::flagred_paper().profile().clone();
     profile.verdict.notices.noise = Some(crate::verdict::Limit {
         value: 0.04,
@@ -279,7 +279,7 @@ fn an_assessment_is_serde_data() {
     assert!(unknown["reason"].is_string() && unknown["help"].is_string());
 }
 
-/// The margin makes one risk, the spread another.
+/// One risk depends on the margin, the other on the spread.
 const TWO_RISKS: &str = "
 fuzzy: 1
 name: two
@@ -303,7 +303,7 @@ fn two_risks(risks: &str) -> Estimator {
     Estimator::new(&profile.parse().unwrap(), &model).unwrap()
 }
 
-/// First all motors come near their limit together, then they are torn apart.
+/// First both motors approach their limit together, then they diverge.
 fn fly_twice(estimator: &Estimator) -> (Assessment, Vec<(f64, Level)>, Vec<Option<String>>) {
     let mut assessor = Assessor::new(estimator, Craft::new(2), None).unwrap();
     let (mut changes, mut open) = (vec![], vec![]);
@@ -366,7 +366,7 @@ fn several_risks_have_the_findings_of_profiles_of_each() {
         .find(|found| found.risk_output.is_some());
     assert_eq!(torn.unwrap().cause.as_ref().unwrap().input, "spread");
 
-    // The level is the worst of both.
+    // The level is the worst of both risks.
     let levels: Vec<Level> = changes.iter().map(|(_, level)| *level).collect();
     assert_eq!(levels[..2], [Level::Warn, Level::Good]);
     assert!(levels.contains(&Level::Fail), "{changes:?}");
@@ -376,11 +376,11 @@ fn several_risks_have_the_findings_of_profiles_of_each() {
     let refused = both.plan().unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "the profile has the risks `weak` and `torn`, and what flies on board has one"
+        "the profile has the risks `weak` and `torn`, but exported code has one"
     );
 }
 
-/// If a risk has no rule, a flight without findings is not GOOD because of the other risk.
+/// If a risk is unknown because no rule covers it, a flight without findings is not GOOD, even if the other risk is known.
 #[test]
 fn a_flight_is_good_where_every_risk_is_known() {
     let rules = TWO_RISKS.replace("  - IF spread IS low THEN torn IS no\n", "");

@@ -20,7 +20,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// The graver of the verdicts of two flights. A flight that was lost in the air is graver than GOOD; a flight
+    /// The worse of the verdicts of two flights. A flight that was lost in the air is worse than GOOD; a flight
     /// without a verdict for another reason counts only if neither flight has a verdict.
     ///
     /// ```
@@ -175,7 +175,7 @@ fn motor_unknown(
 }
 
 impl Reason {
-    /// Advice for the pilot: how to get a verdict of the next flight.
+    /// Advice for the pilot on how to get a verdict for the next flight.
     pub fn help(&self) -> Option<&'static str> {
         match self {
             #[cfg(feature = "flightlog")]

@@ -87,7 +87,7 @@ impl Finding {
         matches!(self.measure, Measure::Risk | Measure::ElevatedRisk)
     }
 
-    /// ` The risk reached 93 %.`
+    /// The sentence about the highest value, such as ` The risk reached 93 %.`
     fn reached(&self) -> String {
         let of = match &self.risk_output {
             Some(risk) => format!(" `{risk}`"),
@@ -223,7 +223,7 @@ fn advice(profile: &Profile) -> &'static str {
     }
 }
 
-/// `motor 3`, or `motor 3 or 8` if the commands do not show which one.
+/// Names a motor: `motor 3`, or `motor 3 or 8` if the commands do not show which one.
 fn name_of(motor: &MotorFinding) -> String {
     let or = motor.or_number.map(|number| format!(" or {number}"));
     format!("motor {}{}", motor.number, or.unwrap_or_default())

@@ -79,7 +79,7 @@ fn failed() -> Flown {
 }
 
 #[test]
-fn a_land_detector_that_flickers_for_less_than_a_second_ends_nothing() {
+fn a_flickering_land_detector_does_not_end_the_flight() {
     let mut flown = failed();
     let flicker = flown.fly(0.9, false, LIMIT);
     assert_eq!(ended(&flicker), []);
@@ -87,7 +87,7 @@ fn a_land_detector_that_flickers_for_less_than_a_second_ends_nothing() {
     assert_eq!(last(&flicker).level, Some(Level::Fail));
     let again = flown.fly(0.1, true, LIMIT);
     assert_eq!(ended(&again), []);
-    // No window starts again.
+    // No window restarts.
     assert!(again[0].risk.is_ok());
     assert_eq!(last(&again).level, Some(Level::Fail));
 
@@ -112,7 +112,7 @@ fn idling_on_the_ground_raises_nothing() {
 }
 
 #[test]
-fn idling_after_a_calm_landing_holds_nothing() {
+fn idling_after_a_calm_landing_keeps_no_level() {
     let mut flown = failed();
     flown.fly(5.0, true, HOVER);
     assert_eq!(last(&flown.fly(0.02, true, HOVER)).level, Some(Level::Fail));
@@ -122,7 +122,7 @@ fn idling_after_a_calm_landing_holds_nothing() {
 }
 
 #[test]
-fn motors_at_idle_after_a_high_risk_are_no_landing() {
+fn motors_at_idle_after_a_high_risk_are_not_a_landing() {
     let mut flown = failed();
     let falling = flown.fly(5.0, true, IDLE);
     assert_eq!(ended(&falling), []);
@@ -130,7 +130,7 @@ fn motors_at_idle_after_a_high_risk_are_no_landing() {
     assert_eq!(last(&falling).level, Some(Level::Fail));
 }
 
-/// A fall at a command that no rule treats as a limit.
+/// A fall at a command that no rule considers a limit.
 #[test]
 fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
     for estimator in [shipped::flagred(), shipped::flagred_paper()] {
@@ -157,7 +157,7 @@ fn motors_that_idle_while_the_vehicle_is_reported_in_the_air_are_a_fall() {
 }
 
 #[test]
-fn a_late_land_detector_and_one_that_does_not_report_raise_nothing() {
+fn a_late_or_silent_land_detector_raises_no_level() {
     for (idle_s, in_air) in [(2.9, Some(true)), (20.0, None)] {
         let mut flown = Flown::new(&shipped::flagred());
         flown.fly(30.0, true, HOVER);
@@ -227,7 +227,7 @@ fn limit(value: f64, after_s: f64) -> Option<Limit> {
 }
 
 #[test]
-fn little_reserve_is_told_while_it_lasts_and_ends_with_the_flight() {
+fn little_reserve_is_reported_while_it_lasts_and_ends_with_the_flight() {
     let mut flown = noticing(NoticeSettings {
         reserve: limit(0.1, 3.0),
         ..NoticeSettings::default()
@@ -259,7 +259,7 @@ fn little_reserve_is_told_while_it_lasts_and_ends_with_the_flight() {
 
 /// With few samples the risk is unknown all the time.
 #[test]
-fn little_reserve_is_told_where_the_risk_is_unknown() {
+fn little_reserve_is_reported_where_the_risk_is_unknown() {
     let flown = noticing(NoticeSettings {
         reserve: limit(0.1, 3.0),
         ..NoticeSettings::default()
@@ -284,7 +284,7 @@ fn little_reserve_is_told_where_the_risk_is_unknown() {
 }
 
 #[test]
-fn a_motor_that_leaves_its_own_part_is_told_and_one_that_always_had_it_is_not() {
+fn a_motor_is_reported_only_if_it_leaves_its_usual_share() {
     let notices = NoticeSettings {
         imbalance: limit(0.25, 3.0),
         ..NoticeSettings::default()

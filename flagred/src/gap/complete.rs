@@ -229,7 +229,7 @@ rules: [{rules}]
     }
 
     #[test]
-    fn what_is_not_proven_may_have_a_gap() {
+    fn an_unproven_cover_may_have_a_gap() {
         let bells =
             "terms: {cold: {gaussian: {mean: 0, sd: 9}}, warm: {gaussian: {mean: 30, sd: 9}}}";
         let step = "terms: {cold: {rectangle: [0, 15]}, warm: {rectangle: [15, 30]}}";

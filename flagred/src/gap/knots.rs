@@ -178,7 +178,7 @@ rules: []
     }
 
     #[test]
-    fn a_partition_has_its_peaks_and_the_places_between() {
+    fn a_partition_has_knots_at_peaks_and_between_them() {
         let places = places_of("partition: {low: 0.2, middle: 0.4, high: 0.8}");
         let expected = [0.2, 0.3, 0.4, 0.6, 0.8];
         assert_eq!(places.len(), expected.len());
@@ -188,7 +188,7 @@ rules: []
     }
 
     #[test]
-    fn the_ends_of_the_range_are_added_where_they_lie_beyond() {
+    fn the_ends_of_the_range_become_knots_beyond_the_outermost_peaks() {
         let text = "
 fuzzy: 1
 name: test
@@ -216,7 +216,7 @@ rules: []
     }
 
     #[test]
-    fn many_inputs_have_fewer_places_each() {
+    fn many_inputs_have_fewer_knots_each() {
         let input = |i| format!("x{i}: {{range: [0, 1], partition: [a, b, c, d, e]}}");
         let inputs: Vec<String> = (0..7).map(input).collect();
         let knots = knots(&inputs.join(", "));

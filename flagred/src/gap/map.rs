@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_saturated_drone_reads_high_whatever_fills_the_papers_corner() {
+    fn a_saturated_drone_has_a_high_risk_with_every_filling() {
         let model = crate::shipped::flagred_paper_rules();
         for method in GapMethod::ALL {
             let map = filled(&model, method);
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn inverse_distance_over_all_cells_is_the_trap_that_neighbours_avoid() {
+    fn inverse_distance_over_all_cells_underestimates_and_neighbours_do_not() {
         let model = crate::shipped::flagred_paper_rules();
         let map = filled(&model, GapMethod::Nearest);
         let (mut sum, mut weights) = (0.0, 0.0);
@@ -124,12 +124,12 @@ mod tests {
             sum += weight * map.value(cell).unwrap();
             weights += weight;
         }
-        // The classic form would call a saturated drone harmless.
+        // The usual form, over all covered cells, would give a saturated drone only 49 %.
         approx::assert_abs_diff_eq!(sum / weights, 49.0, epsilon = 2.0);
     }
 
     #[test]
-    fn a_map_of_nothing_reads_as_unknown() {
+    fn an_empty_map_is_unknown_everywhere() {
         let mut model = crate::shipped::flagred_paper_rules();
         model.rules.truncate(1);
         model.rules[0].rule.weight = 0.0;
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slice_is_filled_with_its_fixed_inputs_in_their_places() {
+    fn a_slice_is_filled_at_its_fixed_inputs() {
         let model = crate::shipped::flagred_paper_rules();
         let engine = Engine::new(&model).unwrap();
         let whole = filled(&model, GapMethod::Harmonic);

@@ -91,7 +91,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn the_tree_finds_what_sorting_finds(
+        fn the_tree_and_sorting_find_the_same_neighbours(
             points in prop::collection::vec(0u8..6, 3..120),
             point in prop::collection::vec(0u8..6, 3),
             k in 1usize..9,

@@ -1,4 +1,4 @@
-//! Settings that define what counts as a gap and how it is filled.
+//! Settings that define a gap and how it is filled.
 
 use fuzzy::{
     Model,
@@ -123,7 +123,7 @@ mod tests {
     use alloc::format;
 
     #[test]
-    fn what_counts_as_covered_follows_from_the_terms_and_the_conjunction() {
+    fn the_coverage_of_a_gap_follows_from_the_terms_and_the_conjunction() {
         let below = |partition: &str, and: &str| {
             let text = format!(
                 "

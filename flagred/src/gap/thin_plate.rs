@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_through_its_centres_and_keeps_a_plane_a_plane() {
+    fn the_spline_interpolates_its_centres_and_reproduces_planes() {
         let centres: Vec<[f64; 2]> = (0..12)
             .map(|i| [f64::from(i % 4) / 3.0, f64::from(i / 4) / 2.0])
             .collect();
@@ -163,7 +163,7 @@ mod tests {
 
     // Computed with scipy 1.17.1: RBFInterpolator(centres, known, kernel="thin_plate_spline")(points).
     #[test]
-    fn it_is_the_spline_that_scipy_computes() {
+    fn the_spline_agrees_with_scipy() {
         for (point, expected) in SCIPY_POINTS {
             approx::assert_abs_diff_eq!(
                 at(&SCIPY_CENTRES, &SCIPY_KNOWN, point),
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn across_a_plane_of_centres_it_is_level() {
+    fn the_spline_is_constant_across_a_plane_of_centres() {
         let line: Vec<[f64; 2]> = (0..6).map(|i| [f64::from(i) / 5.0, 0.5]).collect();
         let known: Vec<f64> = (0..6).map(|i| 10.0 * f64::from(i)).collect();
         approx::assert_abs_diff_eq!(at(&line, &known, [0.4, 0.5]), 20.0, epsilon = 1e-4);

@@ -115,7 +115,7 @@ fn risk_at(assessments: &[Update], t_s: f64) -> Result<f64, Unknown> {
 
 /// `x / max(per, at_least)`, with an input that the rules do not have; unknown if that input is unknown.
 #[test]
-fn a_ratio_is_of_other_inputs() {
+fn a_ratio_divides_two_other_inputs() {
     let text = "flagred: 1
 name: ratio
 rules: test
@@ -156,7 +156,7 @@ inputs:
 
 /// If a motor is unknown, so is a ratio that divides by its statistic, even if the window still has earlier values.
 #[test]
-fn a_ratio_by_motors_needs_them() {
+fn a_ratio_by_motors_requires_motors() {
     let text = "flagred: 1
 name: ratio
 rules: test
@@ -253,7 +253,7 @@ fn the_first_seconds_in_the_air_raise_only_fail() {
 }
 
 #[test]
-fn a_gap_is_filled_and_says_so() {
+fn a_filled_gap_is_reported_as_filled() {
     let estimator = Estimator::new(&profile(), &rules(true)).unwrap();
     let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let flight = fly(&mut monitor, 25.0, &[(5.0, 0.5, true), (5.0, 1.0, true)]);
@@ -278,7 +278,7 @@ fn no_rule_and_nothing_to_fill_from_is_unknown() {
 }
 
 #[test]
-fn an_author_who_calls_it_an_error_that_no_rule_fires_still_gets_the_gap_filled() {
+fn a_gap_is_filled_even_if_no_rule_fires_is_an_error() {
     let mut model = rules(true);
     model.outputs[0].when_no_rule_fires = NoRuleFires::Error;
     let estimator = Estimator::new(&profile(), &model).unwrap();
@@ -288,7 +288,7 @@ fn an_author_who_calls_it_an_error_that_no_rule_fires_still_gets_the_gap_filled(
 }
 
 #[test]
-fn too_few_samples_are_unknown_and_say_what_helps() {
+fn too_few_samples_give_an_unknown_risk_with_help() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
     let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let flight = fly(&mut monitor, 1.0, &[(30.0, 0.5, true)]);
@@ -307,7 +307,7 @@ fn too_few_samples_are_unknown_and_say_what_helps() {
 }
 
 #[test]
-fn after_a_lost_link_or_a_restart_nothing_old_is_carried_on() {
+fn a_lost_link_or_a_restart_discards_old_samples() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
     for jump_s in [60.0, -15.0] {
         let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
@@ -428,7 +428,7 @@ fn an_unknown_motor_makes_the_risk_unknown_and_rounding_does_not() {
 }
 
 #[test]
-fn a_profile_that_reads_no_motor_needs_none() {
+fn a_profile_that_reads_no_motor_requires_no_motor() {
     let mut profile = profile();
     profile.inputs[0].source.signal = Signal::named("battery_v");
     let estimator = Estimator::new(&profile, &rules(false)).unwrap();
@@ -455,7 +455,7 @@ fn a_profile_that_reads_no_motor_needs_none() {
         assert!(last.risk.is_ok() && last.level.is_some(), "{last:?}");
         assert!(monitor.margin().is_none() && monitor.spread().is_none());
     }
-    // A parked vehicle has no risk.
+    // A vehicle on the ground has no risk.
     let craft = Craft::new(0).with_signals(&["battery_v"]);
     let mut monitor = Monitor::new(&estimator, craft).unwrap();
     let update = monitor.push(&Sample {
@@ -481,7 +481,7 @@ fn a_profile_that_reads_no_motor_needs_none() {
 }
 
 #[test]
-fn what_a_flight_lacks_is_told_when_the_monitor_is_made() {
+fn missing_signals_are_reported_when_the_monitor_is_created() {
     let mut profile = profile();
     profile.inputs[0].source.signal = Signal::named("battery_v");
     let estimator = Estimator::new(&profile, &rules(false)).unwrap();
@@ -506,7 +506,7 @@ fn what_a_flight_lacks_is_told_when_the_monitor_is_made() {
 }
 
 #[test]
-fn a_motor_that_a_craft_does_not_have_is_told_when_the_monitor_is_made() {
+fn a_motor_that_the_vehicle_lacks_is_reported_when_the_monitor_is_created() {
     let mut profile = profile();
     profile.inputs[0].source.motors = Motors::One(4);
     let estimator = Estimator::new(&profile, &rules(false)).unwrap();
@@ -527,7 +527,7 @@ fn a_motor_that_a_craft_does_not_have_is_told_when_the_monitor_is_made() {
 }
 
 #[test]
-fn a_missing_signal_has_its_value_until_it_comes_and_never_after() {
+fn a_missing_signal_has_its_default_until_it_first_arrives() {
     let mut profile = profile();
     profile.inputs[0].source.signal = Signal::named("battery_v");
     profile.inputs[0].source.statistic = Statistic::Last;

@@ -22,7 +22,7 @@ pub const SCHEMA: &str = include_str!("../../rules/profile-schema.json");
 
 /// All settings for the assessment of a flight, except the rules.
 ///
-/// # Example: a third input, without a line of code
+/// # Example: an additional input without a change of code
 ///
 /// ```
 /// use flagred::profile::Profile;
@@ -61,7 +61,7 @@ pub struct Profile {
     pub output: String,
     /// The conditions under which an input counts as known.
     pub sampling: Sampling,
-    /// The filling where no rule applies.
+    /// How gaps of the rules are filled.
     pub gap: GapSettings,
     /// The parameters of the elevated risk.
     pub elevated_risk: AccumulatorSettings,

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wanted_is_what_is_read_and_the_rest_stays() {
+    fn a_rewritten_profile_has_the_new_settings_and_keeps_the_rest() {
         let mut texts: Vec<String> = PROFILES.iter().map(|p| p.text.into()).collect();
         for written in [
             "",
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_profile_may_have_is_refused() {
+    fn invalid_settings_are_refused() {
         let text = PROFILES[0].text;
         let mut wanted = verdict(text);
         wanted.warn.raise.risk_pct = Some(10.0);

@@ -354,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spike_shorter_than_the_minimum_raises_nothing() {
+    fn a_spike_shorter_than_the_minimum_raises_no_level() {
         let (changes, findings, flown) = run(&[
             (1.0, 0.0, 0.0),
             (0.4, 0.0, 60.0),
@@ -367,11 +367,11 @@ mod tests {
     }
 
     #[test]
-    fn one_time_of_trouble_is_one_finding_of_its_worst_level() {
+    fn one_episode_is_one_finding_of_its_worst_level() {
         let (changes, findings, _) = run(&[
             (1.0, 0.0, 0.0),
             (2.0, 0.0, 60.0),
-            // Held, then not held for less than clear_after_s.
+            // The level is held, then not held for less than `clear_after_s`.
             (5.0, 0.0, 45.0),
             (1.0, 0.0, 0.0),
             (1.0, 0.0, 90.0),
@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn either_quantity_is_enough() {
+    fn either_quantity_raises_a_level() {
         let (changes, _, mut flown) = run(&[(2.0, 99.0, 0.0)]);
         assert_eq!(changes, [(0.5, Level::Fail)]);
         let finding = flown.end(2.0, false).ended.unwrap();
@@ -429,8 +429,8 @@ mod tests {
     }
 
     #[test]
-    fn a_landing_takes_back_a_warn_that_was_raised_just_before_it() {
-        // Raised at 0.5 s, can be withdrawn for 2 s.
+    fn a_landing_cancels_a_warn_raised_just_before_it() {
+        // The WARN is raised at 0.5 s and can be withdrawn for 2 s.
         let (_, _, mut flown) = run(&[(1.0, 0.0, 60.0)]);
         let mut later = flown.clone();
         assert_eq!(flown.end(2.4, true).ended, None);
@@ -450,7 +450,7 @@ mod tests {
 
     /// Motor 2 at its upper limit raises the level; afterwards motor 1 is at its lower limit for a long time.
     #[test]
-    fn the_motor_is_judged_where_the_level_is_raised_and_not_over_the_wreck() {
+    fn the_motor_is_determined_when_the_level_is_raised() {
         let mut flown = Flown::new([0.4, 0.95]);
         for i in 0..300 {
             if i == 60 {

@@ -115,7 +115,7 @@ impl Balance {
     }
 }
 
-/// Whether the motors differ no more than in the last seconds. In a fall they do.
+/// Whether the motors differ no more than in the last seconds. In a fall they differ more.
 pub(super) fn is_together(motors: &[Motor]) -> bool {
     let count = motors.len() as f64;
     let mean = motors.iter().map(|m| m.command).sum::<f64>() / count;

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_has_none_and_a_single_value_no_answer() {
+    fn a_constant_has_no_slope_and_a_single_value_an_unknown_one() {
         assert_eq!(window(2.0, 50.0, 60.0, |_| 0.3).rate(), Some(0.0));
         assert_eq!(window(2.0, 50.0, 0.02, |_| 0.3).rate(), None);
         assert_eq!(Window::new(2.0).rate(), None);
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn percentiles_of_equal_weights_are_those_one_expects() {
+    fn percentiles_of_equal_weights_are_the_plain_ones() {
         for (values, percent, expected) in [
             (&[3.0][..], 50.0, 3.0),
             (&[5.0, 1.0, 3.0], 50.0, 3.0),
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_counts_from_1970_takes_no_digits_away() {
+    fn a_clock_that_counts_from_1970_loses_no_precision() {
         let mut window = Window::new(2.0);
         for i in 1..=100 {
             let t_s = 1_760_000_000.0 + f64::from(i) * 0.04;

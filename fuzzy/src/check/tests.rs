@@ -31,7 +31,7 @@ fn paper() -> &'static str {
 /// Exercises several of the hottest loops: equal terms in long lists, trends of many outputs, and evaluations with
 /// curved terms.
 #[test]
-fn large_rule_sets_are_examined_in_bounded_time() {
+fn large_rule_sets_are_checked_in_bounded_time() {
     let terms = |count: usize, shape: &dyn Fn(usize) -> String| {
         let terms: Vec<String> = (0..count).map(|i| format!("a{i}: {}", shape(i))).collect();
         format!("terms: {{{}}}", terms.join(", "))
@@ -120,7 +120,7 @@ rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
 }
 
 #[test]
-fn the_papers_rules_are_seen_through() {
+fn findings_of_the_papers_rules() {
     let (report, findings) = report_of(paper(), &Options::default());
     let boxes: Vec<&Uncovered> = report.uncovered.iter().filter(|one| !one.silent).collect();
     assert_eq!(boxes.len(), 1);
@@ -170,7 +170,7 @@ fn the_papers_rules_are_seen_through() {
 }
 
 #[test]
-fn what_the_author_says_is_held_against_the_engine() {
+fn claims_of_the_author_are_verified_against_the_engine() {
     let options = Options {
         monotone: Vec::from([
             Monotone::new("spread", Direction::Increasing),
@@ -268,7 +268,7 @@ fn uncovered_boxes_agree_with_the_engine() {
 }
 
 #[test]
-fn rules_are_held_against_each_other() {
+fn rules_are_compared_with_each_other() {
     let report = with_rules(&[
         "IF x IS low AND y IS low THEN z IS low",
         "IF y IS low AND x IS low THEN z IS high",
@@ -290,7 +290,7 @@ fn rules_are_held_against_each_other() {
 }
 
 #[test]
-fn rules_that_cannot_fire_and_terms_that_none_reaches_are_found() {
+fn rules_that_cannot_fire_and_unreachable_terms_are_found() {
     let report = with_rules(&[
         "IF x IS low AND x IS high THEN z IS low",
         "IF NOT x IS any THEN z IS medium",
@@ -332,7 +332,7 @@ fn holes_and_single_values_without_a_term_are_found() {
 }
 
 #[test]
-fn jumps_are_found_where_they_are() {
+fn jumps_are_found_at_their_positions() {
     let text = format!(
         "fuzzy: 1\nname: a\ninputs: {{x: {{range: [0, 1], terms: {{a: {{rectangle: [0, 0.3]}}, \
          b: {{rectangle: [0.3, 1]}}}}}}}}\n{OUTPUTS}\n\
@@ -415,7 +415,7 @@ fn an_output_that_is_read_counts_as_an_input_over_its_range() {
 
 /// Rules of a chain keep their numbers.
 #[test]
-fn rules_of_a_later_stage_are_told_by_their_numbers() {
+fn rules_of_a_later_stage_are_reported_by_their_numbers() {
     let text = format!(
         "fuzzy: 1\nname: a\n{INPUTS}
 outputs: {{mid: {{range: [0, 1], partition: [low, medium, high]}}, z: {{range: [0, 1], partition: [low, medium, high]}}}}
@@ -478,7 +478,7 @@ fn a_sugeno_output_beyond_its_range_is_found() {
 }
 
 #[test]
-fn a_gap_is_told_once() {
+fn a_gap_is_reported_once() {
     // No term covers 3 to 5. The rules and the coverage there are not reported again.
     let said = findings_of(
         "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 8], terms: {low: {left_shoulder: [1, 3]}, \
@@ -499,7 +499,7 @@ fn a_gap_is_told_once() {
 }
 
 #[test]
-fn a_single_value_without_a_term_is_told_in_few_digits() {
+fn a_single_value_without_a_term_is_reported_in_few_digits() {
     let said = findings_of(
         "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 4], terms: {low: {triangle: [0, 2, 4]}}}}\n\
          outputs: {z: {range: [0, 1], defuzzifier: weighted_average, terms: {a: {constant: 0}}}}\n\
@@ -548,7 +548,7 @@ fn an_outer_term_that_is_never_reached_is_a_warning_with_both_remedies() {
 }
 
 #[test]
-fn an_outer_term_is_never_reached_for_what_it_is() {
+fn each_cause_of_an_unreached_outer_term_has_its_own_message() {
     let outputs = [
         // Only one end.
         "{range: [0, 40], partition: {off: 0, short: 10, medium: 20, long: 24}}",
@@ -594,7 +594,7 @@ allow: [{finding: jump, because: limits of the regulation}, {finding: hole, beca
 }
 
 #[test]
-fn steps_leave_no_hole_and_no_region_without_a_rule() {
+fn steps_have_no_hole_and_no_region_without_a_rule() {
     let text = "fuzzy: 1
 name: credit
 inputs: {dti: {range: [0, 100], steps: {fine: 36, stretched: 43, over: 100, all: }}}

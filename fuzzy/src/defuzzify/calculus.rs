@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn implications_as_by_differences() {
+    fn derivatives_of_implications_equal_differences() {
         for implication in Conjunction::ALL {
             for h in DEGREES {
                 for m in DEGREES.map(|m| m + 0.001) {
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn aggregations_as_by_differences() {
+    fn derivatives_of_aggregations_equal_differences() {
         for aggregation in Aggregation::ALL {
             for x in DEGREES {
                 for y in DEGREES.map(|y| y + 0.001) {

@@ -221,7 +221,7 @@ mod tests {
     proptest! {
         /// The formulas and the integration of pieces give the same number.
         #[test]
-        fn formulas_equal_pieces(
+        fn formulas_equal_the_integration_of_pieces(
             which in 0..3usize,
             scales in any::<bool>(),
             strengths in prop::collection::vec(

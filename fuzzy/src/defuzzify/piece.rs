@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_integrates_like_its_curve() {
+    fn a_line_has_the_integral_of_its_curve() {
         let f = |t: f64| 0.3 + 0.3 * t;
         let line = Piece {
             curve: None,
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn smooth_curves_kinks_and_steps() {
+    fn smooth_curves_kinks_and_steps_are_integrated() {
         let area = |f: &dyn Fn(f64) -> f64| {
             let mut integrals = Integrals::about(0.5, 1.0);
             integrals.add(&curve(0.0, 1.0, f));
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_comes_to_an_end() {
+    fn integration_of_noise_terminates() {
         // A function that never agrees with its halves, however often it is halved.
         let noise = |t: f64| ((t * 1e15) as u64 % 1000) as f64 / 1000.0;
         let counter = core::cell::Cell::new(0usize);

@@ -215,7 +215,7 @@ fn a_nilpotent_minimum_cuts_out_a_plateau() {
 }
 
 #[test]
-fn a_strength_of_the_highest_degree_but_for_rounding_cuts_nothing_off() {
+fn a_strength_equal_to_the_highest_degree_up_to_rounding_cuts_nothing_off() {
     let bell = MembershipFunction::Bell {
         center: 50.0,
         width: 20.0,
@@ -274,7 +274,7 @@ fn a_drastic_aggregation_is_1_where_two_terms_are_over_the_least_strength() {
 
 /// The same set in different units of length.
 #[test]
-fn wide_and_narrow_ranges() {
+fn wide_and_narrow_ranges_keep_their_precision() {
     let triangle = |unit: f64| MembershipFunction::Triangle {
         left: 0.0,
         peak: 25.0 * unit,

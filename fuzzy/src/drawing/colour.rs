@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_and_beyond() {
+    fn colours_are_clamped_beyond_the_ends() {
         assert_eq!(viridis(-1.0), VIRIDIS[0]);
         assert_eq!(viridis(2.0).to_string(), "#fde725");
         assert_eq!(

@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_of_a_log_can_be_markup() {
+    fn text_of_a_log_cannot_be_markup() {
         let text = Escaped("<script>alert(\"1\")</script> & 'x'\0\u{7}").to_string();
         assert_eq!(
             text,
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_act_is_seen() {
+    fn control_characters_are_made_visible() {
         for (text, shown) in [
             ("", ""),
             ("Größe 5 µs, 飛行", "Größe 5 µs, 飛行"),
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_fit_their_room() {
+    fn texts_are_shortened_to_fit() {
         assert_eq!(wrapped("at a = 1, b = 2", 9), ["at a = 1,", "b = 2"]);
         assert_eq!(wrapped("abcdefgh", 4), ["abc…"]);
         assert_eq!((bar(0.25, 4), bar(7.0, 2)), ("█···".into(), "██".into()));

@@ -233,7 +233,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_term_has_its_line_and_its_name() {
+    fn every_term_is_drawn_with_its_name() {
         let model: Model = "
 fuzzy: 1
 name: fan
@@ -253,7 +253,7 @@ rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]
     }
 
     #[test]
-    fn what_moved_stands_beside_what_it_was() {
+    fn moved_terms_are_drawn_beside_the_old_ones() {
         let model = |low: f64, slow: f64| -> Model {
             format!(
                 "

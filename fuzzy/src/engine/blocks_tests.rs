@@ -37,7 +37,7 @@ rules:
 }
 
 #[test]
-fn activation_methods_by_hand() {
+fn activation_methods_have_values_computed_by_hand() {
     for (activation, sum) in [
         ("general", 0.25 + 1.5 + 1.5 + 3.0),
         ("{first: 1}", 0.25),
@@ -74,7 +74,7 @@ blocks:
 ";
 
 #[test]
-fn blocks_have_operators_of_their_own() {
+fn blocks_have_their_own_operators() {
     let engine = engine(BLOCKS);
     let outcomes = engine.evaluate(&[0.25, 0.5]).unwrap();
     // The strengths are 0.75 0.5 and 0.25 0.5. The areas scale with them; the shoulders have an area of 4.5 and
@@ -98,7 +98,7 @@ fn blocks_have_operators_of_their_own() {
 }
 
 #[test]
-fn rules_without_methods_stay_in_tables() {
+fn rules_without_methods_use_tables() {
     let mut plain = model(BLOCKS);
     plain.blocks.truncate(1);
     plain.rules.retain(|rule| rule.block == 0);
@@ -138,7 +138,7 @@ rules: [IF x IS a OR x IS not a THEN y IS low]
 }
 
 #[test]
-fn a_strength_below_the_least_does_not_fire() {
+fn a_strength_below_the_minimum_does_not_fire() {
     let text = |least: f64| {
         format!(
             "inputs: {{x: {{range: [0, 1], terms: {{up: {{right_shoulder: [0, 1]}}}}}}}}

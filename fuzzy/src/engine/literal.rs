@@ -238,7 +238,7 @@ mod tests {
     proptest! {
         /// The table is bitwise equal to the membership functions.
         #[test]
-        fn table_is_membership(x in prop_oneof![
+        fn the_table_equals_the_membership_function(x in prop_oneof![
             0.0..=1.0,
             prop::sample::select(vec![0.0, 0.1, 0.2, 0.25, 0.3, 0.5, 0.6, 0.7, 0.9, 1.0]),
         ], ulps in -1..=1) {

@@ -89,7 +89,7 @@ fn where_no_rule_fires() {
 }
 
 #[test]
-fn no_answer_is_left_from_an_earlier_call() {
+fn no_value_remains_from_an_earlier_call() {
     let engine = Engine::new(&gap(NoRuleFires::Undefined)).unwrap();
     let mut scratch = engine.scratch();
     let mut outcome = [Outcome::default()];
@@ -109,7 +109,7 @@ fn no_answer_is_left_from_an_earlier_call() {
 }
 
 #[test]
-fn inputs_out_of_range_and_out_of_the_numbers() {
+fn inputs_out_of_range_and_not_finite() {
     let engine = Engine::new(&gap(NoRuleFires::Undefined)).unwrap();
     let (inside, outside) = (one(&engine, 10.0), one(&engine, 1e300));
     assert!(!inside.clamped && outside.clamped);
@@ -121,7 +121,7 @@ fn inputs_out_of_range_and_out_of_the_numbers() {
 }
 
 #[test]
-fn wrong_numbers_of_places() {
+fn wrong_numbers_of_inputs_are_refused() {
     let engine = Engine::new(&gap(NoRuleFires::Undefined)).unwrap();
     assert_eq!(
         engine.evaluate(&[1.0, 2.0]).unwrap_err().to_string(),
@@ -137,7 +137,7 @@ fn wrong_numbers_of_places() {
 }
 
 #[test]
-fn every_problem_of_a_model_at_once() {
+fn all_problems_of_a_model_are_reported_at_once() {
     let mut model = gap(NoRuleFires::Value(101.0));
     model.inputs.push(Variable::new("x", 1.0, 1.0));
     model.inputs[0].terms[0].membership_function = MembershipFunction::Gaussian {

@@ -512,7 +512,7 @@ mod tests {
 
     /// `UPDATE_SCHEMA=1 cargo test -p flagred-fuzzy schema` updates the file.
     #[test]
-    fn the_file_is_what_the_types_say() {
+    fn the_schema_file_agrees_with_the_types() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/schema.json");
         let made = serde_json::to_string_pretty(&schema()).unwrap() + "\n";
         if std::env::var_os("UPDATE_SCHEMA").is_some() {

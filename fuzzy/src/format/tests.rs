@@ -246,7 +246,7 @@ proptest! {
 
     /// Each error is reported when compiling and when reading; reading also reports its position in the text.
     #[test]
-    fn every_mistake_is_found_with_its_position(model in valid_model(), (code, make) in select(&MISTAKES[..])) {
+    fn every_mistake_is_reported_with_its_position(model in valid_model(), (code, make) in select(&MISTAKES[..])) {
         let mut model = model;
         make(&mut model);
         let compiled = Engine::new(&model).unwrap_err();
@@ -261,7 +261,7 @@ proptest! {
     /// Every model that compiles yields an outcome: a value in the output's range, or the information that no rule
     /// fires, but never an arbitrary number.
     #[test]
-    fn a_model_that_compiles_answers_every_finite_input(
+    fn a_model_that_compiles_evaluates_every_finite_input(
         model in valid_model(),
         points in vec(vec(any_finite(), 3), 8),
     ) {
@@ -296,7 +296,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
     /// The YAML organisation's crate reads the same model from our text, and we read the same model from its text.
     #[test]
-    fn generated_rule_sets_mean_the_same_to_another_reader(model in valid_model()) {
+    fn generated_rule_sets_mean_the_same_to_another_yaml_reader(model in valid_model()) {
         let ours = crate::yaml::to_string(&model);
         let read = serde_yaml::from_str::<Model>(&ours);
         prop_assert_eq!(read.as_ref().ok(), Some(&model), "{}\n{:?}", ours, read);
@@ -316,7 +316,7 @@ proptest! {
 }
 
 #[test]
-fn another_programs_word_is_answered_with_one_of_this_format() {
+fn words_of_other_programs_are_answered_with_ours() {
     fn words<T>(table: &[(&'static str, T)]) -> Vec<&'static str> {
         table.iter().map(|(word, _)| *word).collect()
     }

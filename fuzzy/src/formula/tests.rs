@@ -101,7 +101,7 @@ fn functions_are_those_of_the_standard_library() {
 }
 
 #[test]
-fn without_a_value_it_is_no_finite_number() {
+fn a_formula_without_a_value_is_not_finite() {
     for text in [
         "1 / 0",
         "sqrt(-1)",
@@ -124,7 +124,7 @@ fn mistake(text: &str) -> String {
 }
 
 #[test]
-fn mistakes_are_told_with_their_place() {
+fn mistakes_are_reported_with_their_position() {
     let texts = [
         "",
         "2 +",

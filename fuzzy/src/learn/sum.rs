@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sums_are_those_of_numbers_wherever_they_lie() {
+    fn sums_are_exact_at_any_exponent() {
         for scale in [1e-50, 1e-30, 1e-9, 1.0, 7.3, 1e20, 1e50] {
             let mut sum = Sum::default();
             for part in [0.5, 1e-3, 3.0, 0.25] {
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_above_0_adds_nothing() {
+    fn values_that_are_not_positive_add_nothing() {
         let mut sum = Sum::default();
         for x in [
             0.0,

@@ -113,7 +113,7 @@ fn the_papers_rules_are_recovered_from_their_own_map() {
 }
 
 #[test]
-fn disagreement_is_resolved_as_asked_and_the_beaten_are_kept() {
+fn conflicts_are_resolved_as_configured_and_rejected_candidates_are_kept() {
     // One strong vote for very_low, and three weaker ones for medium.
     let rows = [
         [0.3, 0.2, 0.0],
@@ -150,7 +150,7 @@ fn disagreement_is_resolved_as_asked_and_the_beaten_are_kept() {
 }
 
 #[test]
-fn few_and_unsure_samples_make_no_rule_where_that_is_asked() {
+fn too_few_or_uncertain_samples_give_no_rule_with_thresholds() {
     let rows = [[0.3, 0.2, 0.0], [0.3, 0.2, 0.0], [0.0, 0.2, 90.0]];
     let with = |min_support, min_degree| {
         let settings = Settings {
@@ -265,7 +265,7 @@ rules: []
 }
 
 #[test]
-fn rules_that_the_model_has_are_kept() {
+fn rules_of_the_model_are_kept() {
     let mut model = variables();
     model.rules.push(crate::model::Rule::from(
         crate::rule::parse("IF margin IS very_low THEN risk IS very_high").unwrap(),
@@ -433,7 +433,7 @@ fn rules_are_not_learned_for_functions_of_inputs() {
 }
 
 #[test]
-fn the_mean_chooses_the_nearest_singleton_wherever_it_lies() {
+fn the_mean_selects_the_nearest_singleton_at_any_position() {
     let text = "{fuzzy: 1, name: t, inputs: {x: {range: [0, 1], partition: [a, b]}}, outputs: {y: {range: [0, 1], terms: {low: {singleton: 0}, odd: {singleton: 0.12345}, high: {singleton: 0.98765}}}}, rules: []}";
     let model = crate::yaml::parse(text).unwrap().model;
     let settings = Settings {
@@ -467,7 +467,7 @@ fn fan(terms: &str, defuzzifier: &str) -> Model {
 }
 
 #[test]
-fn numbers_are_learned_whatever_they_are_written_as() {
+fn numbers_are_learned_in_every_notation() {
     let numbers = [
         (
             "slow: {constant: 0}, medium: {constant: 50}, fast: {constant: 100}",

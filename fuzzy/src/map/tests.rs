@@ -15,7 +15,7 @@ fn map(points: usize) -> DecisionMap {
 }
 
 #[test]
-fn the_published_map_before_filling() {
+fn the_unfilled_map_is_the_published_one() {
     let map = map(51);
     for (spread, row) in [
         (0.05, [90.3, 67.1, 63.4, 50.0, 34.5, 22.0, 22.0, 9.7, 9.7]),
@@ -53,7 +53,7 @@ fn the_gap_is_the_corner_that_the_paper_marks() {
 }
 
 #[test]
-fn cells_points_and_slices() {
+fn cells_points_and_slices_agree() {
     let engine = Engine::new(&published()).unwrap();
     let grid = Grid::new(&engine, 3).unwrap().points("spread", 5).unwrap();
     assert_eq!(grid.cells(), 15);
@@ -98,7 +98,7 @@ fn a_map_of_too_many_cells_is_refused_with_their_number() {
 }
 
 #[test]
-fn between_cells_and_beyond_them() {
+fn values_between_cells_and_beyond_them() {
     let engine = Engine::new(&published()).unwrap();
     let grid = Grid::new(&engine, 3).unwrap();
     // x + 10 y is linear, so the interpolation must be exact.

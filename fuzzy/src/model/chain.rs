@@ -453,7 +453,7 @@ outputs:
     }
 
     #[test]
-    fn every_circle_is_found_once() {
+    fn every_cycle_is_found_once() {
         assert_eq!(order(&reads(&[&[0]])), Err(vec![vec![0]]));
         // Output 0 reads a cycle but is not on one; 3 and 4 are a second cycle.
         let two = reads(&[&[1], &[2], &[1], &[4], &[3]]);

@@ -38,7 +38,7 @@ fn not_binds_tighter_than_and_and_tighter_than_or() {
 }
 
 #[test]
-fn words_are_read_in_any_case_and_names_as_they_stand() {
+fn keywords_are_case_insensitive_and_names_are_not() {
     let rule = parse("if Margin Is Very NOT low # why\n tHeN risk is HIGH and note is x with 0.25")
         .unwrap();
     assert_eq!(
@@ -55,7 +55,7 @@ fn words_are_read_in_any_case_and_names_as_they_stand() {
 }
 
 #[test]
-fn names_in_quotes_may_hold_anything() {
+fn names_in_quotes_may_contain_anything() {
     for (written, name) in [
         ("\"wind speed\"", "wind speed"),
         ("'wind speed'", "wind speed"),
@@ -72,7 +72,7 @@ fn names_in_quotes_may_hold_anything() {
 }
 
 #[test]
-fn any_needs_no_term() {
+fn any_requires_no_term() {
     let bare = |hedges: &[Hedge]| {
         Condition::Is(Proposition {
             variable: "x".into(),
@@ -89,7 +89,7 @@ fn any_needs_no_term() {
 }
 
 #[test]
-fn every_mistake_says_where_and_what_to_do() {
+fn every_mistake_has_a_position_and_help() {
     for (text, marked, message, help) in [
         (
             "",
@@ -284,7 +284,7 @@ fn every_mistake_says_where_and_what_to_do() {
 }
 
 #[test]
-fn deep_nesting_is_an_error_and_no_crash() {
+fn deep_nesting_is_an_error() {
     for open in ["(", "NOT ", "NOT ("] {
         let found = parse(&alloc::format!("IF {}", open.repeat(1 << 20))).unwrap_err();
         assert_eq!(found.code, "rule-too-deep");

@@ -187,7 +187,7 @@ mod tests {
 
     /// Compares the slopes to differences at values that are not kinks.
     #[test]
-    fn slopes_are_those_of_differences() {
+    fn slopes_equal_differences() {
         let shapes = [
             "{triangle: [0.1, 3.1, 7.1]}",
             "{trapezoid: [0.1, 2.1, 5.1, 9.1]}",
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn at_the_middle_of_a_bell_it_is_level() {
+    fn the_slope_at_the_middle_of_a_bell_is_0() {
         for slope in [0.3, 1.0, 2.5] {
             let bell = MembershipFunction::Bell {
                 center: 0.0,

@@ -489,7 +489,7 @@ fn cosine_spike_concave() {
 }
 
 #[test]
-fn parameters_that_make_no_shape_still_give_no_nan() {
+fn invalid_parameters_do_not_give_nan() {
     for shape in [
         MembershipFunction::Gaussian { mean: NAN, sd: 0.0 },
         MembershipFunction::Bell {
@@ -512,7 +512,7 @@ fn parameters_that_make_no_shape_still_give_no_nan() {
 }
 
 #[test]
-fn says_which_parameter() {
+fn messages_name_the_parameter() {
     let message = |shape: MembershipFunction| shape.validate().unwrap_err().to_string();
     assert_eq!(
         message(MembershipFunction::Gaussian { mean: 1.0, sd: 0.0 }),

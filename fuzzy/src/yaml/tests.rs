@@ -13,7 +13,7 @@ fn scalar_of(node: &Node) -> &Scalar {
 
 /// All styles of writing a rule, with the expected positions of its words.
 #[test]
-fn places_in_a_scalar_are_found_in_every_style() {
+fn positions_in_a_scalar_are_found_in_every_style() {
     for text in [
         "a: IF margin IS low THEN risk IS high",
         "a: IF margin IS low\n   THEN risk\n\n   IS high # why",
@@ -48,7 +48,7 @@ fn places_in_a_scalar_are_found_in_every_style() {
 }
 
 #[test]
-fn what_is_no_document_is_one_finding_with_its_place() {
+fn a_text_that_is_not_a_document_is_one_finding_with_its_position() {
     for (text, position, code) in [
         ("", "1:1", "empty-file"),
         ("# nothing\n", "1:1", "empty-file"),
@@ -73,7 +73,7 @@ fn what_is_no_document_is_one_finding_with_its_place() {
 }
 
 #[test]
-fn small_files_cannot_ask_for_much_memory() {
+fn small_files_cannot_require_much_memory() {
     let mut bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n".to_string();
     for i in 1..20 {
         let last = format!("*a{}, ", i - 1).repeat(9);
@@ -101,7 +101,7 @@ fn small_files_cannot_ask_for_much_memory() {
 }
 
 #[test]
-fn aliases_stand_for_what_they_name() {
+fn aliases_have_the_value_of_their_anchor() {
     let tree = read("a: &x [1, {b: 2}]\nc: *x\n").unwrap();
     let Value::Mapping(entries) = &tree.value else {
         panic!("{tree:?}")

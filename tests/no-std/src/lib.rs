@@ -1,7 +1,7 @@
-//! A rule set in firmware: model, engine and evaluation with `core` and `alloc` alone.
+//! A rule set in firmware: model, engine and evaluation with `core` and `alloc` only.
 //!
-//! `scripts/test-no-std` builds this for a processor that has no standard library. In a build of the whole
-//! workspace cargo turns on the features that other members want, so such a build proves nothing.
+//! `scripts/test-no-std` builds this for a processor without a standard library. In a build of the whole workspace, cargo enables
+//! the features that other members require, so such a build proves nothing.
 #![no_std]
 
 use fuzzy::diagnostic::Findings;
@@ -10,10 +10,10 @@ use fuzzy::model::{MembershipFunction, Model, Output, Variable};
 use fuzzy::rule::{Condition, Rule};
 use fuzzy::{Engine, map::DecisionMap, map::Grid};
 
-/// How risky a margin in [0, 0.5] is, in %: curved and straight terms, two rules.
+/// The risk of a margin in [0, 0.5], in %: curved and straight terms, two rules.
 ///
 /// # Errors
-/// Never: the model is whole.
+/// Never: the model is complete.
 pub fn engine() -> Result<Engine, Findings> {
     Engine::new(
         &Model::builder("margin")
@@ -51,7 +51,7 @@ pub fn engine() -> Result<Engine, Findings> {
     )
 }
 
-/// One evaluation in the caller's scratch: what a control loop calls.
+/// One evaluation in the caller's scratch memory, as in a control loop.
 ///
 /// # Errors
 /// Never: the model has one input and one output.
@@ -62,7 +62,7 @@ pub fn risk(engine: &Engine, scratch: &mut Scratch, margin: f64) -> Result<Outco
     Ok(outcome)
 }
 
-/// The risk over the whole range, to be kept in place of the engine.
+/// The risk over the whole range, as a replacement for the engine.
 pub fn map(engine: &Engine) -> Option<DecisionMap> {
     let grid = Grid::new(engine, 51).ok()?;
     DecisionMap::new(engine, grid, 0).ok()
@@ -71,7 +71,7 @@ pub fn map(engine: &Engine) -> Option<DecisionMap> {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn it_runs() {
+    fn rules_run_without_the_standard_library() {
         let engine = super::engine().unwrap();
         let mut scratch = engine.scratch();
         let map = super::map(&engine).unwrap();

@@ -1,4 +1,4 @@
-// As much of PX4 as the example uses: topics hold their latest message, a callback runs where the test runs it.
+// The parts of PX4 that the example uses: topics keep their latest message, and the test runs callbacks.
 #pragma once
 
 #include <cstdarg>

@@ -1,4 +1,4 @@
-//! Flight logs: what is read, and what is written of it.
+//! Flight logs: reading them and writing their contents.
 
 use flagred_cli::fuzzing::{converted, documents};
 use flagred_flightlog::{Flight, Options, ReadError};
@@ -13,21 +13,21 @@ fn read(bytes: &[u8]) -> Option<Flight> {
     }
 }
 
-/// Any bytes are a flight or an error. The content tells the format.
+/// Any bytes are a flight or an error. The format is detected from the content.
 pub fn flight_log(bytes: &[u8]) {
     if let Some(flight) = read(bytes) {
         check(&flight, bytes);
     }
 }
 
-/// What must be true of every flight, however damaged its log.
+/// Invariants of every flight, however damaged its log is.
 pub fn check(flight: &Flight, log: &[u8]) {
     let report = &flight.report;
     assert!(report.skipped_bytes <= report.bytes);
     assert!(report.is_clean() || report.reason.is_some(), "{report:?}");
     assert!(flight.commands.t_s().is_sorted());
     assert!(flight.commands.t_s().iter().all(|t_s| t_s.is_finite()));
-    // Every value takes a byte of the log at least: nothing is made up of nothing.
+    // Every value occupies at least one byte of the log.
     let values: usize = flight.series.iter().map(|series| series.t_s().len()).sum();
     let bytes = log.len().max(report.bytes as usize);
     assert!(flight.commands.len() + values <= 40 * bytes);
@@ -57,7 +57,7 @@ pub fn check(flight: &Flight, log: &[u8]) {
     is_read_back(flight);
 }
 
-/// What is written of any flight as CSV is read back to the same samples, and written as the same lines.
+/// Any flight written as CSV is read back with the same samples, and written again as the same lines.
 pub fn csv(bytes: &[u8]) {
     if let Some(flight) = read(bytes) {
         is_read_back(&flight);
@@ -79,7 +79,7 @@ fn is_read_back(flight: &Flight) {
             known.map(|known| known.map(f64::to_bits)).collect()
         };
         assert_eq!(bits(&again, same), bits(flight, row), "at {t_s} s");
-        // Where the state changes within a second, the two may take it for chatter at different rows.
+        // Where the state changes within a second, the two may ignore the change at different rows.
         let in_air = again.is_in_air(t_s);
         let mut near = flight
             .commands
@@ -97,11 +97,11 @@ fn is_read_back(flight: &Flight) {
     assert_same_lines(&twice, &converted(&again).unwrap(), false);
 }
 
-/// Two tables are the same, but for the times in the air where `flicker` tells that one may have lost a landing that is
-/// about a second long: its ends have moved to those of rows.
+/// Asserts that two tables are the same. With `flicker`, times in the air may differ: a landing of about a second may be lost,
+/// because its ends have moved to the times of rows.
 fn assert_same_lines(one: &[u8], other: &[u8], flicker: bool) {
     let text = |bytes| std::str::from_utf8(bytes).unwrap();
-    // A motor of a CSV is from its column.
+    // The motors of a CSV are identified by their columns.
     let lines = |bytes| str::lines(text(bytes)).filter(|line| !line.starts_with("# motor"));
     let head = lines(one)
         .find(|line| line.starts_with("t_s,"))
@@ -119,7 +119,7 @@ fn assert_same_lines(one: &[u8], other: &[u8], flicker: bool) {
     assert_eq!(lines(other).count(), lines(one).count());
 }
 
-/// What is said of any flight: words that act on no terminal, documents that are JSON, pages that are markup.
+/// The outputs for any flight: text that is safe on a terminal, documents that are JSON, pages that are markup.
 pub fn report(bytes: &[u8]) {
     let Some(flight) = read(bytes) else {
         return;

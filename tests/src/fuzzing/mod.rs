@@ -1,5 +1,5 @@
 //! The bodies of the fuzz targets in `tests/fuzz`, one function each, with small seeds. `tests/tests/mutations.rs` runs them
-//! on mutated seeds. What does not hold is a panic.
+//! on mutated seeds. They panic if an invariant is violated.
 #![expect(
     clippy::unwrap_used,
     clippy::panic,
@@ -25,15 +25,15 @@ use flagred_cli::fuzzing::Profile;
 pub struct Target {
     /// Its name.
     pub name: &'static str,
-    /// Takes any bytes.
+    /// The function, which accepts any bytes.
     pub body: fn(&[u8]),
-    /// Inputs that reach far.
+    /// Seeds that cover much of the code.
     pub seeds: fn() -> Vec<Vec<u8>>,
     /// Its share of all mutated inputs, in %.
     pub share: u64,
 }
 
-/// All of them, apart from the plans of C, which `tests/c/damage.c` damages.
+/// All targets except the plans of C, which `tests/c/damage.c` damages.
 pub const TARGETS: [Target; 8] = [
     Target {
         name: "flight_log",
@@ -88,7 +88,7 @@ pub const TARGETS: [Target; 8] = [
 /// The default profile.
 static SHIPPED: LazyLock<Profile> = LazyLock::new(|| Profile::shipped().unwrap());
 
-/// A text acts on no terminal: it has no control characters but line ends and tabs.
+/// Asserts that a text is safe on a terminal: it has no control characters but line ends and tabs.
 fn assert_harmless(text: &str) {
     let found = text.find(|c: char| c.is_control() && !"\n\t".contains(c));
     if let Some(offset) = found {
@@ -99,7 +99,7 @@ fn assert_harmless(text: &str) {
     }
 }
 
-/// A text without the escape sequences that end with one of these letters.
+/// Returns the text without escape sequences that end with one of these letters.
 fn without(ends: &str, text: &str) -> String {
     let mut parts = text.split("\u{1b}[");
     let mut plain = parts.next().unwrap_or_default().to_owned();

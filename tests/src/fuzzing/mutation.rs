@@ -1,8 +1,8 @@
-//! Damaged copies of bytes, the same for the same seed.
+//! Damaged copies of bytes, reproducible by their seed.
 
 use fastrand::Rng;
 
-/// Numbers at which readers of text go wrong.
+/// Numbers that often break readers of text.
 const NUMBERS: [&str; 12] = [
     "0",
     "-1",
@@ -18,7 +18,7 @@ const NUMBERS: [&str; 12] = [
     "0.1",
 ];
 
-/// Small numbers and borders are where lengths and counts go wrong.
+/// A random byte; small numbers and extremes are more frequent, because they often break lengths and counts.
 pub fn byte(random: &mut Rng) -> u8 {
     match random.u8(..4) {
         0 => *random
@@ -28,7 +28,7 @@ pub fn byte(random: &mut Rng) -> u8 {
     }
 }
 
-/// A copy with one to twelve wounds: bytes overwritten, lost, added, repeated, or cut off, lines moved, numbers replaced.
+/// A copy with one to twelve mutations: bytes overwritten, removed, added, repeated or cut off, lines moved, numbers replaced.
 pub fn damaged(bytes: &[u8], random: &mut Rng) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     let wounds = random.usize(1..=12);
@@ -69,7 +69,7 @@ pub fn damaged(bytes: &[u8], random: &mut Rng) -> Vec<u8> {
     bytes
 }
 
-/// The bytes around a place that belong together.
+/// The range of bytes around a position that satisfy `belongs`.
 fn span(bytes: &[u8], at: usize, belongs: impl Fn(&u8) -> bool) -> std::ops::Range<usize> {
     let start = bytes[..at].iter().rposition(|b| !belongs(b));
     let end = bytes[at..].iter().position(|b| !belongs(b));

@@ -1,4 +1,4 @@
-//! Rules, rule sets and profiles: foreign texts.
+//! Rules, rule sets and profiles from untrusted texts.
 
 use flagred::monitor::{Craft, Monitor, Sample};
 use flagred_cli::fuzzing::{Profile, checked};
@@ -8,7 +8,7 @@ use fuzzy::Engine;
 use super::assert_harmless;
 use crate::board::{findings, told};
 
-/// Any text in any format of other programs: it is a model that is written in all of them and read again, or findings inside the
+/// Any text in any format of other programs gives a model that is written in all of them and read again, or findings inside the
 /// text.
 pub fn other_programs(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
@@ -36,10 +36,10 @@ pub fn other_programs(bytes: &[u8]) {
     }
 }
 
-/// What parts a profile from its rule set.
+/// The separator between a profile and its rule set.
 pub(super) const PARTED: &str = "\n---\n";
 
-/// Any text as a rule: it is a rule that prints and reads back as itself, or a mistake inside the text.
+/// Any text gives a rule that prints and reads back as itself, or a mistake inside the text.
 pub fn rule(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
@@ -50,8 +50,8 @@ pub fn rule(bytes: &[u8]) {
     }
 }
 
-/// Any text as a rule set: it is a model that saves, loads as itself, compiles and can be analysed, or findings inside the
-/// text. Findings can be drawn.
+/// Any text gives a rule set that is saved, loaded as itself, compiled and analysed, or findings inside the text. Findings can
+/// be drawn.
 pub fn rule_set(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
@@ -87,7 +87,7 @@ pub fn rule_set(bytes: &[u8]) {
     }
 }
 
-/// Any two texts as a profile and its rule set: findings inside the text, or an estimator whose risks are in their range
+/// Any two texts, as a profile and its rule set, give findings inside the text, or an estimator whose risks are in their range
 /// and whose plan gives the same on board.
 pub fn profile(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {

@@ -1,4 +1,4 @@
-//! Small inputs of the fuzz targets that reach far.
+//! Small seeds of the fuzz targets that cover much of the code.
 
 use std::io::Write;
 
@@ -22,7 +22,7 @@ pub fn logs() -> Vec<Vec<u8>> {
     ]
 }
 
-/// The same, gzipped.
+/// The bytes compressed with gzip.
 pub fn gzipped(bytes: &[u8]) -> Vec<u8> {
     let mut packed = GzEncoder::new(Vec::new(), Compression::default());
     packed.write_all(bytes).unwrap();
@@ -45,7 +45,7 @@ pub fn tables() -> Vec<Vec<u8>> {
     tables
 }
 
-/// What others say on the link of a watch.
+/// Packets of other senders on the link of a watch.
 pub fn links() -> Vec<Vec<u8>> {
     let beat = |system, component, armed| vec![system, component, 0, 0, 0, 0, 2, 3, armed, 4, 3];
     let commands = |system, t_s: u32| {
@@ -70,12 +70,12 @@ pub fn links() -> Vec<Vec<u8>> {
         })
         .collect();
     let others = [
-        // Another vehicle, from the vehicle's address and from its own.
+        // Another vehicle, from this vehicle's address and from its own.
         encode(0, 10, 1, &beat(2, 1, 128)),
         encode(0, 10, 3, &commands(2, 5)),
         encode(2, 10, 1, &beat(3, 1, 0)),
         encode(2, 10, 11, &commands(3, 5)),
-        // Parameters of another component, and of an impostor.
+        // Parameters of another component and of an impostor.
         encode(0, 1, 2, &parameter(154, "MOT_PWM_MIN", 1900.0)),
         encode(3, 1, 2, &parameter(1, "SERVO1_FUNCTION", f32::NAN)),
         // A text, another watch, and any bytes.
@@ -140,7 +140,7 @@ pub fn other_programs() -> Vec<Vec<u8>> {
         let text = String::from_utf8(bytes).unwrap();
         fuzzy::yaml::parse(&text).unwrap().model
     });
-    // A format that lacks the shape of a term takes none of the rule set.
+    // A rule set is skipped in a format that lacks the shape of one of its terms.
     let written = models.flat_map(|model| {
         flagred_interchange::Format::ALL.map(|format| {
             let written =
@@ -209,7 +209,7 @@ pub fn data_flash() -> DataFlash {
     log
 }
 
-/// A quad in the air from second 11 on, whose motor commands are still to be written.
+/// A quad in the air from second 11 on, without motor commands, which the caller writes.
 pub fn hovering() -> DataFlash {
     let mut log = copter();
     log.write("EV", [10e6.into(), 10.0.into()]);
@@ -217,7 +217,7 @@ pub fn hovering() -> DataFlash {
     log
 }
 
-/// The same as a PX4 log.
+/// The same flight as a PX4 log.
 pub fn ulog() -> Vec<u8> {
     let mut log = ULog::new(1_000_000);
     log.define("actuator_motors:uint64_t timestamp;float[12] control;");
@@ -246,7 +246,7 @@ pub fn ulog() -> Vec<u8> {
     log.bytes
 }
 
-/// The same as a telemetry log.
+/// The same flight as a telemetry log.
 pub fn tlog() -> Vec<u8> {
     let mut log = Tlog::default();
     for (motor, version) in [(1, 1), (2, 2), (3, 1), (4, 2)] {

@@ -1,4 +1,4 @@
-//! A watch whose vehicle hovers while others speak.
+//! A watch whose vehicle hovers while others send packets.
 
 use std::net::SocketAddr;
 
@@ -15,12 +15,12 @@ use flagred_flightlog::mavlink::{
 use super::{SHIPPED, assert_harmless, without};
 use crate::log_writer::{self, HEARTBEAT, Message, PARAM_VALUE, SERVO_OUTPUT_RAW, STATUSTEXT};
 
-/// Whose packets these are is told by the address; the vehicle has the first.
+/// Number of sender addresses; the vehicle has the first.
 const ADDRESSES: u8 = 8;
 const NAMED_VALUE_FLOAT: Message = (251, 170, 18);
 const EXTENDED_SYS_STATE: Message = (245, 130, 2);
 const COMMAND_ACK: Message = (77, 143, 3);
-/// What others say: any bytes, or whole packets with any system, component and content.
+/// Messages of other senders, with any system, component and content.
 const MESSAGES: [Message; 7] = [
     HEARTBEAT,
     PARAM_VALUE,
@@ -31,16 +31,16 @@ const MESSAGES: [Message; 7] = [
     COMMAND_ACK,
 ];
 
-/// What others send, one after the other. Each is three bytes and a payload: the address and, above it, the time until then
-/// in hundredths of a second; the kind of message (0 for any bytes) and the version of MAVLink; the length.
+/// Encodes a packet of another sender in three bytes and a payload: the address and, above it, the delay in hundredths of a
+/// second; the kind of message (0 for raw bytes) and the MAVLink version; the length.
 pub(super) fn encode(address: u8, wait: u8, kind: u8, payload: &[u8]) -> Vec<u8> {
     let mut bytes = vec![address + ADDRESSES * wait, kind, payload.len() as u8];
     bytes.extend(payload);
     bytes
 }
 
-/// Any packets of several senders. The vehicle hovers, and is not lost, whoever else speaks: only what comes from its own
-/// address in its own name is believed.
+/// Any packets of several senders. The vehicle hovers and is not lost, whatever others send: only packets from its own address
+/// and with its own system are accepted.
 pub fn session(bytes: &[u8]) {
     let mut link = Link::new();
     let mut rest = bytes;
@@ -92,13 +92,13 @@ struct Link {
     watch: Watch<'static>,
     vehicle: Sender,
     now_s: f64,
-    /// When the vehicle sends again.
+    /// Time at which the vehicle sends again.
     commands_s: f64,
     beat_s: f64,
 }
 
 impl Link {
-    /// A hovering quadrotor that is followed.
+    /// Creates a link with a hovering quadrotor that is followed.
     fn new() -> Link {
         let mut link = Link {
             watch: Watch::new(SHIPPED.estimator()),
@@ -156,7 +156,7 @@ impl Link {
         }));
     }
 
-    /// Lets time pass, in which the vehicle goes on.
+    /// Advances the time while the vehicle continues to hover.
     fn hover(&mut self, seconds: f64) {
         let end_s = self.now_s + seconds;
         while self.commands_s <= end_s {
@@ -180,7 +180,7 @@ impl Link {
         self.now_s = end_s;
     }
 
-    /// What was said is harmless; while the vehicle alone is believed, there is nothing to warn of.
+    /// Asserts that messages are harmless, and that there is no warning while only packets of the vehicle are accepted.
     fn look(&mut self, is_true: bool) {
         let told = self.watch.told();
         told.words.iter().for_each(|line| assert_harmless(line));

@@ -4,14 +4,14 @@ use flagred::verdict::Measure;
 
 use super::yaw::less_yaw;
 
-/// A finding of the balance: what, when it was raised, and the motor.
+/// A finding of the balance: its measure, its time and its motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unbalanced {
-    /// What passed its limit.
+    /// The measure that exceeded its limit.
     pub measure: Measure,
     /// When it was raised.
     pub raised_s: f64,
-    /// The motor that is named, and the other one that it may be.
+    /// The named motor, and another motor that may be the cause.
     pub motor: (usize, Option<usize>),
 }
 
@@ -35,15 +35,15 @@ impl Averages {
     }
 }
 
-/// What is known of the balance in one time in the air.
+/// The state of the balance in one time in the air.
 #[derive(Clone, Default)]
 pub struct Balance {
     lately: Averages,
-    /// Kept over a gap.
+    /// The trims, which are kept over a gap.
     pub trims: Trims,
     load: Averages,
     at_zero_s: Vec<f64>,
-    /// Whether the motors go down together.
+    /// Whether all motors slow down together.
     pub sinks: bool,
     /// Whether the motors work as before an alarm.
     pub is_back: bool,
@@ -56,7 +56,7 @@ pub struct Balance {
 pub struct Trims(Averages);
 
 impl Balance {
-    /// That of a time in the air that begins with trims from before a gap.
+    /// The balance of a time in the air that begins with trims from before a gap.
     pub fn new(trims: Trims) -> Balance {
         Balance {
             trims,
@@ -64,7 +64,7 @@ impl Balance {
         }
     }
 
-    /// Takes in the commands of a sample that is settled; gives nothing new where one is unknown.
+    /// Adds the commands of a settled sample; nothing new results if one is unknown.
     pub fn push(
         &mut self,
         (t_s, held_s): (f64, f64),
@@ -137,7 +137,7 @@ impl Balance {
         self.found().is_some()
     }
 
-    /// Whether the motors are no farther apart than lately.
+    /// Whether the motors are no farther apart than they were recently.
     pub fn is_together(&self, commands: &[f64]) -> bool {
         let count = commands.len() as f64;
         let mean = commands.iter().sum::<f64>() / count;
@@ -155,7 +155,7 @@ impl Balance {
         lately.map(|(motor, x)| x - trim(motor)).collect()
     }
 
-    /// How far a motor is at most above the one on the other side of the middle.
+    /// By how much a motor is at most above the opposite one.
     fn at_odds(&self, factors: &[[f64; 3]]) -> f64 {
         let x = less_yaw(&self.lately.values, factors);
         let above =
@@ -180,7 +180,7 @@ impl Balance {
     }
 }
 
-/// The motor that explains what changed, and another that does nearly as well.
+/// The motor that explains the change, and another that explains it nearly as well.
 fn weak(shift: &[f64], limit: f64) -> Option<(usize, Option<usize>)> {
     let count = shift.len() as f64;
     let mut order: Vec<usize> = (0..shift.len()).collect();
@@ -193,7 +193,7 @@ fn weak(shift: &[f64], limit: f64) -> Option<(usize, Option<usize>)> {
     (shift[motor] > limit && explains).then_some((motor, other))
 }
 
-/// The motor on the other side of the middle; of two there the one that turns the same way.
+/// The opposite motor; of two, the one that turns in the same direction.
 fn opposite(factors: &[[f64; 3]], motor: usize) -> Option<usize> {
     let [roll, pitch, yaw] = factors[motor];
     if roll.abs() < 0.1 && pitch.abs() < 0.1 {

@@ -6,16 +6,16 @@ use flagred::accumulator::AccumulatorSettings;
 
 use super::window::{Window, mean};
 
-/// A risk in % that moves evenly from one moment to another.
+/// A risk in % that changes linearly from one time to another.
 #[derive(Clone, Copy)]
 pub struct Stretch {
-    /// From when, in seconds, at which risk.
+    /// Start: time in seconds and risk.
     pub from: (f64, f64),
-    /// Until when, at which risk.
+    /// End: time in seconds and risk.
     pub to: (f64, f64),
 }
 
-/// By how many % per second it changes at the end of the last stretch.
+/// The rate of change in % per second at the end of the last stretch.
 pub fn rate(settings: &AccumulatorSettings, risks: &[Stretch]) -> f64 {
     let now_s = risks[risks.len() - 1].to.0;
     let window = Window {

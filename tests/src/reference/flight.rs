@@ -15,16 +15,16 @@ use super::{
     yaw::less_yaw,
 };
 
-/// Less than this on the ground, in seconds, is no landing.
+/// A time on the ground shorter than this, in seconds, is not a landing.
 const TOUCH_S: f64 = 1.0;
-/// Motors that begin to idle within this time after a high risk, in seconds, are no landing.
+/// If motors begin to idle within this time after a high risk, in seconds, this is not a landing.
 const TROUBLE_S: f64 = 2.0;
-/// Motors that idle for this long in the air, in seconds, are a fall.
+/// Motors that idle for this long in the air, in seconds, indicate a fall.
 const FALL_S: f64 = 3.0;
 
 /// The motor commands at one time.
 pub struct Sample {
-    /// When, in seconds.
+    /// Time in seconds.
     pub t_s: f64,
     /// The effective command of each motor; NaN is unknown.
     pub commands: Vec<f64>,
@@ -40,7 +40,7 @@ impl Sample {
     }
 }
 
-/// What is known after a sample that the log says is in the air.
+/// The results after a sample that the log reports as in the air.
 pub struct Row {
     /// Its time in seconds.
     pub t_s: f64,
@@ -64,20 +64,20 @@ pub fn samples(flight: &flagred_flightlog::Flight) -> Vec<Sample> {
     rows.collect()
 }
 
-/// What flights are found to be.
+/// The results of the flights of a log.
 pub struct Followed {
-    /// What is known after each sample that the log says is in the air.
+    /// The results after each sample that the log reports as in the air.
     pub rows: Vec<Row>,
     /// The findings of the risk.
     pub troubles: Vec<Trouble>,
-    /// The findings of the balance, of each time in the air the last one.
+    /// The findings of the balance: the last one of each time in the air.
     pub unbalanced: Vec<Unbalanced>,
 }
 
-/// What stays over a gap in the air: trims, and since when an alarm is in doubt.
+/// State that is kept over a gap in the air: the trims, and the time since which an alarm is in doubt.
 type Kept = (Trims, Option<f64>);
 
-/// Follows flights by a profile and a rule set; the factors are those of each motor, none where they are unknown.
+/// Follows flights with a profile and a rule set; `factors` are those of the motors, empty if they are unknown.
 pub fn follow(
     samples: &[Sample],
     factors: &[[f64; 3]],
@@ -166,7 +166,7 @@ pub fn follow(
     }
 }
 
-/// The mean command; NaN with an unknown motor.
+/// The mean command; NaN if a motor is unknown.
 fn mean(sample: &Sample) -> f64 {
     sample.commands.iter().sum::<f64>() / sample.commands.len() as f64
 }
@@ -179,7 +179,7 @@ fn reads_motors(profile: &Profile) -> bool {
     })
 }
 
-/// Whether the motors idle on the ground: before take-off, and after a flight unless a high risk came just before.
+/// Whether the motors idle on the ground: before take-off, or after a flight unless a high risk came just before.
 fn rests(air: &mut Option<Air>, sample: &Sample, profile: &Profile) -> bool {
     if sample.lacks_a_motor() {
         return false;
@@ -201,9 +201,9 @@ fn rests(air: &mut Option<Air>, sample: &Sample, profile: &Profile) -> bool {
 /// A time in the air. The state is reset before and after it.
 struct Air {
     take_off_s: f64,
-    /// What ended before this time does not count in the long windows.
+    /// Values that ended before this time do not count in the long windows.
     since_s: f64,
-    /// Of each input.
+    /// The observed values of each input.
     observed: Vec<Vec<Observed>>,
     risks: Vec<Stretch>,
     /// The rate in % per second after the last of the risks, and the elevated risk in %.
@@ -212,21 +212,21 @@ struct Air {
     levels: Levels,
     troubles: Vec<Trouble>,
     balance: Balance,
-    /// After an alarm: when the motors were last not known to work as before.
+    /// After an alarm: the last time at which the motors did not work as before.
     in_doubt_s: Option<f64>,
-    /// Whether the motors idle after a high risk, while they idle.
+    /// Whether the motors began to idle after a high risk; `None` while they do not idle.
     fell: Option<bool>,
     /// Whether the motors idle in the air.
     falls: bool,
     last_high_s: f64,
 }
 
-/// What a time in the air was found to be.
+/// The results of a time in the air.
 struct OfAir {
     troubles: Vec<Trouble>,
     unbalanced: Option<Unbalanced>,
     trims: Trims,
-    /// Whether an alarm stood.
+    /// Whether an alarm was raised at the end.
     level_at_end: bool,
 }
 
@@ -261,12 +261,12 @@ impl Air {
         }
     }
 
-    /// Whether the level is over GOOD.
+    /// Whether the level is above GOOD.
     fn is_alarm(&self) -> bool {
         self.levels.level > Level::Good || self.balance.is_open() || self.in_doubt_s.is_some()
     }
 
-    /// Ends the findings; the elevated risk begins anew.
+    /// Ends the findings and resets the elevated risk.
     fn stop(&mut self, profile: &Profile, landed_s: Option<f64>) {
         self.troubles
             .extend(self.levels.end(&profile.verdict, landed_s));
@@ -274,7 +274,7 @@ impl Air {
         self.begin_anew();
     }
 
-    /// The elevated risk begins at 0.
+    /// Resets the elevated risk to 0.
     fn begin_anew(&mut self) {
         self.risks.clear();
         self.elevated = None;
@@ -339,7 +339,7 @@ impl Air {
         }
     }
 
-    /// Adds a risk; gives the elevated risk.
+    /// Adds a risk and returns the elevated risk.
     fn add(&mut self, risk: f64, (from_s, t_s): (f64, f64), profile: &Profile) -> f64 {
         let verdict = &profile.verdict;
         if verdict.warn.raise.risk_pct.is_some_and(|high| risk >= high) {
@@ -369,7 +369,7 @@ impl Air {
         elevated
     }
 
-    /// An alarm stands until the motors have worked as before for as long as a level is held.
+    /// An alarm lasts until the motors have worked as before for as long as a level is held.
     fn doubt(&mut self, t_s: f64, verdict: &VerdictSettings) {
         let is_alarm = self.levels.level > Level::Good;
         let is_back = verdict.notices.imbalance.is_none() || self.balance.is_back;
@@ -382,7 +382,7 @@ impl Air {
     }
 }
 
-/// The risk at values of the inputs of a profile.
+/// The risk for values of the inputs of a profile.
 fn risk(profile: &Profile, model: &Model, inputs: &[Option<f64>]) -> Option<f64> {
     let known: Option<Vec<f64>> = inputs.iter().copied().collect();
     let known = known?;
@@ -395,6 +395,6 @@ fn risk(profile: &Profile, model: &Model, inputs: &[Option<f64>]) -> Option<f64>
         .collect();
     let mut outputs = model.outputs.iter();
     let output = outputs.position(|output| output.variable.name == profile.output)?;
-    // The risks of the shipped rules are triangles that are even on both sides: few samples give the exact centroid.
+    // The terms of the risk in the shipped rules are symmetric triangles: few samples give the exact centroid.
     rules::evaluate(model, &point?, 2)[output]
 }

@@ -9,34 +9,34 @@ use super::window::{Window, mean};
 
 /// The length of a bin in seconds.
 const BIN_S: f64 = 0.1;
-/// How far back a window is looked for, in seconds beyond its length: the bin before its first one.
+/// How much older values may be than a window, in seconds: the bin before its first one.
 const MORE_S: f64 = 5.0;
 
-/// What an input observes in one sample, and the time that it stands for.
+/// The observation of an input in one sample, and its time span.
 #[derive(Clone)]
 pub struct Observed {
-    /// From when, in seconds.
+    /// Start in seconds.
     pub from_s: f64,
-    /// Until when.
+    /// End in seconds.
     pub to_s: f64,
-    /// The known values: of the motors, or one of all of them.
+    /// The known values: one of each motor, or a single one.
     pub values: Vec<f64>,
-    /// By how much it differs from the one before; of bins.
+    /// The difference from the previous bin; for bins only.
     step: f64,
 }
 
-/// What is known of a vehicle at one time.
+/// The state of a vehicle at one time.
 pub struct Now<'a> {
     /// The effective commands of the motors.
     pub commands: &'a [f64],
-    /// The same without yaw.
+    /// The same commands without yaw.
     pub less_yaw: &'a [f64],
     /// The signals, in the order of the profile.
     pub signals: &'a [f64],
 }
 
 impl Observed {
-    /// What a source observes in a sample.
+    /// The observation of a source in a sample.
     pub fn new(profile: &Profile, source: &Source, span: (f64, f64), now: &Now<'_>) -> Observed {
         let names = profile.signals();
         let signal = |name: &str| {
@@ -76,7 +76,7 @@ impl Observed {
         if let Motors::One(motor) = source.motors {
             return one(of_motors.get(motor as usize).copied().unwrap_or(f64::NAN));
         }
-        // One unknown motor makes all of them unknown.
+        // One unknown motor makes all values unknown.
         let known = match of_motors.iter().any(|e| e.is_nan()) {
             true => Vec::new(),
             false => of_motors,
@@ -95,8 +95,8 @@ impl Observed {
     }
 }
 
-/// The value of each input of a profile after the last sample; `None` where too little is known. What ended before `since_s`
-/// does not count in long windows.
+/// The value of each input of a profile after the last sample; `None` if too little is known. Values that ended before `since_s`
+/// do not count in long windows.
 pub fn values(
     profile: &Profile,
     observed: &[Vec<Observed>],
@@ -132,7 +132,7 @@ pub fn values(
     with_ratio.collect()
 }
 
-/// All values so far, with the weight `exp(-age / T)` integrated over their times.
+/// A statistic of all values so far, with the weight `exp(-age / T)` integrated over their time spans.
 fn exponential(
     profile: &Profile,
     source: &Source,
@@ -158,7 +158,7 @@ fn exponential(
     Some(of_weights(&source.statistic, &inside))
 }
 
-/// A statistic of weighted values; those of one sample share its weight.
+/// A statistic of weighted values; the values of one sample share its weight.
 fn of_weights(statistic: &Statistic, inside: &[(f64, &Observed)]) -> f64 {
     let mean_of = |f: &dyn Fn(f64) -> f64| {
         let values = inside.iter().flat_map(|(weight, observed)| {
@@ -192,7 +192,7 @@ fn of_weights(statistic: &Statistic, inside: &[(f64, &Observed)]) -> f64 {
     }
 }
 
-/// The mean of the values of a slot: the middle of its time from now, its weight, its value.
+/// The mean of the values of a slot: the age of its middle, its weight, its value.
 struct Slot {
     t_s: f64,
     weight: f64,
@@ -226,7 +226,7 @@ fn rate(slots: &[Slot]) -> Option<f64> {
     (slots.len() > 1).then(|| (weight * tx - t * x) / (weight * tt - t * t))
 }
 
-/// Where the line through (percentile, mean) passes the percentile that is asked for.
+/// The value at a percentile, on the line through the points (percentile, mean).
 fn percentile(mut slots: Vec<Slot>, percent: f64) -> Option<f64> {
     slots.sort_by(|a, b| a.value.total_cmp(&b.value));
     let all: f64 = slots.iter().map(|slot| slot.weight).sum();
@@ -282,7 +282,7 @@ fn value(
     let mut inside: Vec<(f64, &Observed)> = window.weights(&spans).into_iter().zip(all).collect();
     let slots = slots(window, &spans, &inside);
     inside.retain(|(weight, _)| *weight > 0.0);
-    // The bin that the latest sample is in counts in full.
+    // The bin of the latest sample counts in full.
     inside.extend(
         latest
             .filter(has_time)
@@ -306,7 +306,7 @@ fn bin_of(t_s: f64) -> f64 {
     (t_s / BIN_S + 1e-6).floor()
 }
 
-/// The plain means of the samples of each bin, which stand for the time of its samples.
+/// The means of the samples of each bin, with the time span of its samples.
 fn bins(observed: &[&Observed]) -> Vec<Observed> {
     let of_bins = observed.chunk_by(|a, b| bin_of(a.to_s) == bin_of(b.to_s));
     let mut bins: Vec<Observed> = Vec::new();

@@ -1,9 +1,9 @@
-//! Defuzzification of a set that is given by its degree and its slope at a point, to about 1e-13 of its range.
+//! Defuzzification of a set given by its degree and slope at each point, to about 1e-13 of its range.
 //!
-//! The range is cut where the set may have a kink or a step: where functions change their sign. Between the cuts it is integrated
-//! by Gauss-Legendre rules, on stretches that are halved until nothing changes. Degrees are never negative, so the sums lose no
-//! digits, and numbers of 64 bits suffice. A maximum is where the slope, by automatic differentiation, changes its sign.
-//! tests/peer/mpmath.sh computes the same with 80 digits.
+//! The range is cut where the set may have a kink or a step: where given functions change their sign. Between the cuts, it is
+//! integrated by Gauss-Legendre rules, on intervals that are halved until nothing changes. Degrees are never negative, so the
+//! sums lose no digits, and 64-bit numbers suffice. A maximum is where the slope, by automatic differentiation, changes its
+//! sign. tests/peer/mpmath.sh computes the same with 80 digits.
 
 use std::sync::OnceLock;
 
@@ -11,8 +11,8 @@ use fuzzy::model::Defuzzifier;
 
 use super::{operators::ROUNDING, rules::Set};
 
-/// The value of a set, `None` of one that is 0 everywhere; NaN where rounding decides, because the degree of a peak lies at the
-/// bound up to which it counts as the highest.
+/// The value of a set; `None` if it is 0 everywhere; NaN if rounding decides, because the degree of a peak is at the tolerance
+/// within which it counts as the highest.
 pub fn defuzzify(set: &Set<'_>) -> Option<f64> {
     let pieces = pieces(set);
     if let Defuzzifier::Centroid | Defuzzifier::Bisector = set.defuzzifier {
@@ -38,13 +38,13 @@ fn middle(set: &Set<'_>) -> f64 {
     0.5 * (set.low + set.high)
 }
 
-/// Stretches of a piece in which roots are looked for.
+/// The number of intervals of a piece that are searched for roots.
 const GRID: u32 = 48;
 
-/// A stretch on which the set is smooth.
+/// An interval on which the set is smooth.
 type Piece = (f64, f64);
 
-/// Places from just inside the beginning of a piece, by a share of its width, to just inside its end.
+/// Positions from just inside the beginning of a piece, by a share of its width, to just inside its end.
 fn grid((from, to): Piece, inside: f64) -> impl Iterator<Item = f64> {
     let rounding = 4.0 * f64::EPSILON * from.abs().max(to.abs());
     let inside = (inside * (to - from)).max(rounding).min(0.1 * (to - from));
@@ -52,7 +52,7 @@ fn grid((from, to): Piece, inside: f64) -> impl Iterator<Item = f64> {
     (0..=GRID).map(move |i| from + inside + width * (f64::from(i) / f64::from(GRID)))
 }
 
-/// The pieces of the range, but for those so narrow that they are rounding.
+/// The pieces of the range, without those that are so narrow that they result from rounding.
 fn pieces(set: &Set<'_>) -> Vec<Piece> {
     let narrow = 1e-13 * (set.high - set.low);
     let mut cuts = set.cuts.clone();
@@ -79,7 +79,7 @@ fn pieces(set: &Set<'_>) -> Vec<Piece> {
     pieces.filter(|(from, to)| to - from > narrow).collect()
 }
 
-/// Up to where a condition holds.
+/// The end of the interval on which a condition is true.
 fn bisection(from: f64, to: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut from, mut to) = (from, to);
     for _ in 0..100 {
@@ -91,7 +91,7 @@ fn bisection(from: f64, to: f64, holds: impl Fn(f64) -> bool) -> f64 {
 
 const NODES: usize = 20;
 
-/// Nodes and weights on [-1, 1], by Newton's method on Legendre's polynomials.
+/// Nodes and weights on [-1, 1], by Newton's method on Legendre polynomials.
 fn legendre(n: usize) -> Vec<(f64, f64)> {
     let polynomial = |x: f64| {
         let (mut before, mut here) = (1.0, x);
@@ -114,7 +114,7 @@ fn legendre(n: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Area and moment from the middle of the range.
+/// The area and the moment about the middle of the range.
 fn gauss(set: &Set<'_>, (from, to): Piece) -> (f64, f64) {
     static RULE: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
     let (center, half) = (0.5 * (from + to), 0.5 * (to - from));
@@ -128,7 +128,7 @@ fn gauss(set: &Set<'_>, (from, to): Piece) -> (f64, f64) {
     sums
 }
 
-/// The same, by halving until nothing changes.
+/// The same by halving until nothing changes.
 fn integral(set: &Set<'_>, (from, to): Piece, allowed: f64, halvings: u32) -> (f64, f64) {
     let center = 0.5 * (from + to);
     let (whole, left, right) = (
@@ -162,7 +162,7 @@ fn bisector(
     set.high
 }
 
-/// A place with the degree and the slope there.
+/// A position with the degree and the slope there.
 type Place = (f64, f64, f64);
 
 fn maxima(set: &Set<'_>, pieces: &[Piece]) -> Option<f64> {
@@ -213,7 +213,7 @@ fn peaks(set: &Set<'_>, pieces: &[Piece], seen: &[Vec<Place>]) -> Vec<(f64, f64)
     for (&(from, to), places) in pieces.iter().zip(seen) {
         let (first, last) = (places[0], places[GRID as usize]);
         let (rises, left) = before.map_or((true, first.1), |place| (place.2 > 0.0, place.1));
-        // At a cut: the set rises to it, or steps up there, and falls from it, or steps down.
+        // At a cut: the set rises to it or steps up, and falls from it or steps down.
         let is_step = (left - first.1).abs() > 1e-7 * left.max(first.1);
         let up = if is_step { left < first.1 } else { rises };
         let down = if is_step {
@@ -224,7 +224,7 @@ fn peaks(set: &Set<'_>, pieces: &[Piece], seen: &[Vec<Place>]) -> Vec<(f64, f64)
         if up && (first.2 < 0.0 || down) || down && rises {
             let beside = left.max(first.1);
             let here = (set.degree)(from);
-            // The peak itself is higher than what is beside it; at a step, a degree of its own may stand there.
+            // The degree at the peak must equal the degrees beside it; at a step, a single point may have another degree.
             let is_peak = !is_step && (here - beside).abs() <= 1e-7 * beside;
             peaks.push((from, if is_peak { here } else { beside }));
         }

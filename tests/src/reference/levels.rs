@@ -2,36 +2,36 @@
 
 use flagred::verdict::{Level, LevelSettings, Threshold, VerdictSettings};
 
-/// Time stamps are sums of steps: a duration this much shorter, in seconds, is long enough.
+/// Tolerance for durations, in seconds, because timestamps are sums of steps.
 const ROUNDING_S: f64 = 1e-6;
 
-/// What is known at one time of a flight.
+/// The state at one time of a flight.
 #[derive(Clone, Copy)]
 pub struct Moment {
-    /// When, in seconds.
+    /// Time in seconds.
     pub t_s: f64,
     /// The risk in %.
     pub risk: f64,
     /// The elevated risk in %.
     pub elevated: f64,
-    /// Just after take-off, when only FAIL is raised.
+    /// Whether the time is just after take-off, when only FAIL is raised.
     pub takes_off: bool,
-    /// The motors go down together, when FAIL is not raised.
+    /// Whether the motors slow down together, when FAIL is not raised.
     pub sinks: bool,
 }
 
-/// A time of trouble.
+/// An episode with a level above GOOD.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trouble {
     /// Its worst level.
     pub level: Level,
-    /// Since when the level that was raised first was reached.
+    /// Time since which the first raised level was reached.
     pub from_s: f64,
-    /// When a level was first raised.
+    /// Time at which a level was first raised.
     pub raised_s: f64,
-    /// When it became FAIL.
+    /// Time at which the level became FAIL.
     pub failed_s: Option<f64>,
-    /// When a level was last reached.
+    /// Time at which a level was last reached.
     pub to_s: f64,
 }
 
@@ -40,19 +40,19 @@ fn reached(threshold: &Threshold, now: &Moment) -> bool {
     over(now.risk, threshold.risk_pct) || over(now.elevated, threshold.elevated_risk_pct)
 }
 
-/// The level of one flight, and its times of trouble so far.
+/// The level of one flight, and its episodes so far.
 #[derive(Debug, Clone)]
 pub struct Levels {
-    /// The level now.
+    /// The current level.
     pub level: Level,
     held_s: f64,
-    /// Whether FAIL is being reached, for however long.
+    /// Whether FAIL is being reached, for any duration.
     reaches_fail: bool,
     all: Vec<Trouble>,
 }
 
 impl Levels {
-    /// Those of a flight that takes off.
+    /// The levels of a flight at take-off.
     pub fn new() -> Levels {
         Levels {
             level: Level::Good,
@@ -62,7 +62,7 @@ impl Levels {
         }
     }
 
-    /// Takes in the last of the moments since take-off.
+    /// Adds the last of the moments since take-off.
     pub fn push(&mut self, settings: &VerdictSettings, moments: &[Moment]) {
         let Some(now) = moments.last() else { return };
         let t_s = now.t_s;
@@ -117,11 +117,11 @@ impl Levels {
         }
     }
 
-    /// Ends the flight: the vehicle landed, or nothing is known any more. Gives the times of trouble.
+    /// Ends the flight, because the vehicle landed or its state became unknown, and returns the episodes.
     pub fn end(&mut self, settings: &VerdictSettings, landed_s: Option<f64>) -> Vec<Trouble> {
         let ended = std::mem::take(self);
         let mut all = ended.all;
-        // A landing takes back a WARN that is open and was raised just before it, unless FAIL is being reached.
+        // A landing cancels an open WARN that was raised just before it, unless FAIL is being reached.
         let is_late = |open: &Trouble| {
             landed_s.is_some_and(|t_s| t_s - open.raised_s < settings.quiet_before_landing_s)
         };

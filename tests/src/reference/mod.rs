@@ -1,4 +1,4 @@
-//! What the documents say, computed a second time apart from the libraries: directly, slowly, in `f64`.
+//! A second implementation of the documents, independent of the libraries: direct, slow, in `f64`.
 //!
 //! [`rules`] evaluates a rule set as docs/rule-sets.md defines it. [`flight`] follows a flight as docs/profiles.md defines
 //! it: it keeps every sample and computes every window from scratch.

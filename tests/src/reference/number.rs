@@ -1,8 +1,8 @@
-//! Numbers that a formula is evaluated with: plain ones, and ones that carry their derivative.
+//! Numbers for the evaluation of formulas: plain ones, and ones that carry their derivative.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// What formulas of membership functions and operators need of a number.
+/// The operations that formulas of membership functions and operators require of a number.
 pub(super) trait Number:
     Copy
     + Add<Output = Self>
@@ -73,9 +73,9 @@ pub(super) struct Dual {
 }
 
 impl Dual {
-    /// A function's value, given its derivative there.
+    /// The value of a function, given its derivative there.
     fn chain(self, value: f64, derivative: f64) -> Self {
-        // What does not change, does not change an infinite slope either.
+        // The derivative of a constant is 0, even if the slope of the function is infinite.
         let slope = if self.slope == 0.0 {
             0.0
         } else {

@@ -21,7 +21,7 @@ pub(super) fn hedged(hedges: &[Hedge], mut x: f64) -> f64 {
     x
 }
 
-/// Operators with a step take what is so close to it for it, and degrees so close to each other are equal.
+/// Tolerance of operators with a step: values this close to the step are on it, and degrees this close are equal.
 pub(super) const ROUNDING: f64 = 1e-12;
 
 pub(super) fn and<T: Number>(operator: Conjunction, a: T, b: T) -> T {
@@ -56,7 +56,7 @@ pub(super) fn or<T: Number>(operator: Disjunction, a: T, b: T) -> T {
     }
 }
 
-/// Two activated degrees.
+/// Aggregates two activated degrees.
 pub(super) fn aggregate<T: Number>(aggregation: Aggregation, a: T, b: T) -> T {
     match aggregation {
         Aggregation::Maximum => a.max(b),
@@ -70,7 +70,7 @@ pub(super) fn aggregate<T: Number>(aggregation: Aggregation, a: T, b: T) -> T {
     }
 }
 
-/// Whether a strength cuts nothing off a term.
+/// Whether a strength does not cut off any part of a term.
 pub(super) fn is_whole(strength: f64, highest: f64) -> bool {
     strength >= highest * (1.0 - ROUNDING)
 }

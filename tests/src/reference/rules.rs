@@ -1,5 +1,5 @@
-//! What a rule set means, by definition: every formula written out a second time, apart from the engine, and
-//! every integral a plain sum over many samples. Slow, and nothing else.
+//! Evaluation of a rule set by definition: every formula written a second time, independent of the engine, and every integral
+//! a plain sum over many samples. Slow.
 
 use std::collections::BTreeMap;
 
@@ -14,14 +14,14 @@ use super::operators::{and, hedged, or};
 use super::sets::{Fired, Kinks, aggregated, crossings, highest, levels};
 use super::shapes::{membership, parameters};
 
-/// The aggregated set of an output, for a function that makes a number of it.
+/// The aggregated set of an output, as the argument of a defuzzifier.
 #[expect(missing_docs, reason = "each says what it is")]
 pub struct Set<'a> {
     pub low: f64,
     pub high: f64,
-    /// The ends of the range and all places at which a shape has a parameter.
+    /// The ends of the range and all positions at which a shape has a parameter.
     pub cuts: Vec<f64>,
-    /// The places of singletons, where all terms are; the degrees between them count for nothing.
+    /// The positions of singletons, if all terms are singletons; the degrees between them are ignored.
     pub places: Vec<f64>,
     pub defuzzifier: Defuzzifier,
     pub degree: &'a dyn Fn(f64) -> f64,
@@ -30,16 +30,16 @@ pub struct Set<'a> {
     pub kinks: [Kinks<'a>; 2],
 }
 
-/// Defuzzifies a [`Set`]; `None` of one that is 0 everywhere.
+/// Defuzzifies a [`Set`]; `None` if it is 0 everywhere.
 pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> Option<f64>;
 
-/// The value of each output at a point; `None` where no rule fires and the author chose no value. The integrals are sums of so
-/// many samples between every two places at which a shape has a parameter.
+/// The value of each output at a point; `None` if no rule fires and there is no default. Integrals are sums of this many samples
+/// between every two positions at which a shape has a parameter.
 pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
     evaluate_with(model, point, &|set| Some(sampled(set, samples)))
 }
 
-/// [`evaluate`] with integrals of the caller.
+/// [`evaluate`] with a defuzzifier of the caller.
 pub fn evaluate_with(model: &Model, point: &[f64], defuzzify: Defuzzify<'_>) -> Vec<Option<f64>> {
     let mut values = Values::new();
     for (variable, x) in model.inputs.iter().zip(point) {
@@ -48,7 +48,7 @@ pub fn evaluate_with(model: &Model, point: &[f64], defuzzify: Defuzzify<'_>) -> 
             Some((variable, x.clamp(variable.low, variable.high))),
         );
     }
-    // Of a chain, each round adds the outputs whose conditions read nothing that is still to come.
+    // In a chain, each round adds the outputs that read only known outputs.
     let mut numbers = vec![None; model.outputs.len()];
     while values.len() < model.inputs.len() + model.outputs.len() {
         let before = values.clone();
@@ -71,7 +71,7 @@ pub fn evaluate_with(model: &Model, point: &[f64], defuzzify: Defuzzify<'_>) -> 
     numbers
 }
 
-/// The value of each input, and of each output that is known so far; `None` where it has none.
+/// The value of each input, and of each output that is known so far; `None` if it is unknown.
 type Values<'m> = BTreeMap<&'m str, Option<(&'m Variable, f64)>>;
 
 /// The names in the conditions of the rules of an output, and in its linear functions.
@@ -83,7 +83,7 @@ fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
     };
     let of_output: Vec<&Rule> = model.rules.iter().filter(concludes).collect();
     for rule in model.rules.iter().filter(|rule| model.is_enabled(rule)) {
-        // An activation method asks all rules of its block.
+        // An activation method reads all rules of its block.
         let asked = model.activation_of(rule) != Activation::General
             && of_output.iter().any(|one| one.block == rule.block);
         if asked || concludes(&rule) {
@@ -142,8 +142,8 @@ fn value(
     })
 }
 
-/// The strength with which each rule fires that has to do with an output: that concludes it, or stands in a block of which a
-/// rule does.
+/// The firing strengths of the rules that concern an output: rules that conclude it, and rules of a block in which another rule
+/// does.
 fn strengths(model: &Model, output: &Output, values: &Values<'_>) -> Vec<f64> {
     let concludes = |rule: &Rule| {
         let mut consequents = rule.rule.consequents.iter();
@@ -175,7 +175,7 @@ fn strengths(model: &Model, output: &Output, values: &Values<'_>) -> Vec<f64> {
         };
         let fires = |strength: f64| strength >= least;
         let at_least = |strength: f64, bound: f64| strength > bound || near(strength, bound, least);
-        // Whether fewer than so many rules come before this one.
+        // Whether fewer than `count` rules precede this one.
         let is_kept = |count: u32, before: &dyn Fn(usize, f64) -> bool| {
             let ahead = others().filter(|(j, strength)| *j != i && before(*j, *strength));
             fires(strength) && ahead.count() < count as usize
@@ -315,7 +315,7 @@ fn number(
         };
         aggregated(&fired, operators, x).slope
     };
-    // Steps must not fall inside a sample's cell, so the range is cut at all parameters.
+    // Steps must not fall inside the cell of a sample, so the range is cut at all parameters.
     let mut cuts: Vec<f64> = fired
         .iter()
         .flat_map(|(.., term)| parameters(&term.membership_function))
@@ -339,7 +339,7 @@ fn number(
 fn sampled(set: &Set<'_>, samples: usize) -> f64 {
     let (high, cuts, aggregated, defuzzifier) = (set.high, &set.cuts, set.degree, set.defuzzifier);
     let places = &set.places;
-    // (place, width of the cell, degree)
+    // (position, width of the cell, degree)
     let mut set = Vec::new();
     if !places.is_empty() {
         set.extend(places.iter().map(|x| (*x, 1.0, aggregated(*x))));
@@ -378,7 +378,7 @@ fn sampled(set: &Set<'_>, samples: usize) -> f64 {
     }
 }
 
-/// Where a monotone term has a degree, by bisection; the end of the range where that is farther away than 1e6 ranges.
+/// The position at which a monotone term has a degree, by bisection; the end of the range if that is farther than 1e6 ranges.
 fn place(term: &Term, degree: f64, variable: &Variable) -> f64 {
     let of = |x: f64| term.height * membership(&term.membership_function, x);
     let far = 1e6 * (variable.high - variable.low);
@@ -387,7 +387,7 @@ fn place(term: &Term, degree: f64, variable: &Variable) -> f64 {
     let degree = degree.min(of(left).max(of(right)));
     for _ in 0..200 {
         let middle = 0.5 * (left + right);
-        // On a plateau towards the slope: a rising term first has a degree from the left, a falling one last.
+        // On a plateau, the end towards the slope: a rising term has a degree first from the left, a falling one last.
         if (of(middle) >= degree) == rises {
             right = middle;
         } else {

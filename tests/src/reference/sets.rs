@@ -1,4 +1,4 @@
-//! The terms that rules conclude, activated and aggregated, and where that has kinks.
+//! The terms that rules conclude, activated and aggregated, and the kinks of the result.
 
 use fuzzy::model::{Aggregation, Conjunction, Operators, Term};
 
@@ -6,7 +6,7 @@ use super::number::{Dual, Number};
 use super::operators::{ROUNDING, aggregate, and, is_whole};
 use super::shapes::{membership, parameters};
 
-/// Functions of the place along the range of an output.
+/// Functions of the position in the range of an output.
 pub(super) type Kinks<'a> = Vec<Box<dyn Fn(f64) -> f64 + 'a>>;
 
 /// A term with its strength and its highest degree.
@@ -68,7 +68,7 @@ pub(super) fn crossings<'a>(fired: &'a [Fired<'a>], operators: Operators) -> Kin
     kinks
 }
 
-/// The degree of an aggregated set of terms with their strengths and their highest degrees.
+/// The degree of an aggregated set of terms, each with its strength and highest degree.
 pub(super) fn aggregated<T: Number>(fired: &[Fired<'_>], operators: Operators, x: T) -> T {
     let parts = fired
         .iter()
@@ -78,8 +78,8 @@ pub(super) fn aggregated<T: Number>(fired: &[Fired<'_>], operators: Operators, x
     })
 }
 
-/// A fired term at `x`. A strength that is its highest degree but for rounding cuts nothing off, and of what it cuts the drastic
-/// operator leaves no single peak.
+/// A fired term at `x`. A strength that equals its highest degree except for rounding cuts nothing off; the drastic operator then
+/// leaves no single peak.
 fn activate<T: Number>(implication: Conjunction, (strength, highest, term): Fired<'_>, x: T) -> T {
     let degree = T::of(term.height) * membership(&term.membership_function, x);
     let whole = is_whole(strength, highest);
@@ -112,7 +112,7 @@ pub(super) fn highest(term: &Term, low: f64, high: f64) -> f64 {
     let inside = places.filter(|x| low <= *x && *x <= high);
     let best = inside.reduce(|best, x| if of(x) > of(best) { x } else { best });
     let best = best.unwrap_or(low);
-    // A top between two samples, by trisection.
+    // A maximum between two samples, by ternary search.
     let (mut from, mut to) = ((best - step).max(low), (best + step).min(high));
     for _ in 0..80 {
         let third = (to - from) / 3.0;

@@ -1,4 +1,4 @@
-//! The formulas of membership functions, as docs/rule-sets.md has them.
+//! The formulas of membership functions, as in docs/rule-sets.md.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use fuzzy::model::MembershipFunction;
 
 use super::number::Number;
 
-/// The places at which a shape has a parameter.
+/// The positions at which a shape has a parameter.
 pub(super) fn parameters(shape: &MembershipFunction) -> Vec<f64> {
     match *shape {
         MembershipFunction::Triangle { left, peak, right } => vec![left, peak, right],
@@ -65,11 +65,11 @@ pub(super) fn parameters(shape: &MembershipFunction) -> Vec<f64> {
     }
 }
 
-/// The degree at `x`, and with a dual number its slope.
+/// The degree at `x`; with a dual number also its slope.
 pub(super) fn membership<T: Number>(shape: &MembershipFunction, x: T) -> T {
     let (at, n) = (x.value(), T::of);
     let (zero, one, two) = (n(0.0), n(1.0), n(2.0));
-    // 1 / (1 + e^-t), without the cancellation of its slope where it is near 1.
+    // 1 / (1 + e^-t), without cancellation in its slope where it is near 1.
     let sigmoid = |inflection: f64, slope: f64| {
         let t = n(slope) * (x - n(inflection));
         if t.value() > 0.0 {
@@ -82,7 +82,7 @@ pub(super) fn membership<T: Number>(shape: &MembershipFunction, x: T) -> T {
         let z = (x - n(mean)) / n(sd);
         (-(z * z) / two).exp()
     };
-    // An S from a to b, by its two parabolas.
+    // An S-shape from a to b, by its two parabolas.
     let s = |a: f64, b: f64| {
         let square = |from: f64| {
             let t = (x - n(from)) / n(b - a);

@@ -1,21 +1,21 @@
-//! Which values count in a window, and how much.
+//! The values in a window and their weights.
 
 const SLOTS: f64 = 128.0;
-/// What reaches into the window by less, in seconds, has left it.
+/// Values that extend into the window by less than this, in seconds, have left it.
 const RESOLUTION_S: f64 = 1e-6;
 
-/// A window of time at one moment.
+/// A time window at one moment.
 pub struct Window {
     /// Its length in seconds.
     pub length_s: f64,
-    /// The moment it ends at.
+    /// Its end.
     pub now_s: f64,
-    /// What ended before this time does not count.
+    /// Values that ended before this time do not count.
     pub since_s: f64,
 }
 
 impl Window {
-    /// Values that end in one slot of 1/128 of the window are together.
+    /// Groups values that end in the same slot of 1/128 of the window.
     pub fn slots<'s>(
         &self,
         spans: &'s [(f64, f64)],
@@ -25,8 +25,8 @@ impl Window {
         spans.chunk_by(move |a, b| slot(a) == slot(b))
     }
 
-    /// The weight in seconds of each value, which stands for the time from the first to the second moment. Those of a slot
-    /// count by the share of their time that is inside.
+    /// The weight in seconds of each value, given its time span. Values of a slot count by the share of their time inside the
+    /// window.
     pub fn weights(&self, spans: &[(f64, f64)]) -> Vec<f64> {
         let begin_s = self.now_s - self.length_s;
         let together = self.slots(spans);
@@ -44,7 +44,7 @@ impl Window {
     }
 }
 
-/// The weighted mean of (weight, value).
+/// The weighted mean of (weight, value) pairs.
 pub fn mean(values: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (sum, total) = values.fold((0.0, 0.0), |(sum, total), (weight, value)| {
         (sum + weight * value, total + weight)

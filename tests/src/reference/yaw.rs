@@ -1,7 +1,7 @@
-//! Motor commands without the part that turns the nose.
+//! Motor commands without their yaw part.
 
-/// The commands less the part of yaw: `e_i - y_i yaw`, with the yaw effort of the least-squares solution of
-/// `e_i = roll r_i + pitch p_i + yaw y_i + thrust`. The commands themselves where the factors do not tell these apart.
+/// The commands without their yaw part: `e_i - y_i yaw`, with the yaw effort of the least-squares solution of
+/// `e_i = roll r_i + pitch p_i + yaw y_i + thrust`. The unchanged commands if the factors do not determine these.
 pub fn less_yaw(commands: &[f64], factors: &[[f64; 3]]) -> Vec<f64> {
     let Some(yaw) = yaw(commands, factors) else {
         return commands.to_vec();
@@ -10,7 +10,7 @@ pub fn less_yaw(commands: &[f64], factors: &[[f64; 3]]) -> Vec<f64> {
     of_motors.map(|(e, of)| e - of[2] * yaw).collect()
 }
 
-/// The yaw effort: what the part of the yaw factors sees that roll, pitch and thrust cannot make (Gram and Schmidt).
+/// The yaw effort: the projection on the part of the yaw factors orthogonal to roll, pitch and thrust (Gram-Schmidt).
 fn yaw(commands: &[f64], factors: &[[f64; 3]]) -> Option<f64> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let column = |axis: usize| factors.iter().map(|of| of[axis]).collect::<Vec<f64>>();
@@ -18,7 +18,7 @@ fn yaw(commands: &[f64], factors: &[[f64; 3]]) -> Option<f64> {
     let mut yaw = 0.0;
     for of in [vec![1.0; factors.len()], column(0), column(1), column(2)] {
         let mut rest = of.clone();
-        // Twice, so that what rounding leaves is orthogonal as well.
+        // Twice, so that rounding errors are orthogonal as well.
         for other in basis.iter().chain(&basis) {
             let share = dot(&rest, other) / dot(other, other);
             let parts = rest.iter_mut().zip(other);

@@ -1,8 +1,8 @@
-//! The candidate rule sets. The choice between them is made on vehicles left out.
+//! The candidate rule sets. The choice between them is made by cross-validation over vehicles.
 
 use fuzzy::Model;
 
-/// The inputs of each candidate beside `at_limit`; the first is chosen.
+/// The inputs of each candidate besides `at_limit`; the first candidate is the chosen one.
 pub const CANDIDATES: [&[&str]; 4] = [
     &["unsteady_lately", "throttle_activity", "swing_per_room"],
     &["unsteady_lately", "throttle_activity"],
@@ -38,11 +38,11 @@ pub fn candidate(model: &Model, inputs: &[&str]) -> Model {
     model
 }
 
-/// The factor of the weights of the learned votes, beside the vote of a sudden change.
+/// The factor of the weights of learned votes, relative to the vote of a sudden change.
 const BESIDE_STEP: f64 = 0.66;
 
-/// Adds a vote of `unsteady_now` that only raises the risk: on a craft with room to spare, a sudden change is the first sign of a
-/// motor that fails. Its peaks are chosen by hand, as those of `swing_per_room` are, because few flights have such a fault.
+/// Adds a vote of `unsteady_now` that only raises the risk: on a craft with large reserves, a sudden change is the first sign of
+/// a failing motor. Its peaks are chosen by hand, like those of `swing_per_room`, because few flights have such a fault.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! Whole vehicles left out.
+//! Cross-validation over vehicles.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use super::{objective::Area, rows::Row, search::tune, votes::Votes};
 
-/// The fold of each vehicle. Each real vehicle is one; simulated vehicles are dealt out to them in turn, in a random order
-/// that is always the same.
+/// The fold of each vehicle. Each real vehicle has its own; simulated vehicles are distributed over them in turn, in a random but
+/// fixed order.
 pub fn folds(rows: &[Row]) -> BTreeMap<&str, usize> {
     let vehicles = |are_real: bool| -> Vec<&str> {
         let rows = rows.iter().filter(|row| row.set.is_real() == are_real);
@@ -22,7 +22,7 @@ pub fn folds(rows: &[Row]) -> BTreeMap<&str, usize> {
     real.into_iter().zip(folds).chain(dealt).collect()
 }
 
-/// The risk at each row by rules that know no vehicle of its fold, in %, and these rules for each fold.
+/// The risk of each row in %, from rules tuned without the vehicles of its fold, and these rules for each fold.
 pub fn tune_without(
     template: &Votes,
     rows: &[Row],
@@ -39,7 +39,7 @@ pub fn tune_without(
     (rows.iter().map(risk_pct).collect(), tuned)
 }
 
-/// The rows of an area ranked by risk; a group is a flight.
+/// Ranks the rows of an area by risk; a group is a flight.
 pub fn judge(area: &Area, rows: &[Row], risks_pct: &[f64]) -> Ranking {
     let rows = rows
         .iter()

@@ -1,8 +1,8 @@
-//! Rules that vote, tuned on flights and judged on vehicles that were left out.
+//! Voting rules, tuned on flights and validated on held-out vehicles.
 //!
-//! The risk is the mean of the consequents' peaks, weighted by what the rules' antecedents come to times their weights:
-//! the centroid over terms of equal width with product and sum. A template names the inputs, their terms and the rules;
-//! peaks, consequents and weights are tuned.
+//! The risk is the mean of the peaks of the consequents, weighted by the degrees of the antecedents times the rule weights: the
+//! centroid over terms of equal width with product and sum. A template defines the inputs, their terms and the rules; peaks,
+//! consequents and weights are tuned.
 
 mod candidates;
 mod folds;
@@ -20,5 +20,5 @@ pub use search::tune;
 pub use shares::{Share, risks_pct, shares, with_shares};
 pub use votes::Votes;
 
-/// What goes wrong with files.
+/// An error of reading or writing files.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;

@@ -1,4 +1,4 @@
-//! What tuned rules are to be good at.
+//! The objective of tuned rules.
 
 use std::collections::HashMap;
 
@@ -7,18 +7,18 @@ use super::{
     votes::{Input, Sum, Votes},
 };
 
-/// Rows over which the area under the ROC curve counts.
+/// A set of rows over which the area under the ROC curve counts.
 #[derive(Debug, Clone, Copy)]
 pub struct Area {
-    /// Which rows they are.
+    /// The name of the rows.
     pub name: &'static str,
-    /// Whether a row is one of them.
+    /// Whether a row belongs to them.
     pub holds: fn(&Row) -> bool,
-    /// How much it counts.
+    /// The weight of the area.
     weight: f64,
 }
 
-/// The areas that count. Real vehicles are few, and half their flights are of one: they have two fifths of the weight.
+/// The areas. Real vehicles are few, and half of their flights are of one vehicle: together they have two fifths of the weight.
 pub const AREAS: [Area; 8] = [
     Area {
         name: "real",
@@ -62,20 +62,20 @@ pub const AREAS: [Area; 8] = [
     },
 ];
 
-/// Rows over which a high risk is one too many.
+/// A set of rows over which a high risk is a false alarm.
 #[derive(Debug, Clone, Copy)]
 pub struct Excess {
-    /// Which rows they are.
+    /// The name of the rows.
     pub name: &'static str,
-    /// Whether a row is one of them.
+    /// Whether a row belongs to them.
     pub holds: fn(&Row) -> bool,
-    /// The risk that may be reached, in %.
+    /// The highest risk without a penalty, in %.
     pub above_pct: f64,
-    /// What it costs to be 1 % above it on average.
+    /// The penalty for an average of 1 % above it.
     cost: f64,
 }
 
-/// The excesses that count.
+/// The excesses.
 pub const EXCESSES: [Excess; 3] = [
     Excess {
         name: "ordinary real flights",
@@ -100,14 +100,14 @@ pub const EXCESSES: [Excess; 3] = [
     },
 ];
 
-/// Rows as the search needs them: a column for each input that votes.
+/// The rows in the form that the search needs: a column for each voting input.
 pub(super) struct Problem {
     pub(super) columns: Vec<Vec<f64>>,
-    /// For each row, to what degree votes count, and what the written rules come to.
+    /// For each row, the degree to which votes count, and the sum of the fixed rules.
     given: Vec<(f64, Sum)>,
-    /// The rows of each of [`AREAS`]: those that became critical and the others.
+    /// The rows of each of [`AREAS`]: those that became critical, and the others.
     areas: Vec<[Vec<u32>; 2]>,
-    /// What each row counts: the root of its vehicle's rows divided by their number, so that long logs do not decide alone.
+    /// The weight of each row: the root of the rows of its vehicle divided by their number, so that long logs do not dominate.
     weights: Vec<f64>,
     /// The rows of each of [`EXCESSES`].
     excesses: Vec<Vec<u32>>,
@@ -138,7 +138,7 @@ impl Problem {
         }
     }
 
-    /// What votes are worth, given their sums at each row.
+    /// The score of votes, given their sums at each row.
     pub(super) fn score(&self, sums: impl Iterator<Item = Sum>) -> f64 {
         let risk = |((given, written), votes): (&(f64, Sum), Sum)| {
             let weights = written.weights + given * votes.weights;
@@ -159,7 +159,7 @@ impl Problem {
         score
     }
 
-    /// The area under the ROC curve, risks in steps of 0.05 %; 0 without both kinds of rows.
+    /// The area under the ROC curve, with risks in steps of 0.05 %; 0 if one class is missing.
     fn roc(&self, risks: &[f64], [critical, others]: &[Vec<u32>; 2]) -> f64 {
         const STEPS: usize = 2000;
         let count = |rows: &[u32]| {

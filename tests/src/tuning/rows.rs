@@ -6,12 +6,12 @@ use flagred::profile::CRITICAL_ERROR_DEG;
 
 use super::Failure;
 
-/// Where a flight comes from.
+/// The data set of a flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Set {
     /// Real flights.
     Real,
-    /// More of them, of other vehicles.
+    /// More real flights, of other vehicles.
     Real2,
     /// Simulated flights in changing wind.
     Sitl2,
@@ -26,33 +26,33 @@ impl Set {
     }
 }
 
-/// A moment of a flight, and what came after it.
+/// A moment of a flight and its outcome.
 #[derive(Debug, Clone)]
 pub struct Row {
-    /// Where its flight comes from.
+    /// The data set of its flight.
     pub set: Set,
     /// The number of its flight.
     pub flight: u32,
     /// Its vehicle.
     pub vehicle: String,
-    /// What kind of flight it is.
+    /// The kind of flight.
     pub kind: String,
     /// The values of the inputs.
     pub inputs: Vec<f64>,
-    /// Whether the attitude error, over a second, gets critical within the next 5 s.
+    /// Whether the attitude error, over a second, becomes critical within the next 5 s.
     pub is_critical: bool,
-    /// Whether it was not critical in the last 5 s; unknown counts as not.
+    /// Whether it was not critical in the last 5 s; unknown values count as not critical.
     pub is_quiet_5_s: bool,
-    /// The same over the last 10 s.
+    /// The same for the last 10 s.
     pub is_quiet_10_s: bool,
 }
 
-/// Tables to read.
+/// The tables to read.
 pub struct Data<'a> {
     /// The rows of each set.
     pub sets: [(Set, &'a Path); 4],
-    /// Tables of real flights with columns `id` and `upsets` (`TIME=KIND;..`): what comes after an upset, in the same time in
-    /// the air, is left out.
+    /// Tables of real flights with columns `id` and `upsets` (`TIME=KIND;..`): rows after an upset, in the same time in the air,
+    /// are excluded.
     pub upsets: [&'a Path; 2],
 }
 
@@ -60,7 +60,7 @@ pub struct Data<'a> {
 ///
 /// # Errors
 ///
-/// A file cannot be read, or lacks a column.
+/// A file cannot be read, or a column is missing.
 pub fn read(data: &Data<'_>, inputs: &[&str]) -> Result<Vec<Row>, Failure> {
     let mut upsets = HashMap::new();
     for path in data.upsets {

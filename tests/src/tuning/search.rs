@@ -8,7 +8,7 @@ use super::{
     votes::{Input, Sum, Vote, Votes},
 };
 
-/// Weights that a rule may be given; a rule of none is dropped.
+/// The possible weights of a rule; a rule with weight 0 is dropped.
 const WEIGHTS: [f64; 8] = [0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0];
 
 /// The first digits of round numbers.
@@ -16,15 +16,15 @@ const DIGITS: [&str; 12] = [
     "1", "1.2", "1.6", "2", "2.5", "3", "4", "5", "6", "7", "8", "9",
 ];
 
-/// How many round numbers to either side of a peak are tried.
+/// The number of round numbers on either side of a peak to try.
 const REACH: usize = 2;
 
-/// What a change must gain.
+/// The minimum gain of a change.
 const LEAST_GAIN: f64 = 1e-5;
 
 const ROUNDS: usize = 6;
 
-/// The orders in which changes are tried; the best result stays.
+/// The random seeds of the orders in which changes are tried; the best result is kept.
 const SEEDS: [u64; 4] = [0, 1, 2, 3];
 
 /// Tunes the votes on rows.
@@ -40,7 +40,7 @@ pub fn tune(template: &Votes, rows: &[&Row]) -> Votes {
     best.map_or_else(|| template.clone(), |(votes, _)| votes)
 }
 
-/// What may be changed: of an input, of a term.
+/// A part of the votes that may change: of an input, or of a term.
 #[derive(Clone, Copy)]
 enum Part {
     Peak,
@@ -104,7 +104,7 @@ fn descend(mut votes: Votes, problem: &Problem, seed: u64) -> (Votes, f64) {
     (votes, best)
 }
 
-/// What all inputs but one come to, at each row.
+/// The sums of all inputs but one, at each row.
 fn total(sums: &[Vec<Sum>], without: usize) -> Vec<Sum> {
     let mut total = vec![Sum::default(); sums.first().map_or(0, Vec::len)];
     for (_, sums) in sums.iter().enumerate().filter(|(i, _)| *i != without) {
@@ -116,7 +116,7 @@ fn total(sums: &[Vec<Sum>], without: usize) -> Vec<Sum> {
     total
 }
 
-/// The input with one of its parts changed, in all ways that are tried.
+/// The variants of an input with one changed part.
 fn changes(
     input: &Input,
     part: Part,
@@ -166,7 +166,7 @@ fn changes(
     all.into_iter().filter(is_sound).collect()
 }
 
-/// The weight one step up or down; none stays none.
+/// The next larger or smaller weight; 0 stays 0.
 fn next(weight: f64, step: isize) -> f64 {
     let place = WEIGHTS.iter().position(|known| *known == weight);
     let next = place
@@ -175,7 +175,7 @@ fn next(weight: f64, step: isize) -> f64 {
     next.copied().unwrap_or(weight)
 }
 
-/// The round numbers around a peak and inside the range.
+/// The round numbers around a peak within the range.
 fn near(peak: f64, (low, high): (f64, f64)) -> Vec<f64> {
     let round = (-3..3).flat_map(|power| DIGITS.map(|digits| format!("{digits}e{power}")));
     let round = round.filter_map(|text| text.parse::<f64>().ok());

@@ -1,4 +1,4 @@
-//! What followed risks: of rows with a risk in a band, how many became critical.
+//! Reliability: the share of rows that became critical, by bands of risk.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -6,20 +6,20 @@ use fuzzy::{Engine, Model};
 
 use super::{Failure, Row, Set};
 
-/// Rows with a risk in a band, and how many of them became critical.
+/// The rows with a risk in a band, and how many of them became critical.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Share {
     /// All rows.
     pub moments: usize,
-    /// Those that became critical.
+    /// The rows that became critical.
     pub followed: usize,
 }
 
-/// The risk at each row in %, each by the rule set of the fold of its vehicle, which does not know it.
+/// The risk at each row in %, from the rule set of the fold of its vehicle, which was tuned without it.
 ///
 /// # Errors
 ///
-/// A rule set cannot be compiled, or has no value somewhere.
+/// A rule set cannot be compiled, or has no value for a row.
 pub fn risks_pct(
     rule_sets: &[Model],
     folds: &BTreeMap<&str, usize>,
@@ -37,8 +37,8 @@ pub fn risks_pct(
     rows.iter().map(risk_pct).collect()
 }
 
-/// The shares of `bands` bands of equal width from 0 to 100 %, of the rows of some sets. Rows of real flights are twice as many a
-/// second as those of simulated ones: each second one counts.
+/// The shares in `bands` bands of equal width from 0 to 100 %, for the rows of some data sets. Real flights have twice as many
+/// rows per second as simulated ones, so every second row of them counts.
 pub fn shares(rows: &[Row], risks_pct: &[f64], bands: usize, is_in: fn(Set) -> bool) -> Vec<Share> {
     let mut shares = vec![Share::default(); bands];
     let mut seen: HashMap<u32, usize> = HashMap::new();
@@ -56,7 +56,7 @@ pub fn shares(rows: &[Row], risks_pct: &[f64], bands: usize, is_in: fn(Set) -> b
     shares
 }
 
-/// The text of a profile with these shares as its key `reliability`; `None` where it has no such key.
+/// The text of a profile with these shares as its key `reliability`; `None` if it does not have this key.
 pub fn with_shares(profile: &str, real: &[Share], simulated: &[Share]) -> Option<String> {
     let key = profile.find("\nreliability:")? + 1;
     let first = key + profile[key..].find('\n')? + 1;
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_of_a_profile_are_replaced_and_nothing_else() {
+    fn only_the_rows_of_a_profile_are_replaced() {
         let share = |moments, followed| Share { moments, followed };
         let profile = "a: 1\nreliability:  # measured\n  - {old: 1}\n  - {old: 2}\nb: 2\n";
         let text = with_shares(

@@ -1,4 +1,4 @@
-//! A template's rules as votes, and what was tuned as a rule set again.
+//! The rules of a template as votes, and the conversion of tuned votes to a rule set.
 
 use fuzzy::{
     Model,
@@ -8,27 +8,27 @@ use fuzzy::{
 
 use super::rows::Row;
 
-/// The rules of a template: what each says may be tuned, and those that stay as they were written.
+/// The rules of a template: those that are tuned, and those that are fixed.
 ///
-/// A rule of two or more propositions, `input IS term AND other IS term`, is a vote of its first input and tuned; what
-/// stands behind the first proposition is the same in all votes. Votes without a written weight and the terms of their input
-/// stay, and so do all other rules.
+/// A rule of two or more propositions, `input IS term AND other IS term`, is a vote of its first input and is tuned; the
+/// propositions after the first are the same in all votes. Votes without an explicit weight, the terms of their input, and all
+/// other rules are fixed.
 #[derive(Debug, Clone)]
 pub struct Votes {
     model: Model,
-    /// The inputs that vote.
+    /// The voting inputs.
     pub(super) inputs: Vec<Input>,
-    /// What every vote is subject to: inputs and terms.
+    /// The common condition of all votes: inputs and terms.
     given: Vec<(usize, usize)>,
     written: Vec<Written>,
     /// The peaks of the output's terms.
     pub(super) consequents: Vec<f64>,
 }
 
-/// An input that votes: a partition, and at most one vote for each of its terms.
+/// A voting input: a partition, and at most one vote for each of its terms.
 #[derive(Debug, Clone)]
 pub(super) struct Input {
-    /// Its place among the inputs of the model.
+    /// Its index among the inputs of the model.
     pub(super) place: usize,
     /// The peaks of its terms.
     pub(super) peaks: Vec<f64>,
@@ -43,7 +43,7 @@ pub(super) struct Vote {
     pub(super) weight: f64,
 }
 
-/// A rule that stays as it was written.
+/// A fixed rule.
 #[derive(Debug, Clone)]
 struct Written {
     condition: Vec<(usize, usize)>,
@@ -66,7 +66,7 @@ impl Sum {
 }
 
 impl Input {
-    /// What the input's votes come to at a value.
+    /// The sum of the input's votes at a value.
     pub(super) fn sum(&self, x: f64, consequents: &[f64]) -> Sum {
         let mut sum = Sum::default();
         self.degrees(x, |term, degree| {
@@ -77,7 +77,7 @@ impl Input {
         sum
     }
 
-    /// The terms whose degree is above 0, with it.
+    /// Calls `take` with each term whose degree is above 0, and the degree.
     fn degrees(&self, x: f64, mut take: impl FnMut(usize, f64)) {
         let right = self.peaks.partition_point(|peak| *peak < x);
         if right == 0 || right == self.peaks.len() {
@@ -90,13 +90,13 @@ impl Input {
         take(right, part);
     }
 
-    /// Whether it is tuned.
+    /// Whether the input is tuned.
     pub(super) fn is_tuned(&self) -> bool {
         self.votes.iter().flatten().any(|vote| vote.weight < 1.0)
     }
 
-    /// Whether the peaks rise, a vote counts, and the risk never falls as the input rises, whatever the other votes come to:
-    /// from term to term a vote does not add less to what pulls up, and does not take less from what pulls down.
+    /// Whether the peaks rise, a vote counts, and the risk never falls as the input rises, whatever the other votes are: from
+    /// term to term a vote does not add less to the upward part, and does not take less from the downward part.
     pub(super) fn is_sound(&self, consequents: &[f64]) -> bool {
         let low = consequents.iter().copied().fold(f64::INFINITY, f64::min);
         let high = consequents
@@ -121,7 +121,7 @@ impl Votes {
     ///
     /// # Errors
     ///
-    /// A rule is none of those above, names what there is not, or two rules are votes of one term.
+    /// A rule has another form, names an unknown input or term, or two rules are votes of one term.
     pub fn new(template: &Model) -> Result<Votes, String> {
         let output = template.outputs.first().ok_or("no output")?;
         let consequents = peaks(&output.variable.terms)?;
@@ -200,13 +200,13 @@ impl Votes {
             .collect()
     }
 
-    /// The range of an input that votes.
+    /// The range of a voting input.
     pub(super) fn range(&self, input: &Input) -> (f64, f64) {
         let variable = &self.model.inputs[input.place];
         (variable.low, variable.high)
     }
 
-    /// To what degree votes count at a row, and what the written rules come to.
+    /// The degree to which votes count at a row, and the sum of the fixed rules.
     pub(super) fn given(&self, inputs: &[f64]) -> (f64, Sum) {
         let degree = |condition: &[(usize, usize)]| {
             let degrees = condition.iter().map(|(place, term)| {
@@ -233,8 +233,8 @@ impl Votes {
         sum.values / sum.weights.max(1e-9)
     }
 
-    /// The rule set, without votes of no weight. Each vote's support is the sum of its antecedent's degrees over the rows,
-    /// and its note the share of that which became critical.
+    /// The rule set, without votes of weight 0. The support of each vote is the sum of the degrees of its antecedent over the
+    /// rows, and its note the share of rows that became critical.
     pub fn rule_set(&self, rows: &[Row]) -> Model {
         let mut model = self.model.clone();
         let mut dropped = Vec::new();

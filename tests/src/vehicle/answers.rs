@@ -1,4 +1,4 @@
-//! What a vehicle answers.
+//! The answers of a vehicle to requests.
 
 use std::time::Duration;
 
@@ -42,7 +42,7 @@ impl StandIn {
         }
     }
 
-    /// Moves its motors to other outputs, from this one (counted from 1) on.
+    /// Moves its motors to other outputs, starting at this one (counted from 1).
     pub fn remap(&mut self, first_output: usize) {
         self.shift = first_output - 1;
         for (name, _) in &mut self.parameters {

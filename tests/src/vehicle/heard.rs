@@ -1,4 +1,4 @@
-//! What the other side said, and how far it is.
+//! The messages of the other side, and its progress.
 
 use std::{
     sync::atomic::{AtomicBool, AtomicU64},
@@ -7,15 +7,15 @@ use std::{
 
 use flagred_flightlog::mavlink::dialect::MavMessage;
 
-/// What the other side said.
+/// The messages of the other side.
 #[derive(Debug, Default)]
 pub struct Heard {
-    /// Its messages, each with when it came, the system and the component that sent it.
+    /// Its messages, each with its arrival time, system and component.
     pub messages: Vec<(Instant, u8, u8, MavMessage)>,
 }
 
 impl Heard {
-    /// The texts, with their severity.
+    /// The texts with their severity.
     pub fn texts(&self) -> Vec<(u8, String)> {
         let texts = self
             .messages
@@ -29,7 +29,7 @@ impl Heard {
         texts.collect()
     }
 
-    /// The values of this name, each with when it came and the vehicle's time it is for, in ms.
+    /// The values with this name, each with its arrival time and the vehicle's time in ms.
     pub fn values(&self, name: &str) -> Vec<(Instant, u32, f32)> {
         let values = self
             .messages
@@ -44,13 +44,13 @@ impl Heard {
     }
 }
 
-/// How far the other side is; kept by whoever reads what it says.
+/// The progress of the other side, updated by the reader of its output.
 #[derive(Debug, Default)]
 pub struct Progress {
-    /// The vehicle's time, in ms, of the latest risk that it told.
+    /// The vehicle's time, in ms, of the latest reported risk.
     pub followed_ms: AtomicU64,
-    /// Whether it told that it knows the motors.
+    /// Whether it reported that it knows the motors.
     pub is_ready: AtomicBool,
-    /// The last other system that it told of: after a flight a heartbeat of another one marks its end.
+    /// The last other system that it reported: after a flight, a heartbeat of another system marks the end.
     pub other_system: AtomicU64,
 }

@@ -6,7 +6,7 @@ use flagred_flightlog::mavlink::dialect::{
     SERVO_OUTPUT_RAW_DATA,
 };
 
-/// The outputs of one SERVO_OUTPUT_RAW.
+/// The number of outputs in one SERVO_OUTPUT_RAW.
 pub const OUTPUTS_A_PORT: usize = 16;
 
 /// The heartbeat of an ArduPilot vehicle.
@@ -21,7 +21,7 @@ pub fn heartbeat(mavtype: MavType, armed: bool, in_air: bool) -> MavMessage {
     heartbeat_of(mavtype, autopilot, base_mode, system_status)
 }
 
-/// The heartbeat of anything.
+/// A heartbeat with the given type and autopilot.
 pub fn heartbeat_of(
     mavtype: MavType,
     autopilot: MavAutopilot,
@@ -46,7 +46,7 @@ pub(super) fn attitude(t_s: f64) -> MavMessage {
     })
 }
 
-/// Whether the vehicle is in the air.
+/// EXTENDED_SYS_STATE: whether the vehicle is in the air.
 pub(super) fn landed_state(in_air: bool) -> MavMessage {
     MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
         landed_state: match in_air {

@@ -1,5 +1,5 @@
-//! A stand-in for the autopilot that runs exported scripts: Lua 5.3 with floats and integers of 32 bits, and with fewer local
-//! variables and upvalues than ArduPilot's Lua allows.
+//! A stand-in for the autopilot that runs exported scripts: Lua 5.3 with 32-bit floats and integers, and with stricter limits of
+//! local variables and upvalues than ArduPilot's Lua.
 
 use std::{
     fmt::Write as _,
@@ -13,22 +13,22 @@ use flagred::{board::Factors, verdict::Level};
 use flagred_flightlog::{Flight, ardupilot_frames};
 use flagred_tests::Folder;
 
-/// The most instructions of a call, of the 10,000 of SCR_VM_I_COUNT.
+/// The maximum instructions of a call, of the 10,000 of SCR_VM_I_COUNT.
 const BUDGET: f64 = 8_000.0;
-/// The local variables and the upvalues that a function may have. ArduPilot's limits are 100 and 127, Lua's own 200 and 255.
+/// The maximum numbers of local variables and upvalues of a function. ArduPilot's limits are 100 and 127, Lua's own 200 and 255.
 const LIMITS: [(&str, &str, &str); 2] = [
     ("lparser.c", "#define MAXVARS\t\t200", "#define MAXVARS 90"),
     ("lfunc.h", "#define MAXUPVAL\t255", "#define MAXUPVAL 110"),
 ];
-/// What the script may keep of the heap where pointers have 32 bits, as on the autopilot; with 64 bits nearly everything is
-/// twice as large. `CFLAGS=-m32` builds Lua with 32 bits, where the compiler can.
+/// The maximum heap of the script with 32-bit pointers, as on the autopilot; with 64 bits nearly everything is twice as large.
+/// `CFLAGS=-m32` builds Lua with 32 bits, if the compiler supports it.
 const HEAP_BYTES: u64 = 75_000;
-/// The clock of the autopilot begins anew after 71 minutes; in the tests that is a minute after the first sample.
+/// The clock of the autopilot wraps around after 71 minutes; in the tests, this is a minute after the first sample.
 const FIRST_US: u64 = (1 << 32) - 60_000_000;
 
-/// The sources of Lua 5.3, which come with the package `lua-src`.
+/// The sources of Lua 5.3, which the package `lua-src` contains.
 fn sources() -> PathBuf {
-    // Packages for other platforms are not on every machine.
+    // Packages for other platforms may be missing.
     let version = Command::new("rustc").arg("-vV").output().unwrap();
     let version = String::from_utf8(version.stdout).unwrap();
     let mut lines = version.lines();
@@ -46,7 +46,7 @@ fn sources() -> PathBuf {
     Path::new(manifest).parent().unwrap().join("lua-5.3.6")
 }
 
-/// Copies a source of Lua, with the limits of the autopilot.
+/// Copies a source file of Lua, with the limits of the autopilot.
 fn limited(source: &Path, folder: &Folder) -> PathBuf {
     let mut text = std::fs::read_to_string(source).unwrap();
     let name = source.file_name().unwrap().to_str().unwrap();
@@ -59,7 +59,7 @@ fn limited(source: &Path, folder: &Folder) -> PathBuf {
     copy
 }
 
-/// `tests/lua/autopilot.c` with Lua, compiled by `cc`, with which Rust links too.
+/// `tests/lua/autopilot.c` with Lua, compiled by `cc`, which Rust requires for linking too.
 fn autopilot() -> Command {
     static BUILT: OnceLock<(PathBuf, Folder)> = OnceLock::new();
     let (binary, _) = BUILT.get_or_init(|| {
@@ -98,7 +98,7 @@ pub(super) struct Vehicle {
     pub(super) factors: Vec<Factors>,
 }
 
-/// What the autopilot knows at a time.
+/// The state of the autopilot at one time.
 #[derive(Clone)]
 pub(super) struct Record {
     pub(super) t_us: u64,
@@ -150,7 +150,7 @@ impl Vehicle {
     }
 }
 
-/// What the autopilot knew during a flight. A command between two microseconds of a pulse is the nearer one.
+/// The states of the autopilot during a flight. Commands are rounded to whole microseconds.
 pub(super) fn records(flight: &Flight) -> Vec<Record> {
     let first_s = flight.commands.t_s()[0];
     let mut battery = flight
@@ -168,21 +168,21 @@ pub(super) fn records(flight: &Flight) -> Vec<Record> {
     rows.collect()
 }
 
-/// What was said at a record: risk and elevated risk in %, and level.
+/// The output at a record: risk and elevated risk in %, and level.
 pub(super) type Said = (usize, f64, f64, Level);
 
-/// What the script said.
+/// The output of a run of the script.
 #[derive(Default)]
 pub(super) struct Run {
     pub(super) logged: Vec<Said>,
     pub(super) texts: String,
     pub(super) values: usize,
-    /// Why the autopilot could not be armed.
+    /// The reason why the autopilot could not be armed.
     pub(super) blocks: Option<String>,
-    /// The most of a call at the start, the most of others, and their mean.
+    /// The maximum instructions of a call at the start, of other calls, and their mean.
     pub(super) instructions: [f64; 3],
-    /// The bytes of a pointer; the bytes in use without the script, with it after a collection, the most ever at the start and in
-    /// flight.
+    /// The size of a pointer in bytes; the bytes in use without the script, with it after a collection, and at most at the start
+    /// and in flight.
     pub(super) heap: [u64; 5],
 }
 

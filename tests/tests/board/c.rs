@@ -1,4 +1,4 @@
-//! The same in C: exported profiles, the examples, and what C can do wrong.
+//! The monitor in C: exported profiles, the examples, and mistakes of a caller.
 
 use std::{
     collections::BTreeMap,
@@ -56,7 +56,7 @@ pub(crate) fn program(
     compiled(source, name, profile, &[("PLAN", &plan)])
 }
 
-/// The same with the export of any file. The compiler is `cc`, with which Rust links too.
+/// The same with the export of any file. The compiler is `cc`, which Rust requires for linking too.
 pub(crate) fn compiled(
     source: &str,
     name: &str,
@@ -95,7 +95,7 @@ pub(crate) fn compiled(
     (Command::new(binary), folder)
 }
 
-/// The C initialisers name their fields, so the compiler holds the structures equal.
+/// The C initialisers name their fields, so the compiler verifies that the structures agree.
 #[test]
 fn the_header_has_the_arrays_of_a_table() {
     macro_rules! list {
@@ -119,7 +119,7 @@ fn the_header_has_the_arrays_of_a_table() {
         .take(arrays.len())
         .collect();
     assert_eq!(arrays[..], listed);
-    // Where a stage ends in each.
+    // The ends of stages in each array.
     macro_rules! names {
         ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => { [$(stringify!($array)),*].join(", ") };
     }
@@ -162,7 +162,7 @@ pub(crate) fn written(mut program: Command, doubles: &[f64]) -> Vec<String> {
 }
 
 #[test]
-fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs() {
+fn exported_c_agrees_with_the_monitor_on_flights_and_with_the_estimator_on_a_grid() {
     for (profile, (name, _)) in PROFILES.iter().zip(exported()) {
         let (_, folder) = program("tests/c/follow.c", name, (profile, name));
         let estimator = estimator(profile);
@@ -219,7 +219,7 @@ fn risks(csv: &[u8]) -> BTreeMap<u64, f64> {
 }
 
 #[test]
-fn a_log_flown_again_in_c_has_the_risk_of_assess() {
+fn a_log_replayed_in_c_has_the_risk_of_assess() {
     let (mut program, folder) = program("bindings/c/examples/replay.c", "replay", FLAGRED);
     let csv = folder.at("steady.csv");
     let converted = flagred()
@@ -291,9 +291,9 @@ fn the_pages_in_c_run() {
     }
 }
 
-/// With one name for both, the size of the profile that was included last would count.
+/// With the same names, the size of the profile included last would apply to both.
 #[test]
-fn two_profiles_in_one_program_have_memory_sizes_of_their_own() {
+fn two_profiles_in_one_program_have_their_own_memory_sizes() {
     let folder = Folder::new();
     for profile in ["flagred", "flagred-paper"] {
         let status = flagred()
@@ -334,17 +334,17 @@ fn two_profiles_in_one_program_have_memory_sizes_of_their_own() {
 }
 
 #[test]
-fn mistakes_in_c_are_told_and_nothing_is_written() {
+fn mistakes_in_c_are_reported_and_write_nothing() {
     let (mut program, _folder) = program("tests/c/mistakes.c", "mistakes", FLAGRED);
     let output = program.output().unwrap();
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{text}");
 }
 
-/// The module for PX4, with stand-ins for the parts of PX4 that it uses.
+/// The module for PX4, with replacements for the parts of PX4 that it uses.
 #[test]
 #[ignore = "needs a compiler of C++"]
-fn the_module_for_px4_says_the_risk_and_the_level() {
+fn the_module_for_px4_reports_the_risk_and_the_level() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let example = root.join("bindings/c/examples/px4");
     let folder = Folder::new();

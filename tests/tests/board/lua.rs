@@ -1,4 +1,4 @@
-//! The exported script for ArduPilot, run by Lua 5.3 with floats and integers of 32 bits, says what the monitor says.
+//! The exported script for ArduPilot, run by Lua 5.3 with 32-bit floats and integers, agrees with the monitor.
 
 use flagred::{
     estimator::Estimator,
@@ -15,10 +15,10 @@ use flagred_tests::{
 
 use crate::autopilot::{Record, Run, Said, Vehicle, records, run};
 
-/// The most that a risk may differ, in percentage points.
+/// The maximum difference of a risk, in percentage points.
 const TOLERANCE_PCT: f64 = 0.1;
 
-/// What the monitor says of the first sample with a known risk in each tenth of a second, which is what the script logs.
+/// The monitor's result for the first sample with a known risk in each tenth of a second, which is what the script logs.
 fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) -> Vec<Said> {
     let signals = estimator.profile().signals();
     let craft = Craft::new(vehicle.factors.len())
@@ -49,7 +49,7 @@ fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) 
             && bin != Some(t_us / 100_000)
         {
             bin = Some(t_us / 100_000);
-            // Information is no warning, and the script tells none.
+            // The script does not report information, because it is not a warning.
             let level = update.level.filter(|level| *level > Level::Info);
             said.push((
                 i,
@@ -62,7 +62,7 @@ fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) 
     said
 }
 
-/// The largest difference of risk and elevated risk; the levels are the same.
+/// The largest differences of risk and elevated risk; levels must be equal.
 fn differ(expected: &[Said], found: &[Said], what: &str) -> (f64, f64) {
     let at = |said: &[Said]| said.iter().map(|said| said.0).collect::<Vec<usize>>();
     assert_eq!(at(expected), at(found), "{what}: known at other times");
@@ -74,7 +74,7 @@ fn differ(expected: &[Said], found: &[Said], what: &str) -> (f64, f64) {
             expected.0
         );
         let difference = (expected.1 - found.1).abs();
-        // A sample that is exactly as old as a window is inside for one clock and outside for the other.
+        // A sample exactly as old as a window is inside for one clock and outside for the other.
         if difference > TOLERANCE_PCT && difference < 1.0 && at_edge == 0 {
             at_edge += 1;
         } else {
@@ -96,7 +96,7 @@ fn script(profile: &str, folder: &Folder) -> String {
 }
 
 #[test]
-fn the_script_says_what_the_monitor_says_of_every_flight() {
+fn the_script_agrees_with_the_monitor_on_every_flight() {
     let folder = Folder::new();
     for profile in PROFILES {
         let estimator = estimator(profile);
@@ -125,8 +125,8 @@ fn the_script_says_what_the_monitor_says_of_every_flight() {
     }
 }
 
-/// Three flights in which everything happens, 25 times a second: a turn, gusts, a motor that weakens and another that makes up
-/// for it; a heavy load; two motors that change their parts; a fall.
+/// Three flights with all events, 25 times a second: a turn, gusts, a motor that weakens and another that compensates
+/// for it; a heavy load; two motors that change their shares; a fall.
 fn eventful(vehicle: &Vehicle) -> Vec<Record> {
     let mut random = fastrand::Rng::with_seed(7);
     let mut records = Vec::new();
@@ -163,7 +163,7 @@ fn eventful(vehicle: &Vehicle) -> Vec<Record> {
         });
         records.push(Record {
             pwm: pwm.collect(),
-            // Calls are late by up to a millisecond.
+            // Calls are up to a millisecond late.
             t_us: i * 40_000 + random.u64(0..1000),
             flying,
             battery_pct: (100.0 - t_s / 4.0).round(),
@@ -172,7 +172,7 @@ fn eventful(vehicle: &Vehicle) -> Vec<Record> {
     records
 }
 
-/// What is told in a flight by the assessor's findings: when, the level, and the cause.
+/// The messages of a flight according to the assessor's findings: time, level and cause.
 fn told_by_the_assessor(
     estimator: &Estimator,
     vehicle: &Vehicle,
@@ -235,7 +235,7 @@ fn in_short(line: &str) -> String {
 }
 
 #[test]
-fn the_script_tells_levels_and_causes_of_any_frame() {
+fn the_script_reports_levels_and_causes_of_any_frame() {
     let folder = Folder::new();
     let estimator = estimator("flagred");
     let script = script("flagred", &folder);
@@ -260,7 +260,7 @@ fn the_script_tells_levels_and_causes_of_any_frame() {
                 "{name}: never {level}"
             );
         }
-        // Without yaw and thrust, opposite motors of a quadrotor differ from their trims by the same: either may be named.
+        // Without yaw and thrust, opposite motors of a quadrotor differ equally from their trims: either may be named.
         let either = |told: String| match name {
             "QUAD/X" if !told.contains("limit") => told.replace("motor 3", "motor 4"),
             _ => told,
@@ -299,7 +299,7 @@ fn the_script_obeys_its_parameters_and_survives_an_error() {
         warned(&early),
         warned(&usual)
     );
-    // Called to the end, so it does not block arming.
+    // The script runs to its end, so it does not block arming.
     let broken = run(&script, &vehicle, records, &["BROKEN=1"]);
     assert_eq!(broken.logged.len(), 0);
     let told: Vec<&str> = broken.texts.lines().skip(1).collect();
@@ -324,9 +324,9 @@ fn the_script_obeys_its_parameters_and_survives_an_error() {
     assert_eq!((none.logged.len(), none.blocks), (0, None));
 }
 
-/// The motors that are not known may be those at their limit.
+/// The motors without outputs may be at their limits.
 #[test]
-fn a_frame_with_more_motors_than_outputs_is_not_judged() {
+fn a_frame_with_more_motors_than_outputs_is_not_assessed() {
     let folder = Folder::new();
     let four = Vehicle::named("QUAD/X");
     let records = &eventful(&four)[..2000];
@@ -353,7 +353,7 @@ fn a_frame_with_more_motors_than_outputs_is_not_judged() {
     }
 }
 
-/// Whatever the size of the heap, the script flies or sends one text and ends, and the vehicle can be armed.
+/// With a heap of any size, the script runs or sends one text and ends, and the vehicle can be armed.
 #[test]
 fn a_heap_that_is_too_small_does_not_block_arming() {
     const ENOUGH: u64 = 159_744;
@@ -384,7 +384,7 @@ fn a_heap_that_is_too_small_does_not_block_arming() {
     assert!(off > 30 && flew > 5, "{off} {flew}");
 }
 
-/// A file that was cut off or edited is told, and does not block arming.
+/// A truncated or edited file is reported, and does not block arming.
 #[test]
 fn a_damaged_script_does_not_block_arming() {
     let folder = Folder::new();
@@ -395,7 +395,7 @@ fn a_damaged_script_does_not_block_arming() {
     let whole = text.len();
     let misspelled = text.replacen("function judge(", "function judge((", 1);
     let first = text.find('\x0c').unwrap();
-    // Anywhere behind the loader, in a line or between lines, but where a comment begins.
+    // Anywhere after the loader, within or between lines, but not at the beginning of a comment.
     let ends =
         (first..whole)
             .step_by(whole / 40)
@@ -444,7 +444,7 @@ fn every_signal_and_statistic_is_the_same_in_the_script() {
     );
 }
 
-/// The battery is heard of after a minute, and its ratio is unknown below 80 %.
+/// The battery is known after a minute, and its ratio is unknown below 80 %.
 #[test]
 fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
     let folder = Folder::new();
@@ -479,7 +479,7 @@ fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
     );
 }
 
-/// 36 minutes are more microseconds than an integer of 32 bits holds; a float of 32 bits has 24 bits.
+/// 36 minutes in microseconds exceed a 32-bit integer; a 32-bit float has 24 bits.
 #[test]
 #[ignore = "takes half a minute"]
 fn the_script_does_not_drift_in_a_long_flight() {
@@ -511,7 +511,7 @@ fn the_script_does_not_drift_in_a_long_flight() {
 }
 
 #[test]
-fn what_a_script_cannot_do_is_refused_with_what_it_can() {
+fn unsupported_features_of_a_script_are_refused_with_alternatives() {
     let folder = Folder::new();
     let rules = include_str!("../../../rules/flagred-paper.yaml");
     let profile = include_str!("../../../rules/profiles/flagred-paper.yaml");

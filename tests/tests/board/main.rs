@@ -1,5 +1,5 @@
-//! On-board monitors have the bits of the monitor, with a lent plan, with exported Rust and with exported C, over grids of
-//! inputs and over every flight.
+//! On-board monitors have the bits of the monitor, with a plan in borrowed memory, with exported Rust and with exported C, over
+//! grids of inputs and over every flight.
 
 mod autopilot;
 mod c;
@@ -85,7 +85,7 @@ fn on_board(plan: &Plan<'_>, geometry: &[Factors], flight: &[Moment]) -> Vec<Str
     })
 }
 
-/// Shows the first difference only: a whole flight is too long to print.
+/// Shows only the first difference: a whole flight is too long to print.
 fn assert_same(expected: &[String], found: &[String], what: &str) {
     assert_eq!(expected.len(), found.len(), "{what}");
     for (i, (expected, found)) in expected.iter().zip(found).enumerate() {
@@ -93,7 +93,7 @@ fn assert_same(expected: &[String], found: &[String], what: &str) {
     }
 }
 
-/// The points on each axis of a grid that is dense and takes little time.
+/// The number of points on each axis of a grid that is dense and fast enough.
 fn along(estimator: &Estimator) -> usize {
     match estimator.profile().inputs.len() {
         0..=2 => 203,
@@ -105,10 +105,10 @@ fn along(estimator: &Estimator) -> usize {
 }
 
 #[test]
-fn exported_files_are_what_export_writes() {
+fn exported_files_equal_the_output_of_export() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("exported");
     for (profile, (file, _)) in PROFILES.iter().zip(exported()) {
-        // One script is enough: those of other profiles differ in their data alone, and `lua.rs` runs them.
+        // One script is enough: other profiles differ only in their data, and `lua.rs` runs their scripts.
         let lua = (file == "flagred").then_some(("--lua", "lua"));
         for (option, ending) in [("--rust", "rs")].into_iter().chain(lua) {
             let output = flagred()
@@ -131,11 +131,11 @@ fn exported_files_are_what_export_writes() {
 }
 
 #[test]
-fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs() {
+fn plans_agree_with_the_estimator_on_a_grid_of_inputs() {
     for (profile, (name, plan)) in PROFILES.iter().zip(exported()) {
         let estimator = estimator(profile);
         let lent = estimator.plan().unwrap();
-        // As text, in which NaN equals NaN.
+        // Compared as text, in which NaN equals NaN.
         let table = |plan: &Plan<'_>| format!("{:?}", plan.rules.table);
         assert!(table(plan) == table(&lent), "{name}");
         let (mut known, mut filled) = (0, 0);
@@ -165,7 +165,7 @@ fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs()
 }
 
 #[test]
-fn a_plan_and_an_exported_plan_say_what_the_monitor_says_of_every_flight() {
+fn plans_agree_with_the_monitor_on_every_flight() {
     for (profile, (name, plan)) in PROFILES.iter().zip(exported()) {
         let estimator = estimator(profile);
         let lent = estimator.plan().unwrap();
@@ -181,9 +181,9 @@ fn a_plan_and_an_exported_plan_say_what_the_monitor_says_of_every_flight() {
     }
 }
 
-/// An action on a strength before those of its output raises nothing, and is no panic.
+/// An action on a strength before those of its output raises nothing and does not panic.
 #[test]
-fn an_action_on_a_strength_of_no_output_raises_nothing() {
+fn an_action_without_an_output_raises_nothing() {
     let estimator = estimator("flagred-paper");
     let plan = estimator.plan().unwrap();
     let mut outputs = plan.rules.table.outputs.to_vec();
@@ -212,7 +212,7 @@ fn an_action_on_a_strength_of_no_output_raises_nothing() {
     assert_eq!(high, None);
 }
 
-/// A profile with every signal of motors, every statistic that a script has, and every notice, and the file of it.
+/// A profile with every signal of motors, every statistic that a script supports, and every notice, with its file.
 pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
     const SOURCES: [&str; 13] = [
         "{std_less_noise: {std: motor_command_less_yaw}, per: x9, at_least: 0.02}",
@@ -232,7 +232,7 @@ pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
     profile_of(folder, &SOURCES)
 }
 
-/// A profile with every statistic that only plans have.
+/// A profile with every statistic that only plans support.
 fn profile_of_every_statistic(folder: &Folder) -> (Estimator, String) {
     const SOURCES: [&str; 16] = [
         "{rate: {max: motor_command}}",
@@ -286,23 +286,23 @@ fn profile_of(folder: &Folder, of: &[&str]) -> (Estimator, String) {
 }
 
 #[test]
-fn every_signal_and_notice_is_the_same_lent_and_in_c() {
+fn every_signal_and_notice_is_the_same_in_borrowed_memory_and_in_c() {
     let folder = Folder::new();
     let measures = same_lent_and_in_c(profile_of_every_signal(&folder));
-    // In the shipped flights an alarm stands before trims are known: there is no imbalance against them.
+    // In the shipped flights, an alarm is raised before trims are known, so there is no imbalance relative to them.
     for expected in ["command noise", "pair imbalance", "reserve", "risk"] {
         assert!(measures.contains(expected), "{measures:?}");
     }
 }
 
 #[test]
-fn every_statistic_is_the_same_lent_and_in_c() {
+fn every_statistic_is_the_same_in_borrowed_memory_and_in_c() {
     let folder = Folder::new();
     same_lent_and_in_c(profile_of_every_statistic(&folder));
 }
 
 #[test]
-fn a_profile_that_reads_no_motor_is_the_same_with_none_lent_and_in_c() {
+fn a_profile_without_motors_is_the_same_in_borrowed_memory_and_in_c() {
     let folder = Folder::new();
     let rules = "fuzzy: 1\nname: loads\ninputs:\n  load: {range: [0, 2], partition: {rated: 1, over: 1.5}}\n\
                  outputs:\n  risk: {range: [0, 100], partition: [low, medium, high]}\nrules:\n\
@@ -335,7 +335,7 @@ fn a_profile_that_reads_no_motor_is_the_same_with_none_lent_and_in_c() {
     );
 }
 
-/// Holds the bits of a plan and of its export to C against those of the monitor; gives what was found of the flights.
+/// Asserts that a plan and its export to C have the bits of the monitor; returns the kinds of findings.
 fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String> {
     let signals = estimator.profile().signals();
     let plan = estimator.plan().unwrap();
@@ -379,7 +379,7 @@ fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String
 }
 
 #[test]
-fn a_geometry_that_tells_nothing_apart_is_refused_and_changes_nothing() {
+fn an_ambiguous_geometry_is_refused_and_changes_nothing() {
     let estimator = estimator("flagred");
     let plan = estimator.plan().unwrap();
     let log = &logs()[0];
@@ -404,7 +404,7 @@ fn a_geometry_that_tells_nothing_apart_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn a_storage_has_the_sizes_of_its_plan_and_refuses_others() {
+fn a_storage_refuses_plans_of_other_sizes() {
     let mut storage = exported::flagred::Storage::<8>::new();
     assert!(storage.monitor(&exported::flagred::PLAN).is_ok());
     let other = storage.monitor(&exported::flagred_battery::PLAN);
@@ -431,7 +431,7 @@ fn a_sample_on_board_allocates_nothing() {
 }
 
 #[test]
-fn what_has_no_closed_form_is_refused_with_what_has() {
+fn outputs_without_a_closed_form_are_refused_with_alternatives() {
     let folder = Folder::new();
     let rules = include_str!("../../../rules/flagred-paper.yaml")
         .replace("defuzzifier: centroid", "samples: {midpoint: 100}");
@@ -476,7 +476,7 @@ fn profiles_of_every_kind(folder: &Folder) -> Vec<(String, Estimator, String)> {
 }
 
 #[test]
-fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
+fn tables_of_every_kind_agree_with_the_estimator_in_borrowed_memory_and_in_c() {
     let folder = Folder::new();
     let mut used = Vec::new();
     for (name, estimator, file) in profiles_of_every_kind(&folder) {
@@ -519,7 +519,7 @@ fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
 }
 
 #[test]
-fn every_compiled_table_is_whole() {
+fn every_compiled_table_is_valid() {
     for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/conformance")).unwrap() {
         let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
         let (rule_set, _) = text.split_once("\n---\n").unwrap();

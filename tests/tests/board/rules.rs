@@ -1,4 +1,4 @@
-//! Rule sets without a profile, lent and exported to Rust and C: their outcomes have the bits of the engine.
+//! Rule sets without a profile, in borrowed memory and exported to Rust and C: their outcomes have the bits of the engine.
 
 use std::path::{Path, PathBuf};
 
@@ -55,7 +55,7 @@ fn rule_sets() -> Vec<(String, String)> {
     found
 }
 
-/// Points all over the ranges of the inputs and beyond, and values that are not finite.
+/// Points in and beyond the ranges of the inputs, and values that are not finite.
 fn points(model: &Model) -> Vec<Vec<f64>> {
     let mut random = fastrand::Rng::with_seed(19);
     let mut points: Vec<Vec<f64>> = (0..1500)
@@ -105,7 +105,7 @@ fn by_the_engine(engine: &Engine, points: &[Vec<f64>]) -> Vec<String> {
     let (mut scratch, outputs) = (engine.scratch(), engine.output_names().len());
     let outcomes = points.iter().map(|point| {
         let mut outcomes = vec![Outcome::default(); outputs];
-        // That an output must have a value is an error of the engine, and a state here.
+        // An output without a required value is an error of the engine, and a state here.
         let _ = engine.evaluate_with(&mut scratch, point, &mut outcomes);
         told(&outcomes)
     });
@@ -164,7 +164,7 @@ fn in_c(
 }
 
 #[test]
-fn rule_sets_say_what_the_engine_says_lent_and_in_c() {
+fn rule_sets_agree_with_the_engine_in_borrowed_memory_and_in_c() {
     let (folder, mut refused, mut chains) = (Folder::new(), Vec::new(), 0);
     let rule_sets = rule_sets();
     for (name, text) in &rule_sets {
@@ -188,7 +188,7 @@ fn rule_sets_say_what_the_engine_says_lent_and_in_c() {
 }
 
 #[test]
-fn exported_rust_says_what_the_engine_says() {
+fn exported_rust_agrees_with_the_engine() {
     fn exported<const INPUTS: usize, const OUTPUTS: usize>(
         file: &str,
         evaluate: fn(&[f64; INPUTS]) -> [Outcome; OUTPUTS],
@@ -267,7 +267,7 @@ fn a_rule_set_of_another_program_is_exported_as_its_import() {
 }
 
 #[test]
-fn what_is_no_function_of_the_inputs_is_refused_with_help() {
+fn rule_sets_that_keep_previous_values_are_refused_with_help() {
     let folder = Folder::new();
     let tipper = std::fs::read_to_string(root().join("rules/tipper.yaml")).unwrap();
     let refused = |with: &str, arguments: &[&str]| {
@@ -313,7 +313,7 @@ fn what_is_no_function_of_the_inputs_is_refused_with_help() {
 }
 
 #[test]
-fn an_evaluation_that_takes_too_much_stack_is_refused_in_rust_and_lent_memory_in_c() {
+fn an_evaluation_that_takes_too_much_stack_is_refused_in_rust_and_uses_borrowed_memory_in_c() {
     let folder = Folder::new();
     let rules = "fuzzy: 1\nname: many\ninputs: {x: {range: [0, 1], partition: [a, b]}}\n\
         outputs: {y: {range: [0, 1], partition: [a, b]}}\nactivation: {highest: 2}\nrules:\n"

@@ -116,10 +116,10 @@ fn random(seed: u64) -> Model {
     model(&text)
 }
 
-/// `FLAGRED_PYTHON` names a Python that has pyfuzzylite.
+/// `FLAGRED_PYTHON` names a Python with pyfuzzylite.
 #[test]
 #[ignore = "needs Python with pyfuzzylite: tests/peer/fuzzylite.sh"]
-fn pyfuzzylite_computes_the_values_of_what_is_written_for_it() {
+fn pyfuzzylite_computes_the_same_values_from_exported_files() {
     let folder = Folder::new();
     for (name, text) in SHIPPED {
         write(&folder, name, &model(text), Format::Fll, 50);

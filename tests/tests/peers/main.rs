@@ -1,4 +1,4 @@
-//! Other programs read the rule sets that are written for them, and compute the same values. `tests/peer` has what runs them.
+//! Other programs read the exported rule sets and compute the same values. `tests/peer` contains the scripts that run them.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -13,7 +13,7 @@ use flagred_interchange::{Format, Losses};
 use flagred_tests::Folder;
 use fuzzy::{Engine, Model};
 
-/// Rule sets that come with the program.
+/// Shipped rule sets.
 const SHIPPED: [(&str, &str); 3] = [
     ("tipper", include_str!("../../../rules/tipper.yaml")),
     ("flagred", include_str!("../../../rules/flagred.yaml")),
@@ -28,12 +28,12 @@ fn model(text: &str) -> Model {
         .unwrap_or_else(|findings| panic!("{text}\n{findings}"))
 }
 
-/// Writes a rule set in a format, and beside it a table of its values at so many points that are spread over its inputs. Where
-/// rules hardly fire, programs differ in what they take for none.
+/// Writes a rule set in a format, and a table of its values at this many points spread over its inputs. Points where rules hardly
+/// fire are skipped, because programs differ there.
 fn write(folder: &Folder, name: &str, model: &Model, format: Format, points: usize) {
     let written = flagred_interchange::write(model, format, Losses::Refuse);
     let written = written.unwrap_or_else(|findings| panic!("{name}: {findings}"));
-    // What fuzzylite samples is sampled here: the values are those of the text as it is read again.
+    // fuzzylite samples, so the values are those of the text as it is read again, which is sampled too.
     let read = flagred_interchange::read(&written.text, format, Losses::Refuse).unwrap();
     let engine = Engine::new(&read.model).unwrap();
     let names = engine.input_names().chain(engine.output_names());
@@ -61,7 +61,7 @@ fn write(folder: &Folder, name: &str, model: &Model, format: Format, points: usi
     folder.file(&format!("{name}.csv"), table);
 }
 
-/// Runs a script of `tests/peer` on a folder, and holds what it says.
+/// Runs a script of `tests/peer` on a folder, and compares its output.
 fn ask(mut program: Command, script: &str, folder: &Folder, expected: &str) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("peer")

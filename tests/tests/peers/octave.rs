@@ -9,7 +9,7 @@ use fuzzy::Model;
 
 use super::{SHIPPED, ask, model, write};
 
-/// A term in [0, 10]. Octave takes no vertical flanks, and whole slopes of bells.
+/// A term in [0, 10]. Octave does not accept vertical flanks, and requires integer slopes of bells.
 fn shape(rng: &mut Rng) -> String {
     let a = 5.0 * rng.f64();
     let (b, c) = (a + 0.5 + 2.0 * rng.f64(), a + 3.0 + 2.0 * rng.f64());
@@ -68,9 +68,9 @@ fn random(seed: u64) -> Model {
 
 #[test]
 #[ignore = "needs Octave with the fuzzy-logic-toolkit: tests/peer/octave.sh"]
-fn octave_computes_the_values_of_what_is_written_for_it() {
+fn octave_computes_the_same_values_from_exported_files() {
     let folder = Folder::new();
-    // Octave takes a tenth of a second for a point.
+    // Octave needs a tenth of a second for a point.
     for (name, text) in SHIPPED {
         write(&folder, name, &model(text), Format::Fis, 4);
     }

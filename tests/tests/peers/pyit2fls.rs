@@ -1,4 +1,4 @@
-//! PyIT2FLS and FCL: it reads points, AND and `COG`.
+//! PyIT2FLS and FCL: it supports points, AND and `COG`.
 
 use std::fmt::Write;
 
@@ -41,7 +41,7 @@ fn random(seed: u64) -> Model {
 
 #[test]
 #[ignore = "needs Python with pyit2fls: tests/peer/pyit2fls.sh"]
-fn pyit2fls_computes_the_values_of_what_is_written_for_it() {
+fn pyit2fls_computes_the_same_values_from_exported_files() {
     let folder = Folder::new();
     let (name, text) = SHIPPED[2];
     write(&folder, name, &model(text), Format::Fcl, 50);

@@ -1,7 +1,7 @@
 //! Times the Rust crates fuzzy-logic_rs and oxictl on a system written by the example `peers`:
 //! flagred-peers NAME FOLDER prints `system,program,ns a call,largest error in % of the range`.
 //!
-//! Both take rules that are ANDs of a term of every input, so not the tipper.
+//! Both support only rules that are ANDs of one term of every input, so not the tipper.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -21,7 +21,7 @@ use oxictl::fuzzy::{
     Antecedent, Consequent, FuzzyRule, MembershipFn, TNorm, Trapezoidal, Triangular,
 };
 
-/// A variable of the file: its range, and the corners of each term, 3 or 4.
+/// A variable of the file: its range, and the 3 or 4 corners of each term.
 struct Variable {
     name: String,
     low: f64,
@@ -29,7 +29,7 @@ struct Variable {
     terms: Vec<(String, Vec<f64>)>,
 }
 
-/// The term of each input, that of the output, and the weight.
+/// A rule: the term of each input, the term of the output, and the weight.
 struct Sentence {
     inputs: Vec<usize>,
     output: usize,
@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (variables, sentences) = read(&std::fs::read_to_string(format!("{folder}/{system}.fll"))?)?;
     let points = std::fs::read_to_string(format!("{folder}/{system}.points"))?;
     let mut rows = Vec::new();
-    // As many as take these programs a moment, not minutes.
+    // A number of points that takes these programs a moment, not minutes.
     for line in points
         .lines()
         .take(if sentences.len() > 100 { 64 } else { 1024 })
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     oxictl(system, inputs, output, &sentences, &rows)
 }
 
-/// Variables and rules of the subset of fuzzylite's language that the example writes.
+/// The variables and rules in the subset of fuzzylite's language that the example writes.
 fn read(text: &str) -> Result<(Vec<Variable>, Vec<Sentence>), Box<dyn std::error::Error>> {
     let (mut variables, mut sentences) = (Vec::<Variable>::new(), Vec::new());
     for line in text.lines() {
@@ -179,7 +179,7 @@ fn oxictl(
     let terms = shapes(output)?;
     let terms: Vec<&dyn MembershipFn<f64>> = terms.iter().map(|t| &**t).collect();
 
-    // Its capacity is part of its type: one that fits each system.
+    // The capacity is part of the type: one that fits each system.
     macro_rules! with_room_for {
         ($rules:literal) => {{
             let mut engine = MamdaniEngine::<f64, $rules, 8>::new(TNorm::Min);
@@ -215,7 +215,7 @@ fn oxictl(
     Ok(())
 }
 
-/// The fastest of many rounds, and the largest distance from the values in the rows' last column.
+/// Prints the fastest of many rounds, and the largest difference from the values in the last column of the rows.
 fn report(
     system: &str,
     program: &str,

@@ -1,7 +1,7 @@
 """The command `flagred` of the wheel.
 
-It loads the native module alone. The package `flagred` imports NumPy, which the command does not need and which would more than
-double the time of its start.
+It loads only the native module. The package `flagred` imports NumPy, which the command does not need and which would more
+than double its start-up time.
 """
 
 import signal
@@ -13,8 +13,8 @@ from os.path import dirname, join
 
 def main() -> int:
     """Runs the command line of this process and returns its exit code."""
-    # Python's handler sets a flag that only Python code reads. With the default, Ctrl-C ends the command as it ends any program;
-    # commands that finish their work first, such as `flagred watch`, set a handler of their own.
+    # Python's handler sets a flag that only Python code reads. With the default handler, Ctrl-C ends the command like any
+    # program; commands that finish their work first, such as `flagred watch`, set their own handler.
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     spec = PathFinder.find_spec("flagred._core", [join(dirname(dirname(__file__)), "flagred")])

@@ -1,4 +1,4 @@
-"""Fuzzy rule sets, exact and fast; and from a flight log, how close a multirotor was to losing control.
+"""Fuzzy rule sets, exact and fast; and the risk of a multirotor's loss of control, from a flight log.
 
 >>> import flagred
 >>> fan = flagred.loads('''
@@ -11,10 +11,11 @@
 >>> fan(20)
 4.5
 
-Models are called like functions: :func:`load`, :func:`loads`, :class:`Model`. Logs are assessed by :func:`assess`, or sample by
-sample by a :class:`Monitor`. :func:`learn`, :func:`tune`, :func:`identify`, :func:`simplify` and :func:`c_means` work on data,
-:func:`evaluate` measures how well risks predict. ``flagred.types`` has the types of results, ``flagred.sklearn`` estimators,
-``flagred.testing`` helpers for tests, ``flagred.fleet`` many logs.
+Models are called like functions: :func:`load`, :func:`loads`, :class:`Model`. Logs are assessed by :func:`assess`, or
+sample by sample by a :class:`Monitor`. :func:`learn`, :func:`tune`, :func:`identify`, :func:`simplify` and
+:func:`c_means` use data, :func:`evaluate` measures how well risks predict. ``flagred.types`` contains the types of
+results, ``flagred.sklearn`` estimators, ``flagred.testing`` helpers for tests, and ``flagred.fleet`` functions for many
+logs.
 """
 
 from . import types

@@ -11,35 +11,35 @@ from ._errors import DataError
 
 
 def array(value: Any) -> NDArray[np.float64]:
-    """A value, whatever it is, as an array of float64; masked, null and None become NaN."""
+    """Converts a value of any kind to an array of float64; masked values, null and None become NaN."""
     if isinstance(value, np.ma.MaskedArray):
         filled: NDArray[np.float64] = np.ma.filled(value.astype(np.float64), np.nan)
         return filled
     try:
         if type(value).__module__.startswith("pandas.") and hasattr(value, "to_numpy"):
-            # pandas has types of its own, with null as a value of them.
+            # pandas has its own types, with null as a value.
             value = value.to_numpy(dtype=np.float64, na_value=np.nan)
         found = np.asarray(value)
         if found.dtype.kind not in "biufO":
             what = "text" if found.dtype.kind in "UST" else f"an array of {found.dtype}"
             raise DataError(f"{what} is not a number\n  help: convert it to numbers first")
-        # The native half reads numbers at their natural addresses alone.
+        # The native half reads only aligned numbers.
         return np.require(found.astype(np.float64, copy=False), requirements="A")
     except DataError:
         raise
     except (TypeError, ValueError) as error:
-        raise DataError(f"an array of objects holds something that is not a number: {error}") from None
+        raise DataError(f"an array of objects contains a value that is not a number: {error}") from None
 
 
 def alike(values: list[Any]) -> list[NDArray[np.float64]]:
-    """Values as arrays of one shape, in one piece each."""
+    """Converts values to contiguous arrays of one shape."""
     arrays = [array(value) for value in values]
     try:
         arrays = list(np.broadcast_arrays(*arrays))
     except ValueError:
         shapes = ", ".join(str(one.shape) for one in arrays)
-        raise DataError(f"arrays of the shapes {shapes} do not go together") from None
-    # Not `ascontiguousarray`: it would give a number an axis.
+        raise DataError(f"arrays of the shapes {shapes} cannot be broadcast together") from None
+    # Not `ascontiguousarray`, which would add an axis to a number.
     return [np.asarray(one, dtype=np.float64, order="C") for one in arrays]
 
 

@@ -37,9 +37,9 @@ class Clusters(NamedTuple):
             The names of the terms, in ascending order of their peaks.
         """
         if self.centers.ndim != 1:
-            raise DataError("terms are of one input, and these clusters are of several columns")
+            raise DataError("terms are for one input, but these clusters have several columns")
         if len(names) != len(self.centers):
-            raise DataError(f"there are {len(self.centers)} clusters, and {len(names)} names were given")
+            raise DataError(f"there are {len(self.centers)} clusters but {len(names)} names")
         return {name: float(center) for name, center in zip(names, self.centers)}
 
 
@@ -63,9 +63,9 @@ def c_means(
     fuzzifier
         Above 1; the larger, the softer the clusters.
     iterations
-        The most iterations of a start.
+        The maximum number of iterations of a start.
     starts
-        How often the search starts, each time from other rows. The start with the lowest loss counts.
+        The number of starts, each from other rows. The start with the lowest loss is the result.
     seed
         The random seed of the rows that the search starts from.
 

@@ -18,17 +18,17 @@ __all__ = ["ConformalRegressor"]
 class ConformalRegressor(RegressorMixin, MetaEstimatorMixin, BaseEstimator):  # type: ignore[misc]
     """A regressor that also predicts intervals, by split conformal prediction (Lei et al. 2018).
 
-    Part of the training rows is left out of the fit. The errors on these calibration rows give the width of the intervals: one
-    width for all rows. An interval of 90 % contains the target of at least 90 % of new rows on average, if new rows come from
-    the same source as the training rows. It promises nothing for a single kind of rows, or for vehicles that were not seen
-    unless ``groups`` are given.
+    Part of the training rows is excluded from the fit. The errors on these calibration rows determine the width of the
+    intervals: one width for all rows. An interval of 90 % contains the target of at least 90 % of new rows on average, if
+    new rows come from the same source as the training rows. This does not apply to a single kind of rows, or to unseen
+    vehicles unless ``groups`` are given.
 
     Parameters
     ----------
     estimator
-        The regressor; :class:`FuzzyRegressor` if it is None.
+        The regressor; by default a :class:`FuzzyRegressor`.
     calibration_size
-        The share of the training rows, or groups, that is left out of the fit.
+        The share of the training rows, or groups, that is excluded from the fit.
     random_state
         The random seed of the calibration rows.
 
@@ -81,7 +81,7 @@ class ConformalRegressor(RegressorMixin, MetaEstimatorMixin, BaseEstimator):  # 
         splitter = ShuffleSplit if groups is None else GroupShuffleSplit
         split = splitter(1, test_size=self.calibration_size, random_state=self.random_state)
         fitted, left_out = next(split.split(rows, targets, groups))
-        # Rows of a frame keep the names of its columns.
+        # Rows of a frame keep the names of the columns.
         named = X if hasattr(X, "columns") else rows
         estimator = FuzzyRegressor() if self.estimator is None else self.estimator
         self.estimator_ = clone(estimator).fit(_safe_indexing(named, fitted), targets[fitted])
@@ -110,7 +110,7 @@ class ConformalRegressor(RegressorMixin, MetaEstimatorMixin, BaseEstimator):  # 
             raise ValueError(f"coverage is {coverage}, but must be above 0 and below 1")
         predicted = self.predict(X)
         errors = len(self.errors_)
-        # Of one more error than there are, at least this share is not above the one of this rank.
+        # With one more error, at least this share is not above the error of this rank.
         rank = math.ceil((errors + 1) * coverage)
         if rank > errors:
             needed = math.ceil(coverage / (1 - coverage))

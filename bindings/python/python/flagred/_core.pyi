@@ -43,7 +43,7 @@ _Level = Literal["GOOD", "INFO", "WARN", "FAIL"]
 _Number = float | None
 
 class _Frame(Protocol):
-    """Whatever has columns: frames of pandas, polars, pyarrow and DuckDB."""
+    """Any object with columns: frames of pandas, polars, pyarrow and DuckDB."""
     @property
     def columns(self) -> Any: ...
 
@@ -52,7 +52,7 @@ _F = TypeVar("_F", bound=_Frame)
 @disjoint_base
 class RuleSet:
     def __new__(cls, text: str, file: str = "<text>", unfinished: bool = False) -> Self: ...
-    # With several outputs each of these is a dict by the names of the outputs.
+    # With several outputs, each of these is a dict by the names of the outputs.
     @overload
     def __call__(self, *values: _Number, threads: int | None = None) -> float: ...
     @overload

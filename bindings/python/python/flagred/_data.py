@@ -1,4 +1,4 @@
-"""What logs and assessments tell, as plain data."""
+"""The contents of logs and assessments as plain data."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any, Literal, NamedTuple
 
 
 class Range(NamedTuple):
-    """A range of commands, and where it came from."""
+    """A range of commands, and its source."""
 
     low: float
     high: float
@@ -23,30 +23,30 @@ class Vehicle(NamedTuple):
     source: str
     frame: str | None
     motors: int | None
-    """The number of motors, where the frame tells it."""
+    """The number of motors, if the frame determines it."""
     firmware: str | None
     id: str | None
-    """What tells this vehicle from others of its kind."""
+    """An identifier of this vehicle among others of its kind."""
     id_source: str | None
-    """Where the id came from, such as ``sys_uuid``."""
+    """The source of the id, such as ``sys_uuid``."""
     system_id: int | None
     """The MAVLink system id, which vehicles may share."""
     boot_count: int | None
-    """How often the autopilot booted in its life."""
+    """The number of boots of the autopilot in its life."""
 
 
 class Motor(NamedTuple):
     """A motor, and the output that drives it."""
 
     number: int
-    """Its number for the autopilot, from 1."""
+    """Its number in the autopilot, from 1."""
     output: str
-    """The output as the log names it."""
+    """The output, as the log names it."""
     source: str
 
 
 class Geometry(NamedTuple):
-    """How much each motor rolls, pitches and yaws the vehicle."""
+    """The effect of each motor on roll, pitch and yaw."""
 
     factors: tuple[tuple[float, float, float], ...]
     """Roll, pitch and yaw of each motor; the largest of each axis is 1."""
@@ -55,7 +55,7 @@ class Geometry(NamedTuple):
     """``declared``, ``inferred`` or ``assumed``."""
     source: str
     doubt: str | None
-    """Why the commands contradict it."""
+    """The reason why the commands contradict it."""
 
 
 class Parameter(NamedTuple):
@@ -67,7 +67,7 @@ class Parameter(NamedTuple):
 
 
 class Event(NamedTuple):
-    """A message, or a flight mode from when it was entered."""
+    """A message, or a flight mode and the time when it was entered."""
 
     t_s: float
     """The time in seconds on the log's clock."""
@@ -84,7 +84,7 @@ class Interval(NamedTuple):
 
 
 class Intervals(NamedTuple):
-    """Intervals in order of time, and the rule by which they were found."""
+    """Intervals in order of time, and the rule that determined them."""
 
     spans: tuple[Interval, ...]
     rule: str
@@ -93,7 +93,7 @@ class Intervals(NamedTuple):
 
 
 class LeftOut(NamedTuple):
-    """What a log has beyond the bounds of what is kept of it: counted only."""
+    """The numbers of items of a log beyond the limits; these are not kept."""
 
     texts: int
     modes: int
@@ -108,13 +108,13 @@ class Report(NamedTuple):
     bytes: int
     messages: int
     skipped_bytes: int
-    """Bytes that belong to no message."""
+    """Bytes that do not belong to any message."""
     bad_messages: int
     """Messages that were rejected as damaged."""
     truncated: bool
     """Whether the log ends inside a message."""
     reason: str | None
-    """The first reason for which something was skipped."""
+    """The reason of the first skipped data."""
     left_out: LeftOut
 
     @property
@@ -124,7 +124,7 @@ class Report(NamedTuple):
 
 
 class Gap(NamedTuple):
-    """Something that a log lacks, and what the pilot can do."""
+    """Missing data of a log, and what the pilot can do."""
 
     reason: str
     help: str | None
@@ -136,46 +136,46 @@ class MotorFinding(NamedTuple):
     number: int
     """Its number, from 1."""
     or_number: int | None
-    """The other motor that it may be as well, where the commands do not tell which."""
+    """Another motor that may be the cause, if the commands do not show which."""
     side: str
-    """The limit it was nearest to: ``lower`` or ``upper``. Out of balance: below or above its part."""
+    """The nearest limit: ``lower`` or ``upper``. Out of balance: below or above its share."""
     margin_mean: float
     margin_min: float
 
 
 class Cause(NamedTuple):
-    """What raised the risk: an input in a term, and the rule that says it."""
+    """The cause of a risk: an input in a term, and the rule about it."""
 
     input: str
     term: str
     value: float
     rule: int
-    """The number of the rule in the rule set, from 1."""
+    """The rule number, from 1."""
 
 
 class Finding(NamedTuple):
-    """A time at a level: when, what, and its cause. ``str()`` is what a pilot reads."""
+    """A time at a level: when, what, and its cause. ``str()`` is the text for a pilot."""
 
     severity: Literal["GOOD", "INFO", "WARN", "FAIL"]
     from_s: float
     raised_s: float
-    """When the level was raised."""
+    """The time at which the level was raised."""
     failed_s: float | None
-    """When it became FAIL; None if it did not."""
+    """The time at which it became FAIL; None if it did not."""
     to_s: float
     measure: str
-    """``risk``, ``elevated_risk``, or what a notice is about."""
+    """``risk``, ``elevated_risk``, or the measure of a notice."""
     threshold_pct: float
     value_pct: float
     """The worst value of the measure in that time."""
     motor: MotorFinding | None
     cause: Cause | None
     risk_output: str | None
-    """The output that is the risk, where it is not the first of the profile."""
+    """The output that is the risk, if it is not the first of the profile."""
     output: str | None
     """The output of the motor, as the log names it."""
     code: str
-    """What kind of finding it is: a stable word for programs, such as ``fighting_gusts``."""
+    """The kind of finding: a stable identifier for programs, such as ``fighting_gusts``."""
     text: str
     """What happened, and what it means."""
     advice: str
@@ -186,20 +186,20 @@ class Finding(NamedTuple):
 
 
 class Peak(NamedTuple):
-    """The largest value of a quantity, and when it was first reached."""
+    """The largest value of a quantity, and the time at which it was first reached."""
 
     t_s: float
     value_pct: float
 
 
 class Summary(NamedTuple):
-    """A flight in a few numbers. The risks are those of judged time."""
+    """A summary of a flight. The risks are those of the assessed time."""
 
     in_air_s: float
     assessed_s: float
     """The time in the air with a known risk."""
     filled_s: float
-    """The time in the air with a risk interpolated where no rule applies."""
+    """The time in the air with a risk interpolated where no rule fires."""
     risk_mean_pct: float | None
     risk_max: Peak | None
     elevated_risk_max: Peak | None

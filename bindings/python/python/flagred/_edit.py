@@ -1,4 +1,4 @@
-"""Parts of a model that can be changed: every change is validated, and one that is wrong changes nothing."""
+"""Editable parts of a model: every change is validated, and an invalid one changes nothing."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Document = dict[str, Any]
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON has it: tuples become lists, numbers of NumPy those of Python."""
+    """Converts a value to JSON types: tuples become lists, numbers of NumPy those of Python."""
     if isinstance(value, (str, bool, int, float)) or value is None:
         return value
     if isinstance(value, dict):
@@ -37,7 +37,7 @@ def edit(model: RuleSet, change: Callable[[Document], None]) -> None:
     try:
         changed = json.dumps(document, allow_nan=False)
     except ValueError:
-        raise DataError("a number is NaN or infinite\n  help: a rule set takes finite numbers") from None
+        raise DataError("a number is NaN or infinite\n  help: numbers of a rule set must be finite") from None
     model._edit(changed)
 
 
@@ -49,7 +49,7 @@ def rule_lists(document: Document) -> list[list[Any]]:
 
 
 def find(document: Document, index: int) -> tuple[list[Any], int]:
-    """The list that holds a rule, and its place there."""
+    """The list that contains a rule, and its index there."""
     for rules in rule_lists(document):
         if index < len(rules):
             return rules, index
@@ -58,7 +58,7 @@ def find(document: Document, index: int) -> tuple[list[Any], int]:
 
 
 class Rule:
-    """A rule of a model. What is set here is set in the model."""
+    """A rule of a model. Setting an attribute changes the model."""
 
     __slots__ = ("_index", "_model")
 
@@ -72,7 +72,7 @@ class Rule:
 
     @property
     def number(self) -> int:
-        """Its number, from 1, as findings and explanations count rules."""
+        """Its rule number, from 1, as in findings and explanations."""
         return self._index + 1
 
     @property
@@ -104,7 +104,7 @@ class Rule:
 
     @property
     def support(self) -> int | None:
-        """How many samples support it."""
+        """The number of samples that support it."""
         return self._model._rule(self._index)[3]
 
     @property
@@ -132,7 +132,7 @@ class Rule:
 
 
 class Rules(MutableSequence[Rule]):
-    """The rules of a model, in their order. A text can be put in the place of a rule."""
+    """The rules of a model, in their order. A text can be assigned to an index."""
 
     __slots__ = ("_model",)
 
@@ -178,7 +178,7 @@ class Rules(MutableSequence[Rule]):
         edit(self._model, change)
 
     def insert(self, index: int, rule: Any) -> None:
-        """Puts a rule before the one of this index; behind the last one at the end."""
+        """Inserts a rule before this index, or after the last rule."""
         at = range(len(self) + 1)[slice(index, None)]
 
         def change(document: Document) -> None:
@@ -196,7 +196,7 @@ class Rules(MutableSequence[Rule]):
 
 
 def _key(name: str, doc: str) -> Any:
-    """A property that is a key of the rule-set format."""
+    """A property for a key of the rule-set format."""
 
     def get(self: Variable) -> Any:
         return self._document().get(name)
@@ -208,7 +208,7 @@ def _key(name: str, doc: str) -> Any:
 
 
 class Term:
-    """A term of a variable. It is called with values and returns their degrees of membership."""
+    """A term of a variable. Calling it with values returns their degrees of membership."""
 
     __slots__ = ("_model", "_variable", "name")
 
@@ -231,9 +231,9 @@ class Term:
 
 
 class Variable:
-    """An input or output of a model. What is set here is set in the model.
+    """An input or output of a model. Setting an attribute changes the model.
 
-    Its attributes are the keys of the rule-set format; one that is not written is None. ``variable["hot"]`` is a term:
+    Its attributes are the keys of the rule-set format; missing ones are None. ``variable["hot"]`` is a term:
     called with a number or an array, it returns degrees of membership. Values outside the range have the degrees of its
     ends, and NaN has the degree NaN.
 
@@ -276,12 +276,12 @@ class Variable:
     def __contains__(self, term: object) -> bool:
         return term in self._model._term_names(self.name)
 
-    range: Any = _key("range", "The least and the greatest value.")
-    unit: Any = _key("unit", "The unit of its values, for people.")
-    description: Any = _key("description", "What it means.")
-    partition: Any = _key("partition", "Terms side by side: a list, or a dict of their peaks. In place of ``terms``.")
-    steps: Any = _key("steps", "Terms that divide the range: a dict of their limits, None for the last. In place of ``terms``.")
-    terms: Any = _key("terms", "The terms: a membership function for each name. In place of ``partition``.")
+    range: Any = _key("range", "The minimum and the maximum.")
+    unit: Any = _key("unit", "The unit of its values, for readers.")
+    description: Any = _key("description", "Its meaning.")
+    partition: Any = _key("partition", "Adjacent terms: a list, or a dict of their peaks. Instead of ``terms``.")
+    steps: Any = _key("steps", "Terms that divide the range: a dict of their limits, None for the last. Instead of ``terms``.")
+    terms: Any = _key("terms", "The terms: a membership function for each name. Instead of ``partition``.")
 
     def _set(self, key: str, value: Any) -> None:
         def change(document: Document) -> None:
@@ -310,7 +310,7 @@ class Output(Variable):
         "when_no_rule_fires", "``undefined``, ``error``, ``previous``, ``{'value': 50}`` or ``{'previous': 50}``."
     )
     aggregation: Any = _key("aggregation", "How the consequents of this output are combined.")
-    clamp: Any = _key("clamp", "Whether a value outside the range is moved to it.")
+    clamp: Any = _key("clamp", "Whether a value outside the range is clamped to it.")
 
 
 _V = TypeVar("_V", bound=Variable)
@@ -319,7 +319,7 @@ _V = TypeVar("_V", bound=Variable)
 class Variables(MutableMapping[str, _V], Generic[_V]):
     """The inputs or outputs of a model by their names, in their order.
 
-    A dict with the keys of the rule-set format can be put in the place of one.
+    A dict with the keys of the rule-set format can be assigned to a name.
     """
 
     __slots__ = ("_kind", "_model", "_view")

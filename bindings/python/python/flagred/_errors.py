@@ -9,25 +9,25 @@ __all__ = ["DataError", "Diagnostic", "FlagredError", "LogError", "RuleSetError"
 
 
 class Diagnostic(NamedTuple):
-    """A finding about a rule set: what is wrong, where, and what to do about it.
+    """A finding about a rule set: the problem, its position, and help.
 
     ``str()`` draws it in its text.
     """
 
     severity: Literal["error", "warning", "note"]
-    """How bad it is."""
+    """Its severity."""
     code: str
     """A stable identifier, such as ``unknown-term``."""
     message: str
-    """What is wrong."""
+    """The problem."""
     help: str | None
-    """What to do about it."""
+    """What to do."""
     file: str
-    """The file, or a name in angle brackets for what is no file."""
+    """The file, or a name in angle brackets for other sources."""
     line: int | None
-    """The line, from 1; None where there is no text."""
+    """The line, from 1; None without a text."""
     column: int | None
-    """The character in the line, from 1; None where there is no text."""
+    """The character in the line, from 1; None without a text."""
     drawn: str = ""
     """The finding drawn in its text."""
 
@@ -68,8 +68,8 @@ class RuleSetError(FlagredError, ValueError):
 
 
 class LogError(FlagredError, ValueError):
-    """A file that is no flight log, or cannot be read."""
+    """A file that is not a flight log, or cannot be read."""
 
 
 class DataError(FlagredError, ValueError):
-    """Values that a rule set or a monitor cannot take: an unknown name, a wrong number of them, text."""
+    """Invalid values for a rule set or a monitor: an unknown name, a wrong number of values, text."""

@@ -1,4 +1,4 @@
-"""Flights: logs and what is said of them."""
+"""Flights: logs and their assessments."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ __all__ = ["Assessment", "Flight", "Signal", "assess", "read_log"]
 class Signal:
     """A signal of a flight: values over time.
 
-    NumPy takes it as the array of its values; pyarrow, polars and others take it as a table of ``t_s`` and its name.
+    NumPy converts it to the array of its values; pyarrow, polars and others convert it to a table of ``t_s`` and its name.
     """
 
     __slots__ = ("_base", "_flight", "name", "rate_hz", "source", "unit")
 
     name: str
-    """Its name, with the unit in it."""
+    """Its name, including the unit."""
     unit: str
-    """Its unit; empty where it has none."""
+    """Its unit; empty if it has none."""
     source: str
-    """The message or field of the log that it comes from."""
+    """The message or field of the log that contains it."""
     rate_hz: float | None
-    """Values a second, without pauses."""
+    """Values per second, without pauses."""
 
     def __init__(self, flight: FlightData, name: str, unit: str, source: str, rate_hz: float | None, base: int) -> None:
         self._flight, self._base = flight, base
@@ -111,20 +111,20 @@ class Signals(Mapping[str, Signal]):
         names
             The names of the signals.
         t_s
-            The times in seconds, ascending. None: the times of the first signal.
+            The times in seconds, ascending; by default the times of the first signal.
 
         Returns
         -------
         dict
             ``t_s`` and a column for each signal: its latest value at or before each time; NaN before its first value and
-            where it is unknown.
+            while it is unknown.
         """
         names = names_of(names)
         if not names:
             raise DataError("a table needs the name of a signal")
         for name in names:
             if name not in self._all:
-                raise DataError(f"the flight has no signal `{name}`\n  help: there are {', '.join(self._all)}")
+                raise DataError(f"the flight has no signal `{name}`\n  help: its signals are {', '.join(self._all)}")
         times = self[names[0]].t_s if t_s is None else np.asarray(t_s, dtype=np.float64)
         columns = {"t_s": times}
         for name in names:
@@ -144,7 +144,7 @@ class Flight(FlightData):
     """
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Flight:
-        raise TypeError("a flight is read by `flagred.read_log`")
+        raise TypeError("a flight is returned by `flagred.read_log`")
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled_flight, self._parts()
@@ -167,12 +167,12 @@ class Flight(FlightData):
 
     @cached_property
     def motors(self) -> list[Motor]:
-        """The motors in order of their number; a column of the commands each."""
+        """The motors in order of their numbers, which is the order of the columns of the commands."""
         return [Motor(**motor) for motor in self._data["motors"]]
 
     @cached_property
     def geometry(self) -> Geometry | None:
-        """How much each motor rolls, pitches and yaws the vehicle; None where it is unknown."""
+        """The effect of each motor on roll, pitch and yaw; None if it is unknown."""
         data = self._data["geometry"]
         if data is None:
             return None
@@ -180,7 +180,7 @@ class Flight(FlightData):
 
     @cached_property
     def range(self) -> Range | None:
-        """The range of the raw commands; None where it is unknown."""
+        """The range of the raw commands; None if it is unknown."""
         data = self._data["range"]
         return Range(**data) if data else None
 
@@ -191,13 +191,13 @@ class Flight(FlightData):
 
     @property
     def effective_range_doubt(self) -> str | None:
-        """Why the used part counts as the whole range although the log tells limits."""
+        """The reason why the whole range counts as the used part although the log contains limits."""
         doubt: str | None = self._data["effective_range_doubt"]
         return doubt
 
     @property
     def assumed(self) -> tuple[str, ...]:
-        """What is assumed of motors, their commands and ranges because the log does not report it."""
+        """Assumptions about motors, their commands and ranges that the log does not report."""
         return tuple(self._data["assumed"])
 
     @cached_property
@@ -207,7 +207,7 @@ class Flight(FlightData):
 
     @cached_property
     def modes(self) -> list[Event]:
-        """The flight modes, from the time each was entered."""
+        """The flight modes, with the time when each was entered."""
         return [Event(**event) for event in self._data["modes"]]
 
     @cached_property
@@ -217,17 +217,17 @@ class Flight(FlightData):
 
     @cached_property
     def armed(self) -> Intervals | None:
-        """When the motors were armed; None where it is unknown."""
+        """The times at which the motors were armed; None if they are unknown."""
         return _data.intervals(self._data["armed"])
 
     @cached_property
     def in_air(self) -> Intervals | None:
-        """When the vehicle was in the air; None where it is unknown."""
+        """The times at which the vehicle was in the air; None if they are unknown."""
         return _data.intervals(self._data["in_air"])
 
     @property
     def utc_at_zero_s(self) -> float | None:
-        """UTC at time 0, in seconds since 1970; None where it is unknown."""
+        """UTC at time 0, in seconds since 1970; None if it is unknown."""
         utc: float | None = self._data["utc_at_zero_s"]
         return utc
 
@@ -250,7 +250,7 @@ class Flight(FlightData):
 
     @cached_property
     def gaps(self) -> list[Gap]:
-        """What the log lacks for an assessment."""
+        """Missing data of the log for an assessment."""
         return [Gap(**gap) for gap in self._data["gaps"]]
 
     @property
@@ -260,12 +260,12 @@ class Flight(FlightData):
 
     @property
     def raw_commands(self) -> NDArray[np.float64]:
-        """The commands as they were logged, in the unit of ``range``: a row a sample, a column a motor; NaN is unknown."""
+        """The commands as logged, in the unit of ``range``: a row per sample, a column per motor; NaN is unknown."""
         return self._raw_commands()
 
     @property
     def commands(self) -> NDArray[np.float64]:
-        """The commands on the effective range, from 0 to 1: a row a sample, a column a motor; NaN is unknown."""
+        """The commands on the effective range, from 0 to 1: a row per sample, a column per motor; NaN is unknown."""
         return self._effective_commands()
 
     @property
@@ -286,16 +286,16 @@ class Flight(FlightData):
 class Assessment(AssessmentData):
     """The assessment of a flight, returned by :func:`assess`.
 
-    A pickle of it contains the flight, the profile and the findings. The rest is computed again when it is first used.
+    A pickle of it contains the flight, the profile and the findings. The rest is computed again at its first use.
     """
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Assessment:
-        raise TypeError("an assessment is made by `flagred.assess`")
+        raise TypeError("an assessment is returned by `flagred.assess`")
 
     flight: Flight
     """The flight."""
     profile: Profile
-    """The profile it was assessed by."""
+    """The profile of the assessment."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled_assessment, (self.flight, self.profile, self._step_s(), self._json())
@@ -307,36 +307,36 @@ class Assessment(AssessmentData):
 
     @property
     def verdict(self) -> Literal["GOOD", "WARN", "FAIL", "NA"]:
-        """How risky the flight was; ``NA`` where there is no answer."""
+        """The verdict of the flight; ``NA`` if there is none."""
         verdict: Literal["GOOD", "WARN", "FAIL", "NA"] = self._data["verdict"]["verdict"]
         return verdict
 
     @property
     def reason(self) -> str | None:
-        """Why there is no answer."""
+        """The reason why there is no verdict."""
         reason: str | None = self._data["verdict"].get("reason")
         return reason
 
     @property
     def help(self) -> str | None:
-        """What the pilot can do to get an answer next time."""
+        """What the pilot can do to get a verdict next time."""
         help: str | None = self._data["verdict"].get("help")
         return help
 
     @cached_property
     def findings(self) -> list[Finding]:
-        """The findings, the gravest first."""
+        """The findings, the most severe first."""
         return [_data.finding(dict(finding)) for finding in self._data["findings"]]
 
     @property
     def findings_left_out(self) -> int:
-        """How many findings are not listed."""
+        """The number of findings that are not listed."""
         left_out: int = self._data["findings_left_out"]
         return left_out
 
     @cached_property
     def summary(self) -> Summary:
-        """The flight in a few numbers."""
+        """The summary of the flight."""
         return _data.summary(self._data["summary"])
 
     @property
@@ -346,12 +346,12 @@ class Assessment(AssessmentData):
 
     @cached_property
     def steps(self) -> Table:
-        """The risk over time, a row each step: ``t_s``, ``risk`` and ``elevated_risk`` in %, ``coverage``, ``filled``,
+        """The risk over time, a row per step: ``t_s``, ``risk`` and ``elevated_risk`` in %, ``coverage``, ``filled``,
         ``dominant_rule``, ``margin``, ``spread``, ``judged``, and ``input_NAME`` for each input of the profile."""
         return self._steps()
 
     def moment(self, t_s: float) -> dict[str, Any]:
-        """What was known at a time of the flight, and the rules that fired.
+        """The state at a time of the flight, and the rules that fired.
 
         Parameters
         ----------
@@ -361,9 +361,9 @@ class Assessment(AssessmentData):
         Returns
         -------
         dict
-            ``step`` is the latest step (None where none is near, as without steps), ``mode`` the flight mode, ``inputs`` the
-            inputs with the degrees of their terms, ``rules`` the rules that fired, the strongest first. The page and the
-            JavaScript package return the same.
+            ``step`` is the latest step (None if there is none nearby, as without steps), ``mode`` the flight mode,
+            ``inputs`` the inputs with the degrees of their terms, ``rules`` the rules that fired, strongest first. The
+            page and the JavaScript package return the same.
 
         Examples
         --------
@@ -405,20 +405,20 @@ def read_log(
     ----------
     log
         The log: a path, its bytes, or a file that is open for reading. ArduPilot (.bin, .log), PX4 (.ulg), MAVLink
-        (.tlog) or flight CSV, plain or gzipped; the content decides, not the name.
+        (.tlog) or flight CSV, plain or gzipped; the format is detected from the content, not the name.
     signals
-        The names of the signals to keep; all where it is None. Motor commands are always read.
+        The names of the signals to keep; by default all. Motor commands are always read.
     range
-        The lowest and the highest pulse width of the motor outputs, in us, of a log that does not report it;
-        :attr:`Flight.assumed` says that it was given.
+        The lowest and the highest pulse width of the motor outputs, in us, for a log that does not report it;
+        :attr:`Flight.assumed` then mentions it.
 
     Raises
     ------
     LogError
-        It is no flight log, or has a range of its own or commands above the given one. A damaged log is no error: see
-        :attr:`Flight.report`.
+        The file is not a flight log, reports its own range, or has commands above the given one. A damaged log is not an
+        error: see :attr:`Flight.report`.
     ValueError
-        The range is not one of motor outputs.
+        The range is not possible for motor outputs.
     OSError
         The file cannot be read.
 
@@ -471,18 +471,18 @@ def assess(
     Parameters
     ----------
     log
-        A flight, or a log as :func:`read_log` takes it.
+        A flight, or a log as for :func:`read_log`.
     profile
-        The profile, or its name, or its file.
+        The profile, its name, or its file.
     step_s
-        How far apart the steps of the risk over time are, in seconds; None keeps none.
+        The interval of the steps of the risk over time, in seconds; without steps if it is None.
     range
-        The range of the motor outputs of a log that does not report it, as :func:`read_log` takes it.
+        The range of the motor outputs of a log that does not report it, as for :func:`read_log`.
 
     Raises
     ------
     LogError
-        It is no flight log.
+        The file is not a flight log.
     RuleSetError
         The profile or its rule set has errors.
 

@@ -1,4 +1,4 @@
-"""Frames of other libraries: a frame in, a frame of the same library out."""
+"""Frames of other libraries: the result for a frame is a frame of the same library."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def _library(value: Any) -> str:
 
 
 def is_frame(value: Any) -> bool:
-    """Whether a value holds a column for each input, and is no column itself."""
+    """Whether a value contains a column for each input, and is not a column itself."""
     if _is_pandas(value):
         return True
     if hasattr(value, "__arrow_c_stream__") or hasattr(value, "__arrow_c_array__"):
@@ -31,7 +31,7 @@ def _is_pandas(value: Any) -> bool:
 
 
 def evaluate(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: bool) -> Any:
-    """Evaluates a frame, and gives one of the same library."""
+    """Evaluates a frame, and returns a frame of the same library."""
     if _is_pandas(frame):
         return _pandas(rule_set, frame, threads, with_reasons)
     library = _library(frame)
@@ -58,7 +58,7 @@ def evaluate(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: b
 
 
 def explain(rule_set: RuleSet, frame: Any) -> Any:
-    """What each row of a frame rests on, as a frame of the same library with a row for each contributing rule."""
+    """The explanation of each row of a frame, as a frame of the same library with a row for each contributing rule."""
     import numpy as np
 
     from ._arrays import array
@@ -91,7 +91,7 @@ def explain(rule_set: RuleSet, frame: Any) -> Any:
 
 
 def _pandas(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: bool) -> Any:
-    """By NumPy columns: this takes no pyarrow, and copies nothing that is float64."""
+    """Uses NumPy columns, which does not require pyarrow and does not copy float64."""
     import numpy as np
     import pandas
 
@@ -99,7 +99,7 @@ def _pandas(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: bo
     for name in rule_set._input_names():
         if name not in frame.columns:
             there = ", ".join(f"`{column}`" for column in frame.columns)
-            raise DataError(f"the frame has no column `{name}`\n  help: there are {there}")
+            raise DataError(f"the frame has no column `{name}`\n  help: its columns are {there}")
         columns.append(frame[name])
         if columns[-1].ndim != 1:
             raise DataError(f"the frame has the column `{name}` more than once\n  help: rename all but the one that is meant")

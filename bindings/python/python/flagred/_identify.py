@@ -1,4 +1,4 @@
-"""A rule set from rows alone."""
+"""Identification of a rule set from rows only."""
 
 from __future__ import annotations
 
@@ -22,34 +22,34 @@ class Step(NamedTuple):
     """A step of the search."""
 
     input: str
-    """The input that is new, or has another term."""
+    """The input that is added, or gets another term."""
     terms: int
-    """How many terms it has now; of clusters, how many there are."""
+    """The number of its terms; for clusters, the number of clusters."""
     left_out: float
-    """The root mean square error on rows left out, in the unit of the output."""
+    """The root mean square cross-validation error, in the unit of the output."""
 
 
 class IdentifyValidation(NamedTuple):
-    """Root mean square errors on rows that were left out of the whole search."""
+    """Root mean square errors on rows that were held out of the whole search."""
 
     folds: int
     without_value: int
-    """Rows for which no rule fires; the mean of the other rows stands for them."""
+    """Rows for which no rule fires; the mean of the other rows replaces the prediction."""
     identified: Figure
     linear: Figure
-    """Of a line over all columns."""
+    """The error of a line over all columns."""
     mean: Figure
     ratio: Figure
-    """The first divided by that of the line."""
+    """The first error divided by that of the line."""
 
 
 class Identified(NamedTuple):
-    """A rule set that was found in data."""
+    """A rule set identified from data."""
 
     model: Model
     steps: list[Step]
     without_rows: int
-    """The combinations of terms that too few rows speak of; they have no rule."""
+    """The combinations of terms with too few rows; they have no rule."""
     validation: IdentifyValidation | None
 
 
@@ -83,34 +83,34 @@ def identify(
     target
         The column with the output.
     inputs
-        The columns to use; without them those that help are found.
+        The columns to use; by default, useful columns are selected.
     ignore
-        Columns to leave out. Those that hold no numbers are left out anyhow.
+        Columns to ignore. Columns without numbers are always ignored.
     antecedents
         A rule for each combination of the terms of ``partitions``, or for each of the ``clusters`` of rows.
     consequents
-        What a rule concludes: ``constants``, or ``lines`` over the inputs.
+        The consequents of rules: ``constants``, or ``lines`` over the inputs.
     max_inputs, max_terms, max_rules
-        The most inputs, terms of an input (2 to 5) and rules.
+        The maximum numbers of inputs, terms of an input (2 to 5) and rules.
     min_gain
-        By what share a step must make the error on rows left out smaller.
+        The least relative gain in cross-validation error per step.
     min_support
-        The fewest rows that make a rule.
+        The minimum number of rows for a rule.
     group_by
-        Leave out all rows with one value of this column together.
+        Hold out all rows with the same value of this column together.
     folds
-        Into how many parts the rows or groups are divided.
+        The number of folds.
     seed
-        Of these parts.
+        The random seed of the folds.
     validation
         Whether the whole search is cross-validated.
     skip_bad_rows
-        Leave out rows with a value that is not known.
+        Skip rows with an unknown value.
 
     Raises
     ------
     DataError
-        A column is missing, a value is not known, or no input helps.
+        A column is missing, a value is unknown, or no input is useful.
 
     Examples
     --------
@@ -140,7 +140,7 @@ def identify(
         if not np.isfinite(column).all():
             row = int(np.argmin(np.isfinite(column)))
             help_text = "leave such rows out with `skip_bad_rows=True`, or the column with `ignore`"
-            raise DataError(f"column `{name}`, row {row}: the value is not known\n  help: {help_text}")
+            raise DataError(f"column `{name}`, row {row}: the value is unknown\n  help: {help_text}")
     options = {
         "antecedents": antecedents,
         "consequents": consequents,
@@ -164,7 +164,7 @@ def identify(
 
 
 def _numbers(column: Any) -> NDArray[np.float64] | None:
-    """The column as numbers; None where it holds other things."""
+    """The column as numbers; None if it contains other values."""
     try:
         return array(column)
     except DataError:

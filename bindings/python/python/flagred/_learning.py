@@ -1,4 +1,4 @@
-"""Rules and numbers from rows of data."""
+"""Learning of rules and tuning of numbers from rows of data."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ class Errors(NamedTuple):
     """The root mean square of the error."""
     mean_absolute: float
     bias: float
-    """The mean of prediction less truth."""
+    """The mean of prediction minus truth."""
 
 
 class Learned(NamedTuple):
-    """Rules that were learned from rows."""
+    """Rules learned from rows."""
 
     model: Model
     """The rule set with the learned rules."""
     rows: int
     refused: list[str]
-    """Why rows were left out."""
+    """The reasons of skipped rows."""
     rules: int
     """The number of learned rules."""
     conflicts: int
-    """Combinations of terms whose rows do not agree."""
+    """Combinations of terms whose rows disagree."""
     missing: int
     """Combinations of terms without a rule."""
     left_out: int
@@ -48,13 +48,13 @@ class Learned(NamedTuple):
     moved: int
     """Rules whose consequent was moved for ``rising`` and ``falling``."""
     counterexamples: list[str]
-    """Where the output contradicts ``rising`` and ``falling`` all the same."""
+    """Positions where the output still contradicts ``rising`` and ``falling``."""
     validation: Errors | None
-    """Errors on rows that were left out; None where that was not asked for."""
+    """Cross-validation errors; None if they were not requested."""
 
 
 class Moved(NamedTuple):
-    """A number that tuning moved."""
+    """A number that was changed by tuning."""
 
     of: str
     """``variable.term``, or ``rule 3`` counted from 1."""
@@ -65,7 +65,7 @@ class Moved(NamedTuple):
 
 
 class Figure(NamedTuple):
-    """A figure, and the interval that holds 95 % of the figures of resampled groups, or rows without groups."""
+    """A figure, and the interval that contains 95 % of the figures of resampled groups, or of rows without groups."""
 
     value: float
     low: float
@@ -73,44 +73,45 @@ class Figure(NamedTuple):
 
 
 class TuneValidation(NamedTuple):
-    """What tuning is worth on rows that were left out."""
+    """Losses in cross-validation."""
 
     folds: int
     before: Figure
-    """The loss of the model as it was."""
+    """The loss of the original model."""
     after: Figure
-    """The loss where each part is predicted by the model tuned on the others."""
+    """The loss where each fold is predicted by the model tuned on the others."""
     gain: Figure
 
 
 class Tuned(NamedTuple):
-    """A rule set whose numbers were tuned."""
+    """A rule set with tuned numbers."""
 
     model: Model
     rows: int
     refused: list[str]
-    """Why rows were left out."""
+    """The reasons of skipped rows."""
     before: float
-    """The loss of the model as it was, on the rows it was tuned on."""
+    """The loss of the original model, on the training rows."""
     after: float
-    """The loss of the tuned model on these rows."""
+    """The loss of the tuned model on the training rows."""
     without_value: int
     """Rows without a value of the tuned model; they count as the middle of the range."""
     moved: list[Moved]
     at_bounds: list[str]
-    """Constants, as ``variable.term``, at the end of the range whose loss would be smaller beyond it."""
+    """Constants, as ``variable.term``, at an end of the range beyond which the loss would be smaller."""
     validation: TuneValidation | None
-    """None where ``folds`` was not given."""
+    """None if ``folds`` was not given."""
 
 
 class TuneInterrupted(KeyboardInterrupt):
-    """Ctrl-C during :func:`tune`. It holds the best rule set so far.
+    """Raised by Ctrl-C during :func:`tune`. It contains the best rule set so far.
 
-    ``except flagred.TuneInterrupted as stop: tuned = stop.best``. A program that does not catch it ends, as by any Ctrl-C.
+    ``except flagred.TuneInterrupted as stop: tuned = stop.best``. Without such a handler, it ends the program like any
+    Ctrl-C.
     """
 
     best: Tuned
-    """What was found until then. It has no validation."""
+    """The best result so far, without a validation."""
 
     def __init__(self, best: Tuned) -> None:
         super().__init__(best)
@@ -142,32 +143,32 @@ def learn(
     Parameters
     ----------
     model
-        The variables and terms. Its rules are replaced; its numbers stay.
+        The variables and terms. Its rules are replaced; its numbers are kept.
     data
         A frame, or a mapping of columns, with a column for each input and the output.
     resolve
-        How rows of one combination of terms choose the consequent: the row with the highest degree, the consequent with
+        How rows of one combination of terms determine the consequent: the row with the highest degree, the consequent with
         the highest sum of degrees, or the mean of the rows.
     min_support
-        The fewest rows of a rule.
+        The minimum number of rows of a rule.
     min_degree
-        The lowest confidence of a rule.
+        The minimum confidence of a rule.
     complete
         Add rules for combinations of terms without rows, each from the nearest combination with rows.
     rising, falling
-        Inputs in which the output must not fall, or not rise, when they rise.
+        Inputs with which the output must not fall, or not rise, when they rise.
     keep_rules
         Add the learned rules to those of the model.
     columns
-        The names of columns that are not those of their variables: ``{"risk": "failed"}``.
+        The names of columns that differ from those of their variables: ``{"risk": "failed"}``.
     weight
         The column with the weights of the rows.
     group_by
-        In cross-validation, leave out all rows with one value of this column together.
+        In cross-validation, hold out all rows with the same value of this column together.
     skip_bad_rows
-        Leave out rows that cannot be used, and say why in ``refused``, rather than raise an error.
+        Skip rows that cannot be used, and list the reasons in ``refused``, instead of raising an error.
     validation
-        Whether to predict left-out rows, to tell what the rules are worth on rows they do not know.
+        Whether to compute the cross-validation error.
 
     Raises
     ------
@@ -226,46 +227,46 @@ def tune(
     skip_bad_rows: bool = False,
     threads: int | None = None,
 ) -> Tuned:
-    """Tunes the numbers of a rule set on rows; its rules stay. ``flagred tune`` does the same.
+    """Tunes the numbers of a rule set on rows; its rules do not change. ``flagred tune`` does the same.
 
     Parameters
     ----------
     model
-        The rule set to begin with. It does not change.
+        The rule set to start from. It does not change.
     data, columns, weight, group_by, skip_bad_rows, rising, falling
         As for :func:`learn`.
     loss
-        ``squared`` errors; ``log`` and ``ranking`` for an output of 0 and 1: the mean of -ln p, and 1 less the area under
+        ``squared`` errors; ``log`` and ``ranking`` for an output of 0 and 1: the mean of -ln p, and 1 minus the area under
         the ROC curve.
     only, fix
-        The variables, or terms as ``variable.term``, that alone may move, or that stay.
+        The variables, or terms as ``variable.term``, that may change exclusively, or that are fixed.
     weights
-        Whether the weights of the rules may move.
+        Whether the weights of the rules may change.
     min_distance
-        The least distance between neighbouring peaks, as a share of the range.
+        The minimum distance between neighbouring peaks, as a share of the range.
     beyond_range
-        Whether constants may leave the range of the output, by its width at most.
+        Whether constants may leave the range of the output, by at most its width.
     digits
-        The significant digits of numbers that moved; None keeps all.
+        The significant digits of changed numbers; None keeps all.
     starts
-        How often the search starts: at the model, then at random places around it.
+        The number of starts of the search: first at the model, then at random points around it.
     iterations
-        The most steps of a start.
+        The maximum number of iterations of a start.
     seed
-        Of what is random: places to start, parts of cross-validation.
+        The random seed (starting points, folds).
     folds
-        Cross-validate in so many parts. None skips it.
+        The number of folds of a cross-validation; by default none is done.
     threads
-        The number of threads; as many as there are cores for None.
+        The number of threads; by default the number of cores.
 
     Raises
     ------
-    DataError
+    A column is missing, rows cannot be used, or no number may change.
         A column is missing, rows cannot be used, or nothing may move.
     RuleSetError
         The rule set cannot be used.
     TuneInterrupted
-        Ctrl-C ended the search, before its next step; ``best`` of the exception is what was found until then. A second
+        Ctrl-C ended the search before its next step; ``best`` of the exception is the best result so far. A second
         Ctrl-C does not wait for it and raises KeyboardInterrupt.
 
     Examples
@@ -319,7 +320,7 @@ def _rows(
     group_by: str | None,
     skip_bad_rows: bool,
 ) -> dict[str, Any]:
-    """The columns that the native half takes."""
+    """The columns in the form that the native half requires."""
     names = model._measured_names()
     renamed = dict(columns or {})
     for name in renamed:

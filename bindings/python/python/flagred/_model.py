@@ -36,17 +36,17 @@ _EMPTY = "fuzzy: 1\nname: model\ninputs: {}\noutputs: {}\nrules: []\n"
 class Model(RuleSet):
     """A fuzzy rule set: inputs and outputs with their terms, and rules between them.
 
-    :func:`load` and :func:`loads` read one. A model is called like a function. It is compiled when it is first used,
-    can be used by many threads at once, and is pickled and copied as data.
+    :func:`load` and :func:`loads` read one. A model is called like a function. It is compiled at its first use,
+    can be used by many threads at once, and can be pickled and copied.
 
     Parameters
     ----------
     name
-        The name of a new rule set, to be filled by :meth:`input`, :meth:`output` and :meth:`rule`.
+        The name of a new rule set, to be extended by :meth:`input`, :meth:`output` and :meth:`rule`.
     description
         Its purpose.
     operators
-        ``and``, ``or``, ``implication``, ``aggregation``; those of the rule-set format where they are left out.
+        ``and``, ``or``, ``implication``, ``aggregation``; by default those of the rule-set format.
 
     Examples
     --------
@@ -100,17 +100,18 @@ class Model(RuleSet):
         name
             Its name in rules.
         range
-            Its least and greatest value.
+            Its minimum and maximum.
         partition
-            Terms side by side: their names, evenly spaced over the range, or the peak of each.
+            Adjacent terms: their names, evenly spaced over the range, or the peak of each.
         terms
-            In place of a partition, a membership function for each term: ``{"hot": {"right_shoulder": [20, 30]}}``.
+            Instead of a partition, a membership function for each term: ``{"hot": {"right_shoulder": [20, 30]}}``.
         steps
-            In place of a partition, the limit below which each term ends, and ``None`` for the last: ``{"low": 36, "high": None}``.
+            Instead of a partition, the limit below which each term ends, and ``None`` for the last: ``{"low": 36, "high":
+            None}``.
         unit
-            The unit of its values, for people.
+            The unit of its values, for readers.
         description
-            What it means.
+            Its meaning.
 
         Returns
         -------
@@ -135,20 +136,20 @@ class Model(RuleSet):
         aggregation: str | None = None,
         clamp: bool | None = None,
     ) -> Model:
-        """Adds an output. See :meth:`input` for what both have.
+        """Adds an output. :meth:`input` describes the common parameters.
 
         Parameters
         ----------
         defuzzifier
-            How the aggregated set becomes a number; ``centroid`` where it is left out.
+            How the aggregated set becomes a number; by default ``centroid``.
         samples
             Integrate by sampling, as other programs do: ``{"midpoint": 1000}``.
         when_no_rule_fires
-            ``undefined`` (where it is left out), ``error``, ``previous``, ``{"value": 50}`` or ``{"previous": 50}``.
+            ``undefined`` (the default), ``error``, ``previous``, ``{"value": 50}`` or ``{"previous": 50}``.
         aggregation
-            How the consequents of this output are combined; as the rule set says where it is left out.
+            How the consequents of this output are combined; by default as in ``operators``.
         clamp
-            Whether a value outside the range is moved to it.
+            Whether a value outside the range is clamped to it.
 
         Returns
         -------
@@ -226,7 +227,7 @@ class Model(RuleSet):
     def to_dict(self) -> dict[str, Any]:
         """The rule set as a document, with the keys of the rule-set format.
 
-        Inputs, outputs, terms and blocks are lists of entries with a ``name``: their order has a meaning, also after
+        Inputs, outputs, terms and blocks are lists of entries with a ``name``, because their order has a meaning, also after
         ``json.dumps(..., sort_keys=True)``. :func:`loads` reads the JSON of the document.
         """
         found: dict[str, Any] = json.loads(self._json_lists())
@@ -234,7 +235,7 @@ class Model(RuleSet):
 
     @property
     def text(self) -> str:
-        """The text it was read from; after edits, YAML with the comments of the lines that did not change."""
+        """The text that was read; after edits, YAML with the comments of the unchanged lines."""
         return self._text()[0]
 
     def to_text(
@@ -253,8 +254,8 @@ class Model(RuleSet):
         Returns
         -------
         str
-            In the format that the rule set was read from, the text that was read, with its comments. Edits change the YAML
-            where they apply and keep the comments of other lines, as far as they can.
+            In the original format, the text that was read, with its comments. Edits change the YAML where they apply and
+            keep the comments of other lines where possible.
 
         Raises
         ------
@@ -277,7 +278,7 @@ class Model(RuleSet):
         return text
 
     def save(self, path: str | os.PathLike[str], *, lossy: bool = False) -> None:
-        """Writes the rule set to a file, in the format of the file's ending.
+        """Writes the rule set to a file, in the format of the file's extension.
 
         Parameters
         ----------
@@ -289,23 +290,23 @@ class Model(RuleSet):
         Raises
         ------
         DataError
-            The file has another ending.
+            The file has another extension.
         RuleSetError
             The format cannot express the rule set.
         """
         ending = os.path.splitext(os.fspath(path))[1].lower()
         if ending not in _ENDINGS:
             known = ", ".join(f"`{known}`" for known in _ENDINGS)
-            raise DataError(f"`{os.fspath(path)}` does not end like a rule set\n  help: the endings are {known}")
+            raise DataError(f"`{os.fspath(path)}` does not have the extension of a rule set\n  help: the extensions are {known}")
         text = self.to_text(_ENDINGS[ending], lossy=lossy)
-        # Line breaks stay as they were read.
+        # Line breaks are those of the text that was read.
         with open(path, "w", encoding="utf-8", newline="") as file:
             file.write(text)
 
     def surface(
         self, ax: Any | None = None, *, points: int = 31, output: str | None = None, **fixed: float
     ) -> Any:
-        """Draws an output over two inputs in three dimensions.
+        """Draws a three-dimensional surface of an output over two inputs.
 
         Parameters
         ----------
@@ -317,7 +318,7 @@ class Model(RuleSet):
         Returns
         -------
         Picture or matplotlib.axes.Axes
-            The axes; without them a picture in SVG, for which matplotlib is not needed.
+            The axes; without ``ax`` a picture in SVG, which does not require matplotlib.
 
         Examples
         --------
@@ -359,7 +360,7 @@ class Model(RuleSet):
         return self.copy()
 
     def copy(self) -> Model:
-        """A model that is equal, and apart: an edit of one does not change the other."""
+        """An equal but independent model: editing one does not change the other."""
         other = Model(self.name)
         other._share(self)
         return other
@@ -388,7 +389,7 @@ def loads(text: str | bytes) -> Model:
     Raises
     ------
     RuleSetError
-        The text is no rule set. All mistakes are told at once, in ``findings``.
+        The text is not a valid rule set. ``findings`` contains all mistakes.
 
     Examples
     --------
@@ -423,13 +424,13 @@ def load(path: str | os.PathLike[str] | IO[str] | IO[bytes]) -> Model:
     Parameters
     ----------
     path
-        The file, or a file that is open for reading: YAML, FIS, FLL, FCL or FML, whatever its name. Or a built-in rule set: ``flagred``,
-        ``flagred-battery`` or ``flagred-paper``. Such a name wins over a file that is called so.
+        The file, or a file that is open for reading: YAML, FIS, FLL, FCL or FML, with any name. Or a built-in rule set:
+        ``flagred``, ``flagred-battery`` or ``flagred-paper``. Such a name takes precedence over a file with this name.
 
     Raises
     ------
     RuleSetError
-        The file is no rule set. All mistakes are told at once, in ``findings``.
+        The file is not a valid rule set. ``findings`` contains all mistakes.
     OSError
         The file cannot be read.
     """

@@ -1,4 +1,4 @@
-"""A flight followed sample by sample."""
+"""A monitor that follows a flight sample by sample."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 class Followed(NamedTuple):
-    """What is said of a flight that a monitor followed."""
+    """The results of a flight that a monitor followed."""
 
     verdict: Literal["GOOD", "WARN", "FAIL", "NA"]
     reason: str | None
-    """Why there is no answer."""
+    """The reason why there is no verdict."""
     findings: list[Finding]
     summary: Summary
     steps: Table
@@ -32,11 +32,11 @@ class Monitor(MonitorData):
     Parameters
     ----------
     profile
-        The profile, or its name, or its file.
+        The profile, its name, or its file.
     signals
-        The names of the signals that come with each sample; a profile may need some.
+        The names of the signals of each sample; a profile may require some.
     step_s
-        How far apart the steps are that :meth:`finish` gives, in seconds; None keeps none.
+        The interval of the steps that :meth:`finish` returns, in seconds; without steps if it is None.
 
     Examples
     --------
@@ -81,26 +81,26 @@ class Monitor(MonitorData):
         in_air: bool | None = None,
         signals: Mapping[str, float | None] | None = None,
     ) -> Update:
-        """Takes a sample.
+        """Processes a sample.
 
         Parameters
         ----------
         t_s
-            Its time in seconds; times do not decrease.
+            Its time in seconds; times must not decrease.
         commands
-            The command of each motor on its effective range, from 0 to 1. NaN and None are unknown. While a motor is unknown,
-            so is the risk. Values from -0.5 to 1.5 are clamped to [0, 1]; others have another unit and raise a
+            The command of each motor on its effective range, from 0 to 1. NaN and None are unknown. While a motor is
+            unknown, so is the risk. Values from -0.5 to 1.5 are clamped to [0, 1]; others have another unit and raise a
             :class:`DataError`.
         in_air
-            Whether the autopilot reports that the vehicle is in the air. None is not known: then motors that idle mean that
+            Whether the autopilot reports that the vehicle is in the air. None is unknown: then idle motors indicate that
             the vehicle is on the ground. Motors that idle for 3 s while it is True are a fall, with a risk of 100 %.
         signals
-            The values of the signals; one that is missing is unknown.
+            The values of the signals; missing ones are unknown.
 
         Returns
         -------
         Update
-            The risk and the level of the moment.
+            The current risk and level.
         """
         known = signals or {}
         update = self._push(t_s, commands, in_air, [known.get(name, float("nan")) for name in self._names])
@@ -108,11 +108,11 @@ class Monitor(MonitorData):
         return update
 
     def ended(self) -> list[Finding]:
-        """The findings that are over after the latest sample."""
+        """The findings that ended with the latest sample."""
         return [_data.finding(finding) for finding in json.loads(self._ended())]
 
     def finish(self) -> Followed | None:
-        """Ends the flight and says what is said of it; None without a sample. Samples that follow are of a new flight."""
+        """Ends the flight and returns its results; None without a sample. Later samples belong to a new flight."""
         finished, self._has_begun = self._finish(), False
         if finished is None:
             return None

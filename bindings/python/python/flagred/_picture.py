@@ -38,14 +38,14 @@ class Picture:
 
 
 def framed(page: str) -> str:
-    """An HTML page within another: a frame keeps its styles to itself."""
+    """An HTML page within another: a frame isolates its styles."""
     from html import escape
 
     return f'<iframe srcdoc="{escape(page)}" style="width:100%;height:40em;border:0" sandbox="allow-scripts"></iframe>'
 
 
 def plot_map(map: DecisionMap, ax: Any | None) -> Any:
-    """A map as a picture, or on axes of matplotlib."""
+    """Draws a map as a picture, or on axes of matplotlib."""
     if ax is None:
         return Picture(map.svg())
     axes = list(map.axes.items())
@@ -56,7 +56,7 @@ def plot_map(map: DecisionMap, ax: Any | None) -> Any:
         ax.plot(axes[0][1], map.values)
         ax.set_ylabel(map.output)
         return ax
-    # What is unknown stays blank.
+    # Unknown values are blank.
     drawn = ax.pcolormesh(axes[0][1], axes[1][1], map.values.T, shading="nearest")
     ax.set_ylabel(axes[1][0])
     ax.figure.colorbar(drawn, ax=ax, label=map.output)
@@ -64,7 +64,7 @@ def plot_map(map: DecisionMap, ax: Any | None) -> Any:
 
 
 def plot_surface(map: DecisionMap, ax: Any | None) -> Any:
-    """A map as a surface: a picture, or on axes of matplotlib in three dimensions."""
+    """Draws a map as a surface: a picture, or on axes of matplotlib in three dimensions."""
     if ax is None:
         return Picture(map.svg("surface"))
     axes = list(map.axes.items())
@@ -74,7 +74,7 @@ def plot_surface(map: DecisionMap, ax: Any | None) -> Any:
     if not hasattr(ax, "plot_surface"):
         raise DataError('the axes are flat\n  help: make them with `plt.subplot(projection="3d")`')
     (x_name, x), (y_name, y) = axes
-    # Rows of matplotlib's arrays are along y.
+    # Rows of matplotlib's arrays run along y.
     ax.plot_surface(x[None, :], y[:, None], map.values.T, cmap="viridis")
     ax.set_xlabel(x_name)
     ax.set_ylabel(y_name)

@@ -1,4 +1,4 @@
-"""The same said with fewer rules."""
+"""Simplification of rule sets."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["Difference", "Simplified", "simplify"]
 
 
 class Difference(NamedTuple):
-    """By how much an output differs at a point."""
+    """The difference of an output at a point."""
 
     output: str
     before: float
@@ -24,19 +24,19 @@ class Difference(NamedTuple):
 
 
 class Simplified(NamedTuple):
-    """A rule set that says the same with fewer rules."""
+    """A simplified rule set with the same outputs."""
 
     model: Model
     rules: list[list[int]]
-    """For each rule the rules that it stands for, by their numbers in the original, from 1."""
+    """For each rule, the numbers of the original rules that it replaces, from 1."""
     dropped: list[int]
-    """The rules without effect, by their numbers in the original, from 1."""
+    """The numbers of original rules without effect, from 1."""
     inputs: list[str]
-    """The inputs that no rule needs; the model has them no more."""
+    """The inputs that no rule needs; the model no longer has them."""
     points: int
-    """The number of points at which both were compared."""
+    """The number of points at which the outputs were compared."""
     difference: Difference | None
-    """The largest difference there; None where there is none at all."""
+    """The largest difference there; None if there is none."""
 
 
 def simplify(
@@ -48,22 +48,22 @@ def simplify(
     seed: int = 0,
     columns: Mapping[str, str] | None = None,
 ) -> Simplified:
-    """Says the same with fewer rules, shorter ones and fewer inputs. ``flagred simplify`` does the same.
+    """Simplifies a rule set: fewer rules and inputs, same outputs. ``flagred simplify`` does the same.
 
     Parameters
     ----------
     model
-        The rule set to begin with. It does not change.
+        The rule set to start from. It does not change.
     data
-        A frame, or a mapping of columns, with a column for each input: rows at which the outputs are compared, too.
+        A frame, or a mapping of columns, with a column for each input: additional rows at which the outputs are compared.
     tolerance
-        By how much an output may differ, in its unit. None: by 1e-12 of its range.
+        The maximum difference of an output, in its unit; by default 1e-12 of its range.
     rows_only
-        Compare the outputs at the rows alone. Elsewhere they may be anything.
+        Compare the outputs only at the rows. Elsewhere they may differ.
     seed
-        Of the points at random.
+        The random seed of the points.
     columns
-        The names of columns that are not those of their inputs.
+        The names of columns that differ from those of their inputs.
 
     Raises
     ------

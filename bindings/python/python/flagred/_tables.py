@@ -12,19 +12,19 @@ from numpy.typing import NDArray
 from ._errors import DataError
 
 
-# Options that count something.
+# Options that are counts.
 _WHOLE = {
     "clusters", "digits", "folds", "iterations", "max_inputs", "max_rules", "max_terms", "min_support", "seed", "starts"
 }  # fmt: skip
 
 
 def names_of(names: Iterable[str]) -> list[str]:
-    """A list of names; one name is a list of one."""
+    """A list of names; a single name becomes a list of one."""
     return [names] if isinstance(names, str) else list(names)
 
 
 def whole_numbers(options: dict[str, Any]) -> dict[str, Any]:
-    """Options as they are. Those that count something are refused unless they are whole numbers from 0."""
+    """Returns options unchanged. Counts must be whole numbers from 0."""
     for key in sorted(_WHOLE & options.keys()):
         value = options[key]
         if value is not None and (isinstance(value, bool) or not isinstance(value, Integral) or value < 0):
@@ -33,7 +33,7 @@ def whole_numbers(options: dict[str, Any]) -> dict[str, Any]:
 
 
 def table_of(data: Any) -> Any:
-    """What gives columns by their names."""
+    """An object that returns columns by their names."""
     if hasattr(data, "fetchnumpy"):
         return data.fetchnumpy()
     if hasattr(data, "collect"):
@@ -42,36 +42,36 @@ def table_of(data: Any) -> Any:
 
 
 def column_names(data: Any) -> list[str]:
-    """The names of its columns."""
+    """The names of the columns."""
     if hasattr(data, "schema") and hasattr(data.schema, "names") and not callable(data.schema.names):
         return [str(name) for name in data.schema.names]
     if isinstance(getattr(data, "columns", None), Iterable):
         return [str(name) for name in data.columns]
     if hasattr(data, "keys"):
         return [str(name) for name in data.keys()]
-    raise DataError(f"`{type(data).__name__}` is not a table\n  help: give a frame, or a dict of columns by their names")
+    raise DataError(f"`{type(data).__name__}` is not a table\n  help: pass a frame, or a dict of columns by their names")
 
 
 def column_of(data: Any, name: str) -> Any:
-    """The column of a name."""
+    """The column with this name."""
     there = column_names(data)
     if name not in there:
         listed = ", ".join(f"`{column}`" for column in there)
-        raise DataError(f"the data have no column `{name}`\n  help: {f'there are {listed}' if there else 'they have no columns'}")
+        raise DataError(f"the data have no column `{name}`\n  help: {f'the columns are {listed}' if there else 'they have no columns'}")
     if there.count(name) > 1:
         raise DataError(f"the data have the column `{name}` more than once\n  help: rename all but the one that is meant")
     return data[name]
 
 
 def groups_of(data: Any, name: str) -> NDArray[np.uint32]:
-    """A number for each value of a column."""
+    """An integer for each distinct value of a column."""
     return np.unique(np.asarray(column_of(data, name)).astype(str), return_inverse=True)[1].astype(np.uint32)
 
 
 def same_length(columns: list[NDArray[Any]]) -> None:
-    """Refuses columns that make no table."""
+    """Refuses columns of different lengths."""
     if any(column.ndim != 1 for column in columns):
         raise DataError("a column has no rows, or several columns have one name")
     lengths = sorted({len(column) for column in columns})
     if len(lengths) > 1:
-        raise DataError(f"the columns are not of one length: {', '.join(map(str, lengths))}")
+        raise DataError(f"the columns have different lengths: {', '.join(map(str, lengths))}")

@@ -1,4 +1,4 @@
-"""How good the risks of profiles are: :func:`evaluate`, and what it finds."""
+"""Validation of the risks of profiles: :func:`evaluate` and its results."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _Log = Flight | str | os.PathLike[str] | bytes | IO[bytes]
 
 
 class Areas(NamedTuple):
-    """How well an estimator ranks what became critical. Intervals hold 95 %, by resampling whole flights."""
+    """How well an estimator ranks critical cases. Intervals contain 95 %, by resampling whole flights."""
 
     auc: float | None
     """The area under the ROC curve."""
@@ -53,22 +53,22 @@ class Areas(NamedTuple):
     """The area under the precision-recall curve."""
     pr_auc_interval: _Interval | None
     no_auc: str | None
-    """Why there is no area, such as ``no critical step``."""
+    """The reason why there is no area, such as ``no critical step``."""
     within_flight_auc: float | None
-    """The mean over the flights that have critical cases and others."""
+    """The mean over the flights that have critical and other cases."""
     within_flight_auc_interval: _Interval | None
     within_flight_flights: int
     """The number of those flights."""
     cases: int
     """The cases with a score."""
     critical: int
-    """The critical ones of them."""
+    """The critical cases among them."""
     unknown: int
     """The cases without a score."""
 
 
 class Band(NamedTuple):
-    """A tenth of the scale of a risk: how much of what had such a risk became critical."""
+    """A tenth of the scale of a risk: the share of cases with such a risk that became critical."""
 
     from_pct: float
     to_pct: float
@@ -79,21 +79,21 @@ class Band(NamedTuple):
 
 
 class Warnings(NamedTuple):
-    """What the warnings of a profile are worth: levels of WARN and FAIL against episodes of critical error."""
+    """The quality of the warnings of a profile: levels of WARN and FAIL compared with episodes of critical error."""
 
     flights: int
     hours: float
-    """The judged time."""
+    """The assessed time."""
     episodes: int
     announced: int
-    """Episodes with a warning on that began before them."""
+    """Episodes during a warning that began before them."""
     lead_s_median: float | None
     groups: int
-    """Groups of episodes that follow each other within 5 s."""
+    """Groups of episodes at most 5 s apart."""
     groups_announced: int
     group_lead_s_median: float | None
     answered: int
-    """Episodes that were not announced, but answered by a warning before they were over."""
+    """Episodes that were not announced, but had a warning before their end."""
     answer_s_median: float | None
     warnings: int
     false_warnings: int
@@ -104,7 +104,7 @@ class Warnings(NamedTuple):
 
 
 class NeedlessAlarms(NamedTuple):
-    """The alarms of a profile in times that need none."""
+    """The alarms of a profile in times without danger."""
 
     flights: int
     """The flights with such times and a verdict."""
@@ -113,9 +113,9 @@ class NeedlessAlarms(NamedTuple):
     hours: float
     """The length of these times."""
     verdicts: dict[str, int]
-    """How many flights were GOOD, WARN and FAIL."""
+    """The numbers of flights with the verdicts GOOD, WARN and FAIL."""
     alarms: int
-    """Times of WARN or FAIL; one that turns into the other is one."""
+    """Times of WARN or FAIL; a time that changes between them counts once."""
     alarms_per_hour: float | None
     alarms_per_hour_interval: _Interval | None
     fails: int
@@ -126,16 +126,16 @@ class NeedlessAlarms(NamedTuple):
 
 
 class Upsets(NamedTuple):
-    """The upsets of flights, and how the alarms of a profile found them."""
+    """The upsets of flights, and the alarms of a profile about them."""
 
     assessed: int
     before: int
-    """With an alarm on in the 10 s before."""
+    """Upsets with an alarm in the 10 s before."""
     within_1_s: int
-    """With an alarm raised within 1 s after."""
+    """Upsets with an alarm raised within 1 s after."""
     never: int
     not_assessed: int
-    """Those of flights without a verdict."""
+    """Upsets of flights without a verdict."""
     lead_s_median: float | None
 
 
@@ -155,7 +155,7 @@ class Alarms(NamedTuple):
     """Flights whose error over a second stays within 5 degrees, whose tilt stays under 45 degrees, and without an upset."""
     upsets: Upsets
     upsets_by_fail: Upsets
-    """As found by FAIL alone."""
+    """Counted by FAIL only."""
     by_kind: dict[str, AlarmsOfKind]
 
 
@@ -167,18 +167,18 @@ class Estimator(NamedTuple):
     areas: Areas
     """Over all cases."""
     quiet: Areas | None
-    """Over steps without a critical error in the 5 s before; None of whole flights."""
+    """Over steps without a critical error in the 5 s before; None for whole flights."""
     onset: Areas | None
-    """Over steps without a critical error in the 10 s before; None of whole flights."""
+    """Over steps without a critical error in the 10 s before; None for whole flights."""
     by_vehicle: dict[str, Areas]
     by_kind: dict[str, Areas]
     reliability: list[Band] | None
-    """Of a risk in %; None for other scores."""
+    """For a risk in %; None for other scores."""
     warnings: Warnings | None
-    """Of a profile on flights; None for others."""
+    """For a profile on flights; None for others."""
     warnings_by_kind: dict[str, Warnings]
     alarms: Alarms | None
-    """Of a profile on flights; None for others."""
+    """For a profile on flights; None for others."""
 
 
 class Span(NamedTuple):
@@ -189,14 +189,14 @@ class Span(NamedTuple):
 
 
 class Episode(NamedTuple):
-    """A time of critical error, and the warning that announced or answered it."""
+    """A time of critical error, and the warning that announced or followed it."""
 
     from_s: float
     to_s: float
     warned_s: float | None
-    """When the warning began; None without one."""
+    """The beginning of the warning; None without one."""
     lead_s: float | None
-    """How long before the episode; negative where it came after its start."""
+    """The time from the warning to the episode; negative if the warning came later."""
 
 
 class WarningTime(NamedTuple):
@@ -205,11 +205,11 @@ class WarningTime(NamedTuple):
     from_s: float
     to_s: float
     is_false: bool
-    """Whether no episode belongs to it."""
+    """Whether it does not belong to an episode."""
 
 
 class Said(NamedTuple):
-    """What a profile said of a flight."""
+    """The results of a profile for a flight."""
 
     verdict: Literal["GOOD", "WARN", "FAIL", "NA"]
     alarms: list[Span]
@@ -219,12 +219,12 @@ class Said(NamedTuple):
 
 
 class EvaluatedFlight(NamedTuple):
-    """A flight, and what each profile said of it."""
+    """A flight, and the results of each profile."""
 
     file: str
     vehicle: str | None
     kind: str
-    """What the flight was about, as its header says."""
+    """The kind of flight, from its header."""
     judged_s: float
     in_air_s: float
     largest_error_deg: float | None
@@ -237,7 +237,7 @@ class EvaluatedFlight(NamedTuple):
 
 
 class LeftOutFile(NamedTuple):
-    """A file that is not among the flights, and why."""
+    """A file that is not among the flights, and the reason."""
 
     file: str
     reason: str
@@ -300,10 +300,10 @@ def _said(data: dict[str, Any]) -> Said:
 
 
 class Evaluation(EvaluationData):
-    """What came of many flights; made by :func:`evaluate`. ``str()`` is what ``flagred validate`` prints."""
+    """The validation over many flights, returned by :func:`evaluate`. ``str()`` is the output of ``flagred validate``."""
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Evaluation:
-        raise TypeError("an evaluation is made by `flagred.evaluate`")
+        raise TypeError("an evaluation is returned by `flagred.evaluate`")
 
     @cached_property
     def _data(self) -> dict[str, Any]:
@@ -311,13 +311,13 @@ class Evaluation(EvaluationData):
 
     @property
     def cases(self) -> Literal["steps", "flights"]:
-        """What was predicted: ``steps``, half a second apart, or whole ``flights``."""
+        """The kind of cases: ``steps``, half a second apart, or whole ``flights``."""
         cases: Literal["steps", "flights"] = self._data["cases"]
         return cases
 
     @property
     def horizon_s(self) -> float | None:
-        """How far ahead a risk should tell; None of whole flights."""
+        """The prediction horizon; None for whole flights."""
         horizon_s: float | None = self._data["horizon_s"]
         return horizon_s
 
@@ -328,7 +328,7 @@ class Evaluation(EvaluationData):
 
     @cached_property
     def flights(self) -> list[EvaluatedFlight]:
-        """The flights, in their order; none for ``rows``."""
+        """The flights, in their order; empty for ``rows``."""
         return [
             EvaluatedFlight(
                 **{**data, "profiles": {name: _said(said) for name, said in data["profiles"].items()}}
@@ -343,13 +343,13 @@ class Evaluation(EvaluationData):
 
     @property
     def notes(self) -> list[str]:
-        """Which estimators the ``rows`` say nothing to, and why."""
+        """The estimators that ``rows`` do not support, and the reasons."""
         return self._notes()
 
     @cached_property
     def scores(self) -> Table:
-        """What each estimator said of each case, in a column of its name: a risk in %, or the value of a predictor. Beside
-        them ``flight`` (its index), ``critical``, and of steps ``t_s``, ``quiet`` and ``onset``."""
+        """The score of each estimator for each case, in a column with its name: a risk in %, or the value of a predictor. Also
+        ``flight`` (its index), ``critical``, and for steps ``t_s``, ``quiet`` and ``onset``."""
         return self._scores()
 
     def roc(self, estimator: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -363,16 +363,16 @@ class Evaluation(EvaluationData):
         Returns
         -------
         tuple of numpy.ndarray
-            False and true positive rates; empty where there is no area.
+            False and true positive rates; empty if there is no area.
         """
         names = list(self.estimators)
         if estimator not in names:
             there = ", ".join(f"`{name}`" for name in names)
-            raise DataError(f"there is no estimator `{estimator}`\n  help: there are {there}")
+            raise DataError(f"there is no estimator `{estimator}`\n  help: the estimators are {there}")
         return self._roc(names.index(estimator))
 
     def to_dict(self) -> dict[str, Any]:
-        """All of it, as ``flagred validate --json`` prints it."""
+        """The whole evaluation, as ``flagred validate --json`` prints it."""
         found: dict[str, Any] = json.loads(self.to_json())
         return found
 
@@ -393,29 +393,29 @@ def evaluate(
     skip_bad_logs: bool = False,
     threads: int | None = None,
 ) -> Evaluation:
-    """Evaluates the risks of profiles on many flights, beside predictors without rules. ``flagred validate`` does the same.
+    """Compares the risks of profiles on many flights with predictors without rules. ``flagred validate`` does the same.
 
     Parameters
     ----------
     logs
-        Flights, logs as :func:`flagred.read_log` takes them, and folders of logs. They must hold motors, attitude and times
-        in the air. Files in folders that are no such logs are left out; see :attr:`Evaluation.left_out`.
+        Flights, logs as for :func:`flagred.read_log`, and folders of logs. They must contain motors, attitude and times
+        in the air. Other files in folders are skipped; see :attr:`Evaluation.left_out`.
     profiles
         Profiles to compare with the shipped ones, or their files.
     rows
-        In place of logs, a frame with a row for each flight, as ``flagred dataset`` writes it. It has a column
+        Instead of logs, a frame with a row for each flight, as written by ``flagred dataset``, with a column
         ``att_rmse_deg``.
     horizon_s
-        How many seconds ahead a risk should tell.
+        The prediction horizon in seconds.
     skip_bad_logs
-        Leave out logs that cannot be used, and say why in ``left_out``, rather than raise an error.
+        Skip logs that cannot be used, and list the reasons in ``left_out``, instead of raising an error.
     threads
-        The number of threads; as many as there are cores for None.
+        The number of threads; by default the number of cores.
 
     Raises
     ------
     LogError
-        A log cannot be used, or there is no step in any.
+        A log cannot be used, or no log has a step.
     OSError
         A file cannot be read.
     RuleSetError
@@ -442,7 +442,7 @@ def evaluate(
     """
     if rows is not None:
         if not isinstance(logs, tuple) or logs:
-            raise DataError("logs and rows are given\n  help: evaluate one after the other")
+            raise DataError("both logs and rows are given\n  help: evaluate them separately")
         rows = _rows(rows)
     asked = [profiles] if isinstance(profiles, (Profile, str, os.PathLike)) else list(profiles)
     loaded = [profile if isinstance(profile, Profile) else Profile(os.fspath(profile)) for profile in asked]
@@ -453,14 +453,14 @@ def evaluate(
 
 
 def _sources(logs: Any) -> list[Any]:
-    """Flights and paths; what is neither is read."""
+    """Flights and paths; other values are read as logs."""
     one = isinstance(logs, (Flight, str, os.PathLike, bytes, bytearray, memoryview)) or hasattr(logs, "read")
     found = [logs] if one else list(logs)
     return [log if isinstance(log, (Flight, str, os.PathLike)) else read_log(log) for log in found]
 
 
 def _rows(data: Any) -> dict[str, Any]:
-    """The columns that the native half takes: numbers, or else texts."""
+    """The columns in the form that the native half requires: numbers or texts."""
     data = table_of(data)
     names = column_names(data)
     numbers: list[NDArray[np.float64] | None] = []

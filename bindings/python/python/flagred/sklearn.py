@@ -1,4 +1,4 @@
-"""Estimators for scikit-learn whose model is a rule set that people can read: ``pip install flagred[sklearn]``."""
+"""Estimators for scikit-learn whose model is a readable rule set: ``pip install flagred[sklearn]``."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ _TERMS = {
     7: ["very_low", "low", "fairly_low", "medium", "fairly_high", "high", "very_high"],
 }
 
-# A rule for each combination of terms, which monotone constraints take.
+# A rule for each combination of terms, which monotone constraints require.
 _MOST_COMBINATIONS = 100_000
 
 
 class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
-    """What both estimators do: partitions from the data, rules by Wang and Mendel, numbers by tuning."""
+    """The common part of the estimators: partitions from the data, rules by Wang and Mendel, numbers by tuning."""
 
     rule_set_: Model
     n_rules_: int
@@ -73,7 +73,7 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
                 raise ValueError(f"{name} is {getattr(self, name)}, but a variable has at least 2 terms")
         if self.spacing not in ("quantile", "uniform"):
             raise ValueError(f"spacing is {self.spacing!r}, but must be 'quantile' or 'uniform'")
-        # A row of weight 0 is no row.
+        # A row of weight 0 is ignored.
         counts = weight > 0
         X, y, weight = X[counts], y[counts], weight[counts]
         if len(y) == 0:
@@ -130,12 +130,12 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
         self.n_rules_ = len(model.rules)
 
     def _input_names(self, output: str) -> list[str]:
-        """The names of the features; one that is called as the output gets a mark."""
+        """The names of the features; a feature with the name of the output gets a suffix."""
         names = getattr(self, "feature_names_in_", [f"x{i}" for i in range(self.n_features_in_)])
         return [f"{name}_in" if name == output else str(name) for name in names]
 
     def _directions(self, names: list[str]) -> tuple[list[str], list[str]]:
-        """The inputs in which the output must not fall, and those in which it must not rise."""
+        """The inputs with which the output must not fall, and those with which it must not rise."""
         given = self.monotonic_cst
         if given is None:
             return [], []
@@ -148,27 +148,27 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
         else:
             signs = list(given)
         if len(signs) != len(names) or any(sign not in (-1, 0, 1) for sign in signs):
-            raise ValueError(f"monotonic_cst must hold -1, 0 or 1 for each of the {len(names)} features")
+            raise ValueError(f"monotonic_cst must contain -1, 0 or 1 for each of the {len(names)} features")
         signed = list(zip(names, signs, strict=True))
         return [name for name, sign in signed if sign == 1], [name for name, sign in signed if sign == -1]
 
     def _peaks(self, values: Floats, weight: Floats, count: int) -> Floats:
-        """Where the terms of a variable are, from the lowest value to the highest."""
+        """The peaks of the terms of a variable, from the lowest value to the highest."""
         low, high = values.min(), values.max()
         if low == high:
-            # A value that never changes tells nothing; two terms around it share it.
+            # A constant value contains no information; two terms around it share it.
             width = max(abs(low), 1.0)
             return np.array([low - width, low + width])
         if self.spacing == "uniform":
             return np.linspace(low, high, count)
         order = np.argsort(values, kind="stable")
         below = np.cumsum(weight[order])
-        # The smallest value up to which so much of the weight lies: a row of weight 2 counts as two rows.
+        # The smallest value up to which this share of the weight lies: a row of weight 2 counts as two rows.
         found = np.searchsorted(below, np.linspace(0, 1, count)[1:-1] * below[-1])
         return np.unique(np.concatenate(([low], values[order][found], [high])))
 
     def _rows(self, X: ArrayLike) -> Floats:
-        """Rows to predict, checked."""
+        """Validates rows to predict."""
         check_is_fitted(self, "rule_set_")
         rows: Floats = validate_data(self, X, reset=False, dtype=np.float64)
         return rows
@@ -179,12 +179,12 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
         return found
 
     def explain(self, X: ArrayLike) -> list[Explanation]:
-        """Why the rule set gives what it gives: the degrees of the terms and the strengths of the rules.
+        """Explains the outputs of the rule set: the degrees of the terms and the strengths of the rules.
 
         Parameters
         ----------
         X
-            The rows, as :meth:`predict` takes them.
+            The rows, as for :meth:`predict`.
 
         Returns
         -------
@@ -201,7 +201,7 @@ def _weights(sample_weight: ArrayLike | None, rows: Floats) -> Floats:
 
 
 def _wider(peaks: Floats) -> tuple[float, float]:
-    """The range of a variable. It is wider than its values: what touches the end of a range cannot move."""
+    """The range of a variable. It is wider than its values, because a peak at an end of the range cannot move."""
     margin = (peaks[-1] - peaks[0]) / 10
     return float(peaks[0] - margin), float(peaks[-1] + margin)
 
@@ -213,21 +213,21 @@ def _terms(count: int) -> list[str]:
 class FuzzyRegressor(RegressorMixin, _FuzzyEstimator):  # type: ignore[misc]
     """A regressor whose model is a fuzzy rule set.
 
-    Each feature gets a partition, made from its values. Rules are learned after Wang and Mendel (1992): each combination of
-    terms that has rows gets one, whose consequent is the mean of its rows. Then tuning moves the peaks and the consequents.
-    A prediction is the mean of the consequents, weighted by the firing strengths; where no rule fires it is the mean of the
-    training targets. It leaves their range by a tenth of its width at most.
+    Each feature gets a partition, derived from its values. Rules are learned after Wang and Mendel (1992): one for each
+    combination of terms with rows, whose consequent is the mean of its rows. Then tuning moves the peaks and the
+    consequents. A prediction is the mean of the consequents, weighted by the firing strengths; where no rule fires, it is
+    the mean of the training targets. It exceeds their range by at most a tenth of its width.
 
     Parameters
     ----------
     n_terms
-        The most terms of a feature. Features of few values get fewer.
+        The maximum number of terms of a feature. Features with few values get fewer.
     n_output_terms
-        The most terms of the target.
+        The maximum number of terms of the target.
     spacing
-        Where the terms begin: at quantiles of the values, or evenly spaced.
+        The initial positions of the terms: at quantiles of the values, or evenly spaced.
     min_support
-        The fewest rows of a rule.
+        The minimum number of rows of a rule.
     complete
         Whether combinations of terms without rows get the rule of the nearest one with rows.
     monotonic_cst
@@ -236,11 +236,11 @@ class FuzzyRegressor(RegressorMixin, _FuzzyEstimator):  # type: ignore[misc]
     tune
         Whether the numbers are tuned.
     iterations
-        The most steps of tuning, for each start.
+        The maximum number of iterations of tuning, for each start.
     starts
-        How often tuning starts: first at the learned rules, then at random places around them.
+        The number of starts of tuning: first at the learned rules, then at random points around them.
     random_state
-        Of the random places.
+        The random seed of these points.
 
     Attributes
     ----------
@@ -272,7 +272,7 @@ class FuzzyRegressor(RegressorMixin, _FuzzyEstimator):  # type: ignore[misc]
         X, y
             The rows and their targets.
         sample_weight
-            How much each row counts.
+            The weight of each row.
         """
         rows, targets = validate_data(self, X, y, dtype=np.float64, y_numeric=True)
         targets = targets.astype(np.float64)
@@ -283,12 +283,12 @@ class FuzzyRegressor(RegressorMixin, _FuzzyEstimator):  # type: ignore[misc]
         return self
 
     def predict(self, X: ArrayLike) -> Floats:
-        """The values of the rule set.
+        """The outputs of the rule set.
 
         Parameters
         ----------
         X
-            The rows. Values outside the range of a feature in the rule set count as its ends.
+            The rows. Values outside the range of a feature in the rule set are clamped.
         """
         return self._evaluate(X)
 
@@ -296,8 +296,8 @@ class FuzzyRegressor(RegressorMixin, _FuzzyEstimator):  # type: ignore[misc]
 class FuzzyRiskClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[misc]
     """A classifier of two classes whose model is a fuzzy rule set: the risk of the second class, from 0 to 1.
 
-    It learns as :class:`FuzzyRegressor` does, from 0 for the first class and 1 for the second. Tuning makes the mean of
-    -ln p of what happened small.
+    It learns like :class:`FuzzyRegressor`, from 0 for the first class and 1 for the second. Tuning minimises the mean of
+    -ln p of the true classes.
 
     Parameters
     ----------
@@ -331,7 +331,7 @@ class FuzzyRiskClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[mis
     classes_: NDArray[Any]
 
     def fit(self, X: ArrayLike, y: ArrayLike, sample_weight: ArrayLike | None = None) -> FuzzyRiskClassifier:
-        """Learns the rule set, as :meth:`FuzzyRegressor.fit` does, from rows ``X`` and their classes ``y``."""
+        """Learns the rule set, like :meth:`FuzzyRegressor.fit`, from rows ``X`` and their classes ``y``."""
         rows, classes = validate_data(self, X, y, dtype=np.float64)
         check_classification_targets(classes)
         kind = type_of_target(classes, input_name="y", raise_unknown=True)
@@ -346,12 +346,12 @@ class FuzzyRiskClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[mis
         return self
 
     def predict_proba(self, X: ArrayLike) -> Floats:
-        """The probabilities of both classes at rows ``X``. That of the second is the value of the rule set."""
+        """The probabilities of both classes for rows ``X``. That of the second is the output of the rule set."""
         risk = self._evaluate(X)
         return np.column_stack((1.0 - risk, risk))
 
     def predict(self, X: ArrayLike) -> NDArray[Any]:
-        """The class with the greater probability at each of the rows ``X``; the first of equal ones."""
+        """The class with the greater probability for each of the rows ``X``; the first of equal ones."""
         places = np.argmax(self.predict_proba(X), axis=1)
         found: NDArray[Any] = self.classes_[places]
         return found
@@ -363,9 +363,10 @@ class FuzzyRiskClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[mis
 
 
 class FuzzyClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[misc]
-    """A classifier of two or more classes: one rule set for each, the degree to which a row belongs to the class, from 0 to 1.
+    """A classifier of two or more classes: one rule set for each, whose output is the degree to which a row belongs to it,
+    in 0 to 1.
 
-    Each rule set is learned as that of :class:`FuzzyRiskClassifier`, for its class against all others. The probabilities
+    Each rule set is learned like that of :class:`FuzzyRiskClassifier`, for its class against all others. The probabilities
     are these degrees divided by their sum.
 
     Parameters
@@ -380,7 +381,7 @@ class FuzzyClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[misc]
     classes_
         The classes, sorted.
     rule_sets_
-        The rule set of each class, each a :class:`flagred.Model`; of two classes, that of the second alone.
+        The rule set of each class, each a :class:`flagred.Model`; for two classes, only that of the second.
     n_rules_
         The number of their rules.
     n_features_in_, feature_names_in_
@@ -424,7 +425,7 @@ class FuzzyClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[misc]
         return self
 
     def predict_proba(self, X: ArrayLike) -> Floats:
-        """The probability of each class at each of the rows ``X``."""
+        """The probability of each class for each of the rows ``X``."""
         check_is_fitted(self, "rule_sets_")
         rows: Floats = validate_data(self, X, reset=False, dtype=np.float64)
         degrees = np.column_stack([rule_set(*rows.T) for rule_set in self.rule_sets_])
@@ -436,13 +437,13 @@ class FuzzyClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[misc]
         return found
 
     def predict(self, X: ArrayLike) -> NDArray[Any]:
-        """The class with the greatest probability at each of the rows ``X``; the first of equal ones."""
+        """The class with the greatest probability for each of the rows ``X``; the first of equal ones."""
         places = np.argmax(self.predict_proba(X), axis=1)
         found: NDArray[Any] = self.classes_[places]
         return found
 
     def explain(self, X: ArrayLike) -> list[list[Explanation]]:  # type: ignore[override]
-        """Why each rule set gives its degree: for each of the rows ``X``, the explanation of each of ``rule_sets_``."""
+        """Explains the degrees of each rule set: for each of the rows ``X``, the explanation of each of ``rule_sets_``."""
         check_is_fitted(self, "rule_sets_")
         rows: Floats = validate_data(self, X, reset=False, dtype=np.float64)
         return [[rule_set.explain(*row.tolist()) for rule_set in self.rule_sets_] for row in rows]

@@ -1,7 +1,7 @@
 """Snapshots of rule sets, for tests.
 
-A snapshot is a table of points and outputs, as ``flagred map --csv`` and ``flagred eval`` write it. It belongs into the
-repository beside the rule set.
+A snapshot is a table of points and outputs, as written by ``flagred map --csv`` and ``flagred eval``. It belongs in the
+repository, beside the rule set.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _UPDATE = "FLAGRED_UPDATE"
 
 
 def assert_map(model: Model, path: str | os.PathLike[str], *, points: int = 11) -> None:
-    """Asserts that the outputs of a rule set are those of a snapshot.
+    """Asserts that the outputs of a rule set equal those of a snapshot.
 
     With the environment variable ``FLAGRED_UPDATE=1`` it writes the snapshot.
 
@@ -39,16 +39,16 @@ def assert_map(model: Model, path: str | os.PathLike[str], *, points: int = 11) 
     model
         The rule set.
     path
-        The snapshot: a CSV with a column for each input and for at least one output. Other columns do not matter.
+        The snapshot: a CSV with a column for each input and for at least one output. Other columns are ignored.
     points
-        The points along each input of a snapshot that is written.
+        The points along each input of a snapshot to write.
 
     Raises
     ------
     AssertionError
-        A value differs, or there is no such file. The message has the largest difference and where it is.
+        A value differs, or there is no such file. The message contains the largest difference and its point.
     DataError
-        The file is no such table, or the snapshot would have more than 100,000 points.
+        The file is not such a table, or the snapshot would have more than 100,000 points.
 
     Examples
     --------
@@ -126,7 +126,7 @@ def _column(columns: dict[str, NDArray[np.float64]], name: str, path: str | os.P
 
 
 def _number(cell: str) -> float:
-    # Columns that are not compared may hold text.
+    # Columns that are not compared may contain text.
     try:
         return float(cell)
     except ValueError:

@@ -1,4 +1,4 @@
-"""The types of what functions and methods of the package return."""
+"""The types of the results of functions and methods of the package."""
 
 from ._clusters import Clusters
 from ._core import (

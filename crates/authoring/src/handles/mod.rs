@@ -142,7 +142,7 @@ impl<'d> Place<'d> {
         if matches!(shape, MembershipFunction::Constant { .. })
             && self.index < self.rules.model.inputs.len()
         {
-            // It is a degree, not a position.
+            // The value is a degree, not a position.
             return Vec::new();
         }
         let parameters = shape.parameters();

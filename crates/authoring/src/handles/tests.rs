@@ -39,7 +39,7 @@ fn after(text: &str, term: (usize, usize), handle: usize, to: (f64, f64)) -> Str
 }
 
 #[test]
-fn handles_stand_where_the_parameters_are() {
+fn handles_are_at_the_parameters() {
     let document = document(RULES);
     assert!(!document.findings().has_errors(), "{}", document.findings());
     let places = |variable, term| -> Vec<(&str, f64, f64, f64, f64)> {
@@ -69,7 +69,7 @@ fn handles_stand_where_the_parameters_are() {
 }
 
 #[test]
-fn a_number_changes_and_nothing_else() {
+fn moving_a_handle_changes_one_number_only() {
     for (term, handle, to, old, new) in [
         ((0, 0), 0, (33.333333, 0.0), "{low: 10,", "{low: 33.3,"),
         ((3, 0), 1, (-2.0, 0.0), "-2.50", "-2"),
@@ -122,7 +122,7 @@ fn every_handle_of_the_shipped_rule_sets_moves() {
 }
 
 #[test]
-fn what_cannot_be_moved_says_why() {
+fn a_handle_that_cannot_move_reports_the_reason() {
     let shared = RULES
         .replace("near: {", "near: &n {")
         .replace("wide: {cosine: {center: 0, width: 4}}", "wide: *n");
@@ -134,7 +134,7 @@ fn what_cannot_be_moved_says_why() {
 }
 
 #[test]
-fn a_mistake_elsewhere_is_no_hindrance() {
+fn a_mistake_elsewhere_does_not_prevent_moving_a_handle() {
     let text = RULES
         .replace("range: [0, 1]", "range: 1")
         .replace("IF heat", "IF heatt");

@@ -115,7 +115,7 @@ fn rules_are_added_changed_and_removed() {
 }
 
 #[test]
-fn what_a_rule_uses_stays() {
+fn terms_and_variables_used_by_a_rule_are_not_removed() {
     let refused = |part| text_after(&starter(), |d| remove(d, part)).unwrap_err();
     assert_eq!(
         refused(Part::Variable(0)),

@@ -1,4 +1,4 @@
-//! Findings for programs that show them at their place: SARIF 2.1.0, and the commands of GitHub's workflows.
+//! Findings for programs that show them in the source: SARIF 2.1.0, and workflow commands of GitHub.
 
 use std::{collections::BTreeSet, io, io::Write};
 
@@ -21,7 +21,7 @@ pub(super) enum Format {
     Github,
 }
 
-/// A SARIF document that is being made.
+/// A SARIF document under construction.
 #[derive(Default)]
 pub(super) struct Sarif {
     codes: BTreeSet<&'static str>,
@@ -109,7 +109,7 @@ pub(super) fn write_github(
             start.column,
             end.line
         )?;
-        // GitHub takes the end of a column only within a line.
+        // GitHub accepts an end column only if the finding is within one line.
         if start.line == end.line {
             write!(out, ",endColumn={}", end.column)?;
         }
@@ -120,7 +120,7 @@ pub(super) fn write_github(
     Ok(())
 }
 
-/// The message of a finding, and its help in a line of its own.
+/// The message of a finding, with its help on a separate line.
 fn message(finding: &Diagnostic) -> String {
     match &finding.help {
         Some(help) => format!("{}\nhelp: {help}", finding.message),
@@ -128,7 +128,7 @@ fn message(finding: &Diagnostic) -> String {
     }
 }
 
-/// A path as a reference to a file: relative to where the command runs, or absolute.
+/// A path as a reference to a file: relative to the working directory, or absolute.
 fn uri(file: &str) -> String {
     let file = file.replace(std::path::MAIN_SEPARATOR, "/");
     let mut uri = String::from(if file.starts_with('/') { "file://" } else { "" });

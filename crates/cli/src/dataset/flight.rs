@@ -14,8 +14,7 @@ use fuzzy::{
 use super::{BEFORE_S, Cut, Plan, Row, Rows};
 use crate::{failure::Failure, flights::open_complete};
 
-/// Rows that look ahead leave out so many seconds after take-off and before the end of a time in the air, where the
-/// header names no judged time.
+/// Seconds that rows of [`Cut::Ahead`] omit after take-off and before the end of a time in the air, if the header names no judged time.
 const AFTER_TAKE_OFF_S: f64 = 2.0;
 const BEFORE_END_S: f64 = 1.0;
 
@@ -43,7 +42,7 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
             Cut::Windows { length_s } => Some(length_s),
             Cut::Ahead { .. } => None,
         };
-        // Errors on the ground are none of the flight's.
+        // Errors on the ground do not belong to the flight.
         let in_air = errors.iter().filter(|(t_s, _)| air_s.contains(*t_s));
         let record = ErrorRecord::new(in_air.copied());
         let inputs = inputs(&flight, plan, &carried, length_s, &moments)?;
@@ -84,11 +83,11 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     Ok(made)
 }
 
-/// A part of a flight that rows are made of.
+/// A part of a flight from which rows are made.
 struct Part {
-    /// The time in the air that it belongs to.
+    /// The time in the air that contains it.
     air_s: Span,
-    /// What of it counts.
+    /// The part of it that counts.
     span: Span,
 }
 
@@ -132,7 +131,7 @@ fn moments(cut: Cut, from_s: f64, to_s: f64) -> Vec<f64> {
     }
 }
 
-/// The inputs at each moment as a monitor sees them, over windows of one length or over their own; NaN is unknown.
+/// Returns the inputs at each moment as a monitor computes them, over windows of one length or over their own; NaN is unknown.
 fn inputs(
     flight: &Flight,
     plan: &Plan,
@@ -141,7 +140,7 @@ fn inputs(
     moments: &[f64],
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut profile = plan.profile.clone();
-    // The rules below have one output.
+    // The rules below have only one output.
     profile.other_risks.clear();
     for input in &mut profile.inputs {
         input.source.window_s = length_s.unwrap_or(input.source.window_s);
@@ -155,7 +154,7 @@ fn inputs(
     let mut rows = Vec::with_capacity(moments.len());
     let mut now = vec![f64::NAN; profile.inputs.len()];
     log::for_each_sample(flight, carried, |sample| {
-        // The state at a moment is that after the newest sample up to it. A touch of the ground does not count.
+        // The state at a moment is that after the newest sample up to it. A short contact with the ground is ignored.
         while moments
             .get(rows.len())
             .is_some_and(|t_s| *t_s + 1e-6 < sample.t_s)
@@ -171,7 +170,7 @@ fn inputs(
     Ok(rows)
 }
 
-/// Rules for a monitor that is asked for its inputs only: the profile's own may still have to be learned.
+/// Placeholder rules for a monitor that only computes inputs: the profile's own rules may not be learned yet.
 fn any_rules(profile: &Profile) -> Model {
     let terms = ["low", "high"];
     let mut model = Model::builder("any");
@@ -185,7 +184,7 @@ fn any_rules(profile: &Profile) -> Model {
     model.output(Output::new(output)).build()
 }
 
-/// The root mean square over `(from_s, to_s]`.
+/// The root mean square attitude error over `(from_s, to_s]`.
 fn rmse(errors: &[(f64, Attitude)], from_s: f64, to_s: f64) -> Option<f64> {
     let first = errors.partition_point(|(t_s, _)| *t_s <= from_s + 1e-6);
     let end = errors.partition_point(|(t_s, _)| *t_s <= to_s + 1e-6);

@@ -1,4 +1,4 @@
-//! `flagred dataset`: flights as rows to learn from.
+//! `flagred dataset`: flights as rows of training data.
 
 mod flight;
 pub(crate) mod summary;
@@ -15,6 +15,7 @@ use flagred::{
 
 use crate::{
     failure::{Exit, Failure},
+    numbers,
     output::{self, Files, Stdout},
     parallel, profile,
 };
@@ -25,24 +26,24 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// Add the inputs of this profile, as `input_NAME` where another column has the name: `flagred`, `flagred-battery`, `flagred-paper`, or a file
+    /// Add the inputs of this profile (an input whose name is taken becomes `input_NAME`): `flagred`, `flagred-paper`, `flagred-battery`, or a file
     #[arg(long, value_name = "NAME|FILE")]
     profile: Option<String>,
 
     /// Make a row for each period of this length instead of each time in the air
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, conflicts_with = "horizon")]
+    #[arg(long, value_name = "SECONDS", value_parser = numbers::positive, conflicts_with = "horizon")]
     window: Option<f64>,
 
-    /// Make rows that look this far ahead: the inputs of the profile at a time, and the largest attitude error in the seconds after it
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    /// Make a row for each moment instead, with the inputs then and the largest attitude error in this many seconds after it
+    #[arg(long, value_name = "SECONDS", value_parser = numbers::positive)]
     horizon: Option<f64>,
 
     /// The time between the rows of `--horizon`
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value_t = 0.5, requires = "horizon")]
+    #[arg(long, value_name = "SECONDS", value_parser = numbers::positive, default_value_t = 0.5, requires = "horizon")]
     every: f64,
 
     /// Attitude error that counts as a risk of 100 %, in degrees
-    #[arg(long, value_name = "DEG", value_parser = seconds, default_value_t = CRITICAL_ERROR_DEG)]
+    #[arg(long, value_name = "DEG", value_parser = numbers::positive, default_value_t = CRITICAL_ERROR_DEG)]
     critical: f64,
 
     /// The file to write [default: standard output]
@@ -50,14 +51,7 @@ pub(crate) struct Arguments {
     output: Option<PathBuf>,
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("write a number above 0".to_owned()),
-    }
-}
-
-/// What rows are made of.
+/// How the rows are made.
 struct Plan {
     profile: Profile,
     cut: Cut,
@@ -69,31 +63,31 @@ struct Plan {
 enum Cut {
     /// One row for each time in the air.
     Flights,
-    /// One row for every so many seconds.
+    /// One row for each window of this length.
     Windows { length_s: f64 },
-    /// A row every so many seconds, the truth in the seconds that follow.
+    /// A row every `step_s` seconds, with the ground truth from the `horizon_s` seconds that follow.
     Ahead { horizon_s: f64, step_s: f64 },
 }
 
-/// Over how many seconds before a row of [`Cut::Ahead`] the largest error is told.
+/// Lengths of time before a row of [`Cut::Ahead`] for which the largest attitude error is reported.
 const BEFORE_S: [f64; 2] = [5.0, 10.0];
 
 /// One row of the data set.
 struct Row {
     vehicle: String,
-    /// What kind of flight it is, by the header.
+    /// The kind of flight, from the header.
     kind: String,
-    /// Where the row begins; of [`Cut::Ahead`] where the time in the air does.
+    /// The start of the row; for [`Cut::Ahead`], the start of the time in the air.
     from_s: Option<f64>,
     to_s: Option<f64>,
     inputs: Vec<f64>,
-    /// Of [`Cut::Ahead`]: the largest error in each of [`BEFORE_S`]; `None` is unknown.
+    /// For [`Cut::Ahead`]: the largest error over each of [`BEFORE_S`]; `None` is unknown.
     errors_before_deg: Vec<Option<f64>>,
     att_rmse_deg: f64,
     risk_pct: f64,
 }
 
-/// The rows of one file, and what is to be said about it.
+/// The rows of one file, and notes for the user about it.
 struct Rows {
     rows: Vec<Row>,
     notes: Vec<String>,
@@ -171,9 +165,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// The paper's two inputs come first, whatever the rules of the profile look at. An input of the profile that has one of these names
-/// and is another quantity is `input_NAME`, as in the steps of `assess`. Rows of [`Cut::Ahead`] are those of the profile: there it
-/// keeps its name.
+/// The paper's two inputs come first, whatever inputs the rules of the profile read. An input of the profile that has one of these names
+/// but is another quantity becomes `input_NAME`, as in the steps of `assess`. With [`Cut::Ahead`] the inputs are those of the profile
+/// and keep their names.
 fn with_margin_and_spread(mut profile: Profile, cut: Cut) -> Profile {
     let paper = [
         ("margin", Statistic::Mean, Signal::MotorMargin),

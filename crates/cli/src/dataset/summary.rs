@@ -1,4 +1,4 @@
-//! Rows from a table that has one row for each flight already: means and standard deviations of the commands.
+//! Rows from a table that already has one row for each flight: means and standard deviations of the commands.
 
 use std::{fs::File, io::Read, path::Path};
 
@@ -10,10 +10,10 @@ use crate::{
     table::{BadCell, Table},
 };
 
-/// The attitude error by which such a table is known.
+/// The column of the attitude error, which identifies such a table.
 const ERROR: &str = "att_rmse_deg";
 
-/// The table, if the file is one: its first line names an attitude error, and no time.
+/// Opens the table, if the file is one: its first line names an attitude error, and no time.
 pub(super) fn open(path: &Path) -> Option<Result<Table, Failure>> {
     let mut start = Vec::new();
     File::open(path)
@@ -74,7 +74,7 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
             inputs,
             errors_before_deg: Vec::new(),
             att_rmse_deg,
-            // No attitude error stands for hitting the ground.
+            // A crash has no attitude error that corresponds to it.
             risk_pct: if has_crashed {
                 100.0
             } else {
@@ -85,7 +85,7 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
     Ok(made)
 }
 
-/// A cell that cannot be used, told with its place.
+/// Reports a cell that cannot be used, with its position.
 pub(crate) fn refuse(table: &Table, bad: &BadCell) -> Failure {
     Failure::unreadable(format!(
         "`{}`, line {}, column `{}`: {}",

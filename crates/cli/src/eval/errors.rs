@@ -1,16 +1,19 @@
-//! How far outputs are from measured values.
+//! Errors of outputs against measured values.
 
 use fuzzy::drawing::short;
 
+use super::tally::Rows;
 use crate::output::say;
 
-/// The worst rows that are listed.
+/// The number of worst rows that are listed.
 const WORST: usize = 5;
 
-/// The errors of an output: computed less measured.
+/// The errors of an output: computed minus measured.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Errors {
     rows: u64,
+    /// Rows without a measured number, and the first of them.
+    unmeasured: Rows,
     sum: f64,
     sum_of_squares: f64,
     /// Line, computed and measured value of the rows with the largest errors, the largest first.
@@ -25,17 +28,24 @@ impl Errors {
             sum: error,
             sum_of_squares: error * error,
             worst: vec![(line, computed, measured)],
+            ..Errors::default()
         });
+    }
+
+    /// Counts a row whose measured value is not a number.
+    pub(super) fn add_unmeasured(&mut self, line: u64) {
+        self.unmeasured.add(line);
     }
 
     /// Adds the errors of later rows.
     pub(super) fn merge(&mut self, later: Errors) {
         self.rows += later.rows;
+        self.unmeasured.merge(later.unmeasured);
         self.sum += later.sum;
         self.sum_of_squares += later.sum_of_squares;
         let size = |(_, computed, measured): &(u64, f64, f64)| (computed - measured).abs();
         for row in later.worst {
-            // Of equal errors the earlier row comes first.
+            // Among equal errors the earlier row comes first.
             let place = self
                 .worst
                 .partition_point(|other| size(other) >= size(&row));
@@ -46,8 +56,14 @@ impl Errors {
         }
     }
 
-    /// Prints the errors on standard error, if there are any measured values.
+    /// Prints the errors on standard error if there are measured values.
     pub(super) fn say(&self, output: &str) {
+        if let Some(line) = self.unmeasured.first_line() {
+            say(&format!(
+                "`{output}` is not compared in {} rows, whose measured value is not a number (first in line {line})",
+                self.unmeasured.count()
+            ));
+        }
         if self.rows == 0 {
             return;
         }

@@ -1,4 +1,4 @@
-//! `flagred eval`: a rule set at many points, from CSV to CSV.
+//! `flagred eval`: evaluates a rule set at many points, from CSV to CSV.
 
 mod errors;
 mod pipeline;
@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
     )]
     points: PathBuf,
 
-    /// The file to write: the table with the outputs [default: standard output]
+    /// The file to write [default: standard output]
     #[arg(short, long, value_name = "OUT.csv", default_value = "-", hide_default_value = true, value_parser = output::table_path)]
     output: PathBuf,
 
@@ -77,13 +77,13 @@ impl With {
     }
 }
 
-/// What is done with each row.
+/// How each row is processed.
 struct Plan {
     engine: Engine,
     header: Header,
     /// The column of each input.
     inputs: Vec<usize>,
-    /// The input that each column holds.
+    /// The input that each column contains.
     input_of: Vec<Option<usize>>,
     with: Vec<With>,
     suffix: String,
@@ -135,7 +135,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let tally = if output.is_stdout() {
         let mut out = Stdout::data();
         out.write_all(&head)?;
-        // A stream may have no end; of a file the rest is evaluated, for what is to be said of it.
+        // A stream may have no end. A file is evaluated to its end even if nobody reads the output, for the report.
         let is_stream = arguments.points == Path::new("-");
         let is_read = |out: &Stdout| !(is_stream && out.is_closed());
         let evaluated = pipeline::run(&plan, reader, &mut out, is_read)?;
@@ -149,7 +149,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 Ok(of_rows) => tally = of_rows,
                 Err(failure) => failed = Some(failure),
             }
-            // A part of a table is not kept.
+            // A partial table is discarded.
             failed
                 .as_ref()
                 .map_or(Ok(()), |_| Err(io::ErrorKind::InvalidData.into()))
@@ -178,12 +178,12 @@ impl Plan {
     fn writer<'b>(&self, buffer: &'b mut Vec<u8>) -> csv::Writer<&'b mut Vec<u8>> {
         csv::WriterBuilder::new()
             .delimiter(self.delimiter)
-            // A row that begins like a comment is put in quotes.
+            // A row that begins like a comment is quoted.
             .comment(Some(b'#'))
             .from_writer(buffer)
     }
 
-    /// The first row of what is written.
+    /// The header of the output.
     fn head(&self) -> Result<Vec<u8>, Failure> {
         let outputs = self.engine.output_names();
         let outputs: Vec<String> = outputs

@@ -1,4 +1,4 @@
-//! One thread reads blocks of rows, some evaluate them, and the caller's writes them, in their order. Memory does not grow
+//! One thread reads blocks of rows, several evaluate them, and the calling thread writes them in order. Memory does not grow
 //! with the table.
 
 use std::{
@@ -17,16 +17,16 @@ use crate::{
     table::{self, Reader},
 };
 
-/// Blocks that wait for a thread.
+/// Blocks queued for each thread.
 const WAITING: usize = 2;
 
-/// A block that was evaluated.
+/// A block after evaluation.
 type Done = Result<(Block, Tally), Failure>;
 
 /// Evaluates and writes rows to the end of the table, or while `is_read`.
 ///
 /// # Errors
-/// The output cannot be written. That the table cannot be read to its end is told inside, after all rows before.
+/// The output cannot be written. If the table cannot be read to its end, the inner result reports it, after all earlier rows.
 pub(super) fn run<W: Write + ?Sized>(
     plan: &Plan,
     reader: Reader,
@@ -34,13 +34,13 @@ pub(super) fn run<W: Write + ?Sized>(
     is_read: impl Fn(&W) -> bool,
 ) -> io::Result<Result<Tally, Failure>> {
     let threads = match plan.engine.model().keeps_previous() {
-        // Each row takes from the one before.
+        // Each row depends on the row before.
         true => 1,
         false => thread::available_parallelism().map_or(1, usize::from),
     };
     thread::scope(|scope| {
         let (spare, spares) = channel();
-        // Each thread has every n-th block, so their order is known.
+        // Thread `i` evaluates every n-th block, which determines their order.
         let (to_threads, from_threads): (Vec<_>, Vec<_>) = (0..threads)
             .map(|_| {
                 let (to_thread, blocks) = sync_channel(WAITING);
@@ -99,14 +99,14 @@ fn write<W: Write + ?Sized>(
 ) -> io::Result<Result<Tally, Failure>> {
     let mut tally = Tally::new(plan);
     for thread in threads.iter().cycle() {
-        // The first thread without a block has come to the end of the table.
+        // The first thread without a block has reached the end of the table.
         match thread.recv() {
             Err(_) => break,
             Ok(Err(failure)) => return Ok(Err(failure)),
             Ok(Ok((block, of_block))) => {
                 out.write_all(&block.written)?;
                 tally.merge(of_block);
-                // Where the table is read to its end, nothing is left to read into it.
+                // Fails only if the table was read to its end; then the spare block is not needed.
                 let _ = spare.send(block);
             }
         }

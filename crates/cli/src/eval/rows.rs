@@ -10,23 +10,23 @@ use crate::{
     table::{Cell, Reader},
 };
 
-/// The most rows of a block.
+/// Maximum number of rows in a block.
 const ROWS: usize = 4096;
-/// Bytes of text that are enough for a block: rows may be long.
+/// Bytes of text after which a block ends: rows may be long.
 const BLOCK_BYTES: usize = 16_000_000;
 
 /// Rows that are read, evaluated and written together.
 #[derive(Default)]
 pub(super) struct Block {
-    /// The rows, and behind them records to read into.
+    /// The rows, followed by spare records for reading.
     records: Vec<ByteRecord>,
     rows: usize,
-    /// The rows as they are written.
+    /// The rows as CSV.
     pub(super) written: Vec<u8>,
 }
 
 impl Block {
-    /// Reads rows, and says whether there may be more.
+    /// Reads rows, and returns whether there may be more.
     pub(super) fn read(&mut self, reader: &mut Reader) -> csv::Result<bool> {
         self.records.resize_with(ROWS, ByteRecord::new);
         self.rows = 0;
@@ -45,16 +45,16 @@ impl Block {
     }
 }
 
-/// Evaluates blocks in memory of its own.
+/// Evaluates blocks, with its own memory.
 pub(super) struct Evaluator<'p> {
     plan: &'p Plan,
-    /// Of a rule set whose outputs keep their previous value.
+    /// Set if outputs of the rule set keep their previous value.
     sequence: Option<Sequence<'p>>,
     /// The values of each input.
     columns: Vec<Vec<f64>>,
-    /// Those of the first row, then of the second.
+    /// The outcomes of the first row, then those of the second, and so on.
     outcomes: Vec<Outcome>,
-    /// For each row what is wrong with it.
+    /// The problem of each row, if it has one.
     problems: Vec<Option<String>>,
 }
 
@@ -69,7 +69,7 @@ impl<'p> Evaluator<'p> {
         }
     }
 
-    /// Evaluates the rows of a block, and counts what is to be said of them.
+    /// Evaluates the rows of a block, and counts what is reported about them.
     pub(super) fn evaluate(&mut self, block: &mut Block) -> Result<Tally, Failure> {
         let plan = self.plan;
         let records = block.records.get(..block.rows).unwrap_or_default();
@@ -98,6 +98,7 @@ impl<'p> Evaluator<'p> {
         for (row, (record, outcomes)) in records.iter().zip(outcomes).enumerate() {
             let line = record.position().map_or(0, csv::Position::line);
             let problem = self.problems.get(row).and_then(Option::as_deref);
+            tally.has_misfit |= plan.header.misfit(record.len()).is_some();
             match problem {
                 Some(problem) => {
                     tally.add_bad(line, problem);
@@ -114,7 +115,7 @@ impl<'p> Evaluator<'p> {
         Ok(tally)
     }
 
-    /// Reads the inputs of a row; what is wrong with it, if anything. Unknown inputs, and those of a bad row, are NaN.
+    /// Reads the inputs of a row, and returns the problem with it, if any. Unknown inputs, and all inputs of a bad row, are NaN.
     fn read(&mut self, record: &ByteRecord) -> Option<String> {
         let header = &self.plan.header;
         let mut problems: Vec<String> = header.misfit(record.len()).into_iter().collect();
@@ -171,10 +172,12 @@ impl<'p> Evaluator<'p> {
             .zip(&mut tally.errors)
         {
             let measured = column.and_then(|column| record.get(column));
-            if let (Some(computed), Some(Cell::Number(measured))) =
-                (outcome.value(), measured.map(Cell::of))
-            {
-                errors.add(line, computed, measured);
+            match (outcome.value(), measured.map(Cell::of)) {
+                (Some(computed), Some(Cell::Number(measured))) => {
+                    errors.add(line, computed, measured);
+                }
+                (_, Some(Cell::Unknown | Cell::Bad)) => errors.add_unmeasured(line),
+                _ => {}
             }
         }
         for (outcome, silent) in outcomes.iter().zip(&mut tally.silent) {
@@ -202,7 +205,7 @@ impl<'p> Evaluator<'p> {
         outside.map(|(index, _)| index)
     }
 
-    /// Writes a row: its own cells, the values of the outputs, and the columns that were asked for.
+    /// Writes a row: its own cells, the values of the outputs, and the requested columns.
     fn write(
         &self,
         writer: &mut csv::Writer<&mut Vec<u8>>,
@@ -283,13 +286,13 @@ impl<'p> Evaluator<'p> {
     }
 }
 
-/// Whether nothing hidden is in a cell, and no spreadsheet takes it for a formula.
+/// Returns whether a cell contains only visible characters and cannot be a spreadsheet formula.
 fn is_plain(text: &[u8]) -> bool {
     let is_visible = text.iter().all(|byte| (b' '..=b'~').contains(byte));
     is_visible && !matches!(text.first(), Some(b'=' | b'+' | b'-' | b'@'))
 }
 
-/// The fewest digits that give the same number when they are read.
+/// Returns the fewest digits that read back as the same number.
 fn digits(buffer: &mut zmij::Buffer, value: f64) -> &str {
     let digits = buffer.format_finite(value);
     digits.strip_suffix(".0").unwrap_or(digits)

@@ -1,9 +1,9 @@
-//! What is to be said of the rows, counted.
+//! Counts of rows, for the report at the end.
 
 use super::{Plan, errors::Errors};
 use crate::output::say;
 
-/// Bad rows that are told one by one.
+/// Maximum number of bad rows that are reported individually.
 const SHOWN: usize = 20;
 
 /// Rows in which something happened.
@@ -21,8 +21,16 @@ impl Rows {
         });
     }
 
+    pub(super) fn count(self) -> u64 {
+        self.count
+    }
+
+    pub(super) fn first_line(self) -> Option<u64> {
+        (self.count > 0).then_some(self.first_line)
+    }
+
     /// Adds rows that come later.
-    fn merge(&mut self, later: Rows) {
+    pub(super) fn merge(&mut self, later: Rows) {
         if self.count == 0 {
             self.first_line = later.first_line;
         }
@@ -34,15 +42,17 @@ impl Rows {
 pub(super) struct Tally {
     pub(super) rows: u64,
     bad: Rows,
-    /// The first bad rows.
+    /// Whether a row has another number of cells than the header.
+    pub(super) has_misfit: bool,
+    /// The problems of the first bad rows.
     shown: Vec<String>,
-    /// An input is unknown.
+    /// Rows with an unknown input.
     pub(super) unknown: Rows,
-    /// For each output: no rule fires for it.
+    /// For each output: rows in which no rule fires for it.
     pub(super) silent: Vec<Rows>,
-    /// For each input: it is outside its range.
+    /// For each input: rows in which it is outside its range.
     pub(super) clamped: Vec<Rows>,
-    /// For each output: how far it is from measured values.
+    /// For each output: its errors against measured values.
     pub(super) errors: Vec<Errors>,
 }
 
@@ -51,6 +61,7 @@ impl Tally {
         Tally {
             rows: 0,
             bad: Rows::default(),
+            has_misfit: false,
             shown: Vec::new(),
             unknown: Rows::default(),
             silent: vec![Rows::default(); plan.engine.output_names().len()],
@@ -70,6 +81,7 @@ impl Tally {
     pub(super) fn merge(&mut self, later: Tally) {
         self.rows += later.rows;
         self.bad.merge(later.bad);
+        self.has_misfit |= later.has_misfit;
         let free = SHOWN - self.shown.len();
         self.shown.extend(later.shown.into_iter().take(free));
         self.unknown.merge(later.unknown);
@@ -84,14 +96,17 @@ impl Tally {
         }
     }
 
-    /// Whether every row that is written has all values.
+    /// Returns whether every written row has a value for all outputs.
     pub(super) fn is_complete(&self, plan: &Plan) -> bool {
         let all_read = self.bad.count == 0 || plan.skip_bad_rows;
         all_read && self.unknown.count == 0 && self.silent.iter().all(|rows| rows.count == 0)
     }
 
-    /// Says on standard error what happened.
+    /// Prints the counts on standard error.
     pub(super) fn say(&self, plan: &Plan) {
+        if self.rows == 0 {
+            say(&format!("`{}` has a header, but no rows", plan.header.file));
+        }
         let of = |rows: Rows| format!("{} of {} rows", rows.count, self.rows);
         let first = |rows: Rows| format!("first in line {}", rows.first_line);
         for bad in &self.shown {
@@ -107,6 +122,9 @@ impl Tally {
                 false => "no value in",
             };
             say(&format!("{what} {}: they cannot be read", of(self.bad)));
+            if self.has_misfit {
+                say(&format!("help: {}", plan.header.misfit_help()));
+            }
         }
         if self.unknown.count > 0 {
             say(&format!(

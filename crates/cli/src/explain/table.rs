@@ -14,7 +14,7 @@ use crate::{
     table::{Cell, Format, Header, Table},
 };
 
-/// The table with three columns more for each output: `fan`, `fan_rule` and `fan_shares`, such as `3=0.61|2=0.39`.
+/// Returns the table with three columns added for each output: `fan`, `fan_rule` and `fan_shares`, such as `3=0.61|2=0.39`.
 pub(super) fn explained(engine: &Engine, path: &Path, format: &Format) -> Result<String, Failure> {
     let table = Table::read(path, format.delimiter)?;
     let names: Vec<&str> = engine.input_names().collect();
@@ -49,7 +49,7 @@ pub(super) fn explained(engine: &Engine, path: &Path, format: &Format) -> Result
     Ok(String::from_utf8_lossy(&text).into_owned())
 }
 
-/// The names of the columns that are added.
+/// The names of the added columns.
 fn added(engine: &Engine, header: &Header) -> Result<Vec<String>, Failure> {
     let of = |output: &str| ["", "_rule", "_shares"].map(|end| format!("{output}{end}"));
     let added: Vec<String> = engine.output_names().flat_map(of).collect();
@@ -63,7 +63,7 @@ fn added(engine: &Engine, header: &Header) -> Result<Vec<String>, Failure> {
     }
 }
 
-/// The value of an input in a row; NaN where it is unknown.
+/// The value of an input in a row; NaN if unknown.
 fn value(table: &Table, row: usize, column: usize) -> Result<f64, Failure> {
     let text = table.text(row, column).as_bytes();
     match Cell::of(text) {
@@ -78,14 +78,14 @@ fn value(table: &Table, row: usize, column: usize) -> Result<f64, Failure> {
     }
 }
 
-/// The value, the dominant rule and the shares of an output; empty cells where an input is unknown.
+/// The value, the dominant rule and the shares of an output; empty cells if an input is unknown.
 fn reasons(output: Option<&ExplainedOutput>) -> [String; 3] {
     let Some(output) = output else {
         return Default::default();
     };
     let value = output.value.map(|value| value.to_string());
     let strongest = output.rules.iter().reduce(|a, b| {
-        // Of equally strong rules the first in the file.
+        // Among equally strong rules the first one in the file is dominant.
         let is_stronger = b.strength > a.strength || (b.strength == a.strength && b.rule < a.rule);
         if is_stronger { b } else { a }
     });

@@ -11,7 +11,7 @@ use flagred::{
     verdict::{self, LevelSettings},
 };
 
-/// The file of a profile.
+/// Returns the file for a profile.
 pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], words: &FindingWords) -> String {
     let name = identifier(plan.name);
     let motor = plan.bytes(1) - plan.bytes(0);
@@ -69,7 +69,7 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], words: &Findi
     arrays.end()
 }
 
-/// The file of a rule set without a profile.
+/// Returns the file for a rule set without a profile.
 pub(super) fn rules(rules: &Rules<'_>, name: &str, heading: &[String]) -> String {
     let name = identifier(name);
     let upper = name.to_uppercase();
@@ -102,7 +102,7 @@ struct Arrays {
 }
 
 impl Arrays {
-    /// Begins a file.
+    /// Starts a file.
     fn begin(heading: &[String], guard: &str, prefix: String) -> Self {
         let mut out = String::new();
         line(&mut out, &format!("/* {} */", heading.join("\n * ")));
@@ -115,13 +115,13 @@ impl Arrays {
         }
     }
 
-    /// Ends the structure, and the file.
+    /// Closes the structure and the file.
     fn end(mut self) -> String {
         line(&mut self.out, "};\n\n#endif");
         self.out
     }
 
-    /// The initialisers of the arrays that were written.
+    /// Returns the initialisers of the arrays written so far, and clears them.
     fn take_fields(&mut self) -> Vec<String> {
         let fields = std::mem::take(&mut self.fields).into_iter();
         fields
@@ -158,7 +158,7 @@ impl Arrays {
         fields.into_iter().chain(self.take_fields()).collect()
     }
 
-    /// Writes an array of C initialisers. C has no empty arrays.
+    /// Writes an array of C initialisers, or a null pointer for an empty one: C has no empty arrays.
     fn add(&mut self, kind: &str, field: &'static str, items: Vec<String>) {
         let array = format!("{}_{field}", self.prefix);
         let count = items.len();
@@ -210,7 +210,7 @@ impl Arrays {
         self.add_array("propositions", &propositions);
     }
 
-    /// What a pilot reads of findings. The plan does not hold it.
+    /// Writes the texts of findings for pilots. The plan does not contain them.
     fn add_words(&mut self, words: &FindingWords) {
         let FindingWords { causes, notices } = words;
         for (comment, field, words) in [
@@ -234,13 +234,13 @@ impl Arrays {
     }
 }
 
-/// The C initialiser of plain data from its debug form: of `Edge { literal: 1, node: 2 }`, `{.literal = 1, .node = 2}`.
+/// Converts the debug form of plain data into a C initialiser: `Edge { literal: 1, node: 2 }` becomes `{.literal = 1, .node = 2}`.
 fn initialiser(debug: &str) -> String {
     let words: Vec<&str> = debug.split(' ').collect();
     let mut text = String::new();
     for (i, word) in words.iter().enumerate() {
         if words.get(i + 1) == Some(&"{") {
-            continue; // the name of a structure
+            continue; // the name of the structure
         }
         match word.strip_suffix(':') {
             Some(field) => text += &format!(".{field} = "),
@@ -250,7 +250,7 @@ fn initialiser(debug: &str) -> String {
     text.trim_end().replace("{ ", "{").replace(" }", "}")
 }
 
-/// A word of a debug form: a number, a code such as `Kind(3)`, or a hedge.
+/// Converts a word of a debug form: a number, a code such as `Kind(3)`, or a hedge.
 fn value(word: &str) -> String {
     if let Some(code) = Hedge::ALL
         .iter()
@@ -339,7 +339,7 @@ fn number(number: f64) -> String {
     value(&format!("{number:?}"))
 }
 
-/// A name with the characters of a C identifier.
+/// Replaces the characters of a name that a C identifier cannot contain.
 fn identifier(name: &str) -> String {
     let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     name.chars().map(letter).collect()
@@ -350,7 +350,7 @@ fn line(out: &mut String, line: &str) {
     let _ = writeln!(out, "{line}");
 }
 
-/// `set_term` of `SetTerm`.
+/// Converts a name to snake case: `SetTerm` becomes `set_term`.
 fn snake_case(name: &str) -> String {
     let mut snake = String::new();
     for letter in name.chars() {

@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     /// Drop what the format cannot express, in Rust and C also `samples`; results may differ
     #[arg(long, conflicts_with = "lua")]
     lossy: bool,
-    /// Profile (Rust, C, Lua) or rule set (all but Lua): `flagred`, `flagred-battery`, `flagred-paper`, or a file
+    /// A profile (for Rust, C, Lua) or a rule set (for all but Lua): `flagred`, `flagred-paper`, `flagred-battery`, or a file
     #[arg(value_name = "FILE", default_value = profile::DEFAULT)]
     file: String,
     /// The file to write [default: standard output]
@@ -117,7 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 impl Arguments {
-    /// Refuses a file whose ending is of another kind: a rule set that stands there by mistake is not replaced.
+    /// Refuses a file with the extension of another kind, so that a rule set named by mistake is not replaced.
     fn check_ending(&self) -> Result<(), Failure> {
         let (what, endings): (&str, &[&str]) = match self.format() {
             Some(Format::Fis) => ("FIS", &["fis"]),
@@ -135,7 +135,7 @@ impl Arguments {
         })
     }
 
-    /// The format of another program.
+    /// Returns the other program's format, if one was chosen.
     fn format(&self) -> Option<Format> {
         let chosen = [self.fis, self.fll, self.fcl, self.fml];
         let mut formats = Format::ALL.into_iter().zip(chosen);
@@ -148,7 +148,7 @@ impl Arguments {
 /// Writes a rule set for another program.
 fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
     let path = Path::new(&arguments.file);
-    // The name of a built-in profile is that of its rule set, too.
+    // The name of a built-in profile is also the name of its rule set.
     let source = rule_set::read(path)?;
     let model = rule_set::engine(&source, &arguments.file)?.model();
     let replace = Replace::forced(arguments.force);
@@ -177,11 +177,11 @@ fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
     }
 }
 
-/// What a pilot reads of findings.
+/// The texts of findings for pilots.
 struct FindingWords {
-    /// Where an input raised the risk: a row for each proposition of the plan.
+    /// Texts for findings with an input as cause: a row for each proposition of the plan.
     causes: Vec<Words>,
-    /// Otherwise: a row for each measure.
+    /// Texts for the other findings: a row for each measure.
     notices: Vec<Words>,
 }
 
@@ -199,7 +199,7 @@ impl FindingWords {
     }
 }
 
-/// Words as string literals of Rust and C: code, brief, text and advice.
+/// Returns texts as string literals of Rust and C: code, brief, text and advice.
 fn literals(words: &Words) -> [String; 4] {
     let Words {
         code,
@@ -210,7 +210,7 @@ fn literals(words: &Words) -> [String; 4] {
     [code, &brief.concat(), text, advice].map(|text| format!("{:?}", visible(text)))
 }
 
-/// A profile in every language.
+/// Returns the exports of a profile in Rust and in C.
 pub(crate) fn texts(estimator: &Estimator) -> Result<[String; 2], NoPlan> {
     let plan = estimator.plan()?;
     let rules = &estimator.profile().rules;
@@ -242,12 +242,12 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
     lines.into_iter().map(harmless).collect()
 }
 
-/// A line of a comment: a name from outside must not end it.
+/// Makes a line safe inside a comment: a name in it must not end the comment.
 fn harmless(line: String) -> String {
     visible(&line).replace("*/", "* /")
 }
 
-/// What a file was made of.
+/// Describes the source of an exported file.
 fn origin(plan: &Plan<'_>, rules: &str, option: &str) -> String {
     format!(
         "The profile `{}` with the rule set `{rules}`, written by `flagred export {option}` {}. Do not edit.",
@@ -256,7 +256,7 @@ fn origin(plan: &Plan<'_>, rules: &str, option: &str) -> String {
     )
 }
 
-/// An array of a plan, as text.
+/// An array of a plan, ready to print.
 struct Array {
     field: &'static str,
     /// The type of its items.
@@ -277,7 +277,7 @@ impl Array {
     }
 }
 
-/// The arrays of a table.
+/// Returns the arrays of a table.
 fn arrays(table: &Table<'_>) -> Vec<Array> {
     macro_rules! list {
         ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
@@ -287,7 +287,7 @@ fn arrays(table: &Table<'_>) -> Vec<Array> {
     table::arrays!(list!)
 }
 
-/// The arrays of a filling.
+/// Returns the arrays of a filling.
 fn filling(knots: &FilledKnots<'_>) -> [Array; 4] {
     [
         Array::new("coordinates", "f64", knots.coordinates),
@@ -297,13 +297,13 @@ fn filling(knots: &FilledKnots<'_>) -> [Array; 4] {
     ]
 }
 
-/// The size of the constants that fill gaps.
+/// The size of the constants that fill gaps, in bytes.
 fn bytes_of_filling(plan: &Plan<'_>) -> usize {
     let arrays = plan.filled.as_ref().map(filling);
     arrays.iter().flatten().map(|array| array.bytes).sum()
 }
 
-/// The size of all constants.
+/// The size of all constants, in bytes.
 fn bytes(plan: &Plan<'_>) -> usize {
     let profile = size_of_val(plan.order)
         + size_of_val(plan.channels)
@@ -312,14 +312,14 @@ fn bytes(plan: &Plan<'_>) -> usize {
     size_of_val(plan) + bytes_of_rules(&plan.rules) + profile + bytes_of_filling(plan)
 }
 
-/// The size of the arrays of a rule set.
+/// The size of the arrays of a rule set, in bytes.
 fn bytes_of_rules(rules: &Rules<'_>) -> usize {
     let arrays = arrays(&rules.table);
     let table: usize = arrays.iter().map(|array| array.bytes).sum();
     table + size_of_val(rules.stages) + size_of_val(rules.places)
 }
 
-/// Items in lines of about a hundred characters.
+/// Joins items into lines of about a hundred characters.
 fn rows(items: &[String]) -> Vec<String> {
     let (mut row, mut rows) = (String::new(), Vec::new());
     for item in items {

@@ -22,7 +22,7 @@ use crate::{
     rule_set,
 };
 
-/// More would overflow the stack of many a thread.
+/// Larger evaluations would overflow the stack of many threads.
 const MOST_STACK_BYTES: usize = 1 << 20;
 
 /// Writes a rule set in Rust or C.
@@ -99,7 +99,7 @@ fn heading(model: &Model, rules: &Rules<'_>, option: &str, memory: usize) -> Vec
     lines.into_iter().map(harmless).collect()
 }
 
-/// What an evaluation in Rust takes of the stack.
+/// The stack that an evaluation in Rust needs.
 fn stack_bytes(rules: &Rules<'_>) -> usize {
     let outputs = rules.table.outputs.len();
     rules.numbers() * size_of::<f64>()

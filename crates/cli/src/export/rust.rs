@@ -1,6 +1,6 @@
 //! A plan or a rule set as Rust.
 //!
-//! The debug form of plain data is a Rust expression, once the names of enumerations are added, and the constants `inf` and
+//! The debug form of plain data is a valid Rust expression once the names of enumerations are added and the constants `inf` and
 //! `NaN` are defined. Numbers read back bit for bit.
 
 use std::fmt::{Debug, Write};
@@ -13,7 +13,7 @@ use flagred::{
 
 use super::FindingWords;
 
-/// The file.
+/// Returns the file for a profile.
 pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], words: &FindingWords) -> String {
     let mut out = String::new();
     for line in super::heading(plan, rules, signals, "--rust") {
@@ -104,7 +104,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
     std::mem::take(out)
 }
 
-/// Words as expressions.
+/// Returns texts as expressions.
 fn rows(words: &[Words]) -> String {
     let rows = words.iter().map(|words| {
         let [code, brief, text, advice] = super::literals(words);
@@ -115,7 +115,7 @@ fn rows(words: &[Words]) -> String {
     rows.collect::<Vec<String>>().join(",\n    ")
 }
 
-/// A rule set without a profile, as a function of its inputs.
+/// Returns a rule set without a profile, as a function of its inputs.
 pub(super) fn function(rules: &Rules<'_>, heading: &[String]) -> String {
     let mut text = String::new();
     let out = &mut text;
@@ -192,7 +192,7 @@ pub static RULES: ::fuzzy::table::{kind}<'static> = {{
     text
 }
 
-/// The fields of a rule set.
+/// Writes the fields of a rule set.
 fn fields(out: &mut String, depth: usize, rules: &Rules<'_>) {
     let indent = "    ".repeat(depth);
     fields_of_table(out, depth, "table: Table {", &rules.table);
@@ -201,7 +201,7 @@ fn fields(out: &mut String, depth: usize, rules: &Rules<'_>) {
     items(out, depth, "places", &debug(rules.places));
 }
 
-/// The fields of a table, which its `head` begins.
+/// Writes the fields of a table, which starts with the line `head`.
 fn fields_of_table(out: &mut String, depth: usize, head: &str, table: &Table<'_>) {
     let indent = "    ".repeat(depth);
     line_of(
@@ -221,7 +221,7 @@ fn fields_of_table(out: &mut String, depth: usize, head: &str, table: &Table<'_>
     }
 }
 
-/// The debug form of each item.
+/// Returns the debug form of each item.
 fn debug<T: Debug>(items: &[T]) -> Vec<String> {
     items.iter().map(|item| format!("{item:?}")).collect()
 }
@@ -264,7 +264,7 @@ fn input(input: &Input) -> String {
     )
 }
 
-/// An array, on one line where it fits.
+/// Writes an array, on one line if it fits.
 fn items(out: &mut String, depth: usize, name: &str, items: &[String]) {
     let indent = "    ".repeat(depth);
     let together = items.join(", ");

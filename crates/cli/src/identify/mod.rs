@@ -1,4 +1,4 @@
-//! `flagred identify`: a rule set from rows of data alone.
+//! `flagred identify`: a rule set from rows of data.
 
 mod report;
 
@@ -17,6 +17,7 @@ use fuzzy::diagnostic::suggest;
 
 use crate::{
     failure::{Exit, Failure},
+    numbers::{self, whole},
     output::{self, Files, Replace, Stdout},
     rows,
     table::{Cell, Format, Table},
@@ -49,15 +50,15 @@ pub(crate) struct Arguments {
     ignore: Vec<String>,
 
     /// Maximum number of inputs
-    #[arg(long, default_value_t = 4, value_name = "COUNT", value_parser = count(1, 20))]
+    #[arg(long, default_value_t = 4, value_name = "COUNT", value_parser = whole(1_u32, 20))]
     max_inputs: u32,
 
     /// Maximum number of terms of an input
-    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = count(2, MOST_TERMS as i64))]
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = whole(2, MOST_TERMS as u32))]
     max_terms: u32,
 
     /// Maximum number of rules
-    #[arg(long, default_value_t = 25, value_name = "COUNT", value_parser = count(2, 1000))]
+    #[arg(long, default_value_t = 25, value_name = "COUNT", value_parser = whole(2_u32, 1000))]
     max_rules: u32,
 
     /// Make one rule per cluster of rows (subtractive clustering) instead of one per combination of terms
@@ -69,15 +70,15 @@ pub(crate) struct Arguments {
     lines: bool,
 
     /// Minimum relative gain in cross-validation error per step
-    #[arg(long, default_value_t = 0.02, value_name = "SHARE", value_parser = rows::share)]
+    #[arg(long, default_value_t = 0.02, value_name = "SHARE", value_parser = numbers::share)]
     min_gain: f64,
 
     /// Minimum number of rows for a rule
-    #[arg(long, default_value_t = 1, value_name = "ROWS")]
+    #[arg(long, default_value_t = 1, value_name = "ROWS", value_parser = whole(1, usize::MAX))]
     min_support: usize,
 
     /// Random seed (folds of cross-validation)
-    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = numbers::seed)]
     seed: u64,
 
     /// The column with the weights of the rows
@@ -89,7 +90,7 @@ pub(crate) struct Arguments {
     group_by: Option<String>,
 
     /// Number of cross-validation folds
-    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = count(2, 100))]
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = whole(2_u32, 100))]
     folds: u32,
 
     /// Skip the cross-validation of the whole search
@@ -104,20 +105,16 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-fn count(least: i64, most: i64) -> clap::builder::RangedI64ValueParser<u32> {
-    clap::value_parser!(u32).range(least..=most)
-}
-
-/// What the report tells.
+/// The results for the report.
 struct Outcome {
     rows: usize,
     refused: Vec<String>,
-    /// The columns that were looked at.
+    /// The columns that were examined as inputs.
     columns: usize,
     /// Columns without a number.
     without_numbers: Vec<String>,
     identified: Identified,
-    /// `None` where it was not wanted.
+    /// `None` if not requested.
     judged: Option<Judged>,
 }
 
@@ -126,9 +123,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let message = format!("`{}` is both the target and an input", arguments.target);
         return Err(Failure::usage(message).help("name the other columns with `--input`"));
     }
+    rows::distinct(&arguments.data)?;
     let mut files = Files::reading(&arguments.data)?;
     let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
-    // A table is read once: it may be standard input.
+    // A table is read only once, since it may be standard input.
     let mut tables = rows::tables(&arguments.data, &arguments.format).peekable();
     let (names, without_numbers) = match tables.peek() {
         Some(Ok(first)) => columns(arguments, first)?,
@@ -200,7 +198,7 @@ fn settings(arguments: &Arguments) -> Identification {
     settings
 }
 
-/// The columns of a table that may be inputs, and those that hold no number.
+/// The columns of a table that may be inputs, and those without a number.
 fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<String>), Failure> {
     if !arguments.input.is_empty() {
         return Ok((arguments.input.clone(), Vec::new()));
@@ -233,7 +231,7 @@ fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<Str
     Ok((named(numbers), named(others)))
 }
 
-/// Refuses a target of words, such as `good` and `bad`.
+/// Refuses a target that consists of words, such as `good` and `bad`.
 fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
     let column = arguments
         .format
@@ -246,12 +244,16 @@ fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
         return Ok(());
     }
     let message = format!("`{}` holds no number", arguments.target);
+    let first = column.first().map_or("", |column| table.text(0, *column));
+    if first.starts_with(|c: char| c.is_ascii_digit()) {
+        return Err(Failure::unreadable(message).help(Cell::problem(first.as_bytes())));
+    }
     Err(Failure::unreadable(message).help(
         "for two classes write 0 and 1; `FuzzyClassifier` of the Python package takes words and many classes",
     ))
 }
 
-/// The rows as columns, and why others cannot be used.
+/// The rows as columns, and the reasons why other rows cannot be used.
 fn data(
     arguments: &Arguments,
     tables: impl Iterator<Item = Result<Table, Failure>>,

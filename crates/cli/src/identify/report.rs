@@ -1,4 +1,4 @@
-//! What was found, in words, as JSON, and as the rule set itself.
+//! The identified rule set: as a report in words, as JSON, and as a file.
 
 use std::io::Write;
 
@@ -17,10 +17,10 @@ use crate::{
     provenance,
 };
 
-/// The columns without numbers that are shown.
+/// Maximum number of columns without numbers that are shown.
 const SHOWN: usize = 12;
 
-/// The rule set with the step that made it.
+/// The rule set with a provenance step for this command.
 pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome) -> Result<String, Failure> {
     let judged = outcome.judged.as_ref().map_or_else(String::new, |judged| {
         format!(
@@ -91,7 +91,7 @@ pub(super) fn words(
     Ok(())
 }
 
-/// What the whole search is worth.
+/// Writes the cross-validation error of the whole search.
 fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io::Result<()> {
     let parts = divided(arguments.group_by.as_ref());
     writeln!(
@@ -123,7 +123,7 @@ fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io
     Ok(())
 }
 
-/// The version of the document's layout.
+/// The version of the JSON document.
 const SCHEMA: &str = "flagred.identify/1";
 
 /// The document of `--json`.

@@ -6,7 +6,7 @@ use flagred_flightlog::{
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Version of this document's form.
+/// The version of the JSON document.
 const SCHEMA: &str = "flagred.inspect/1";
 
 #[derive(Serialize, JsonSchema)]

@@ -1,4 +1,4 @@
-//! `flagred inspect`: what is in a flight log, and where each value came from.
+//! `flagred inspect`: the contents of a flight log, and the source of each value.
 
 pub(crate) mod json;
 pub(crate) mod text;
@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Shows every log in turn; one that cannot be read does not keep the others from being shown.
+/// Shows every log in turn. A log that cannot be read does not stop the others.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let options = arguments.range.options()?;
     Files::reading(&arguments.logs)?;

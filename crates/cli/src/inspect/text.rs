@@ -7,9 +7,9 @@ use fuzzy::drawing::visible;
 
 use flagred_report::words::first_spans;
 
-/// Texts of the autopilot, and boots, that are shown; the JSON document has more.
+/// Maximum number of autopilot messages, and of boots, that are shown; the JSON document contains all.
 const MESSAGES: usize = 12;
-/// Flight modes that are shown.
+/// Maximum number of flight modes that are shown.
 const MODES: usize = 200;
 
 pub(crate) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Result<()> {
@@ -41,7 +41,7 @@ fn line(out: &mut impl Write, key: &str, value: &str) -> io::Result<()> {
     writeln!(out, "  {key:<11}{}", visible(value))
 }
 
-/// The key stands before the first line only; nothing at all without lines.
+/// Writes lines with the key before the first one only; nothing if there are no lines.
 fn lines(
     out: &mut impl Write,
     key: &str,
@@ -72,7 +72,7 @@ fn vehicle(flight: &Flight) -> String {
     }
 }
 
-/// What tells the vehicle from others, and where it came from.
+/// The identity of the vehicle, with its sources.
 fn identity(flight: &Flight) -> String {
     let vehicle = &flight.vehicle;
     let id = vehicle.id.as_ref().zip(vehicle.id_source.as_ref());
@@ -136,7 +136,7 @@ fn range(range: Option<&Range>, of: &str) -> String {
     format!("{low} to {high}{unit}{of} ({})", range.source)
 }
 
-/// A number as short as its 6 digits allow: parameters are single precision.
+/// A number with at most 6 decimals, without trailing zeros: parameters have single precision.
 fn short(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -162,7 +162,7 @@ fn clock(flight: &Flight) -> Vec<String> {
     lines
 }
 
-/// Date and time of seconds since 1970 (days to civil date after Howard Hinnant,
+/// Formats seconds since 1970 as date and time (days to civil date after Howard Hinnant,
 /// <https://howardhinnant.github.io/date_algorithms.html>).
 fn utc(seconds: f64) -> String {
     let days = (seconds / 86_400.0).floor();

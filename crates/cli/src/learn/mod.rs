@@ -21,6 +21,7 @@ use fuzzy::{
 
 use crate::{
     failure::{Exit, Failure},
+    numbers::{self, whole},
     output::Stdout,
     rows, rule_set,
 };
@@ -35,11 +36,11 @@ pub(crate) struct Arguments {
     resolve: Resolve,
 
     /// Minimum number of rows for a rule
-    #[arg(long, default_value_t = 1, value_name = "ROWS")]
+    #[arg(long, default_value_t = 1, value_name = "ROWS", value_parser = whole(1, u64::MAX))]
     min_support: u64,
 
     /// Minimum confidence of a rule
-    #[arg(long, default_value_t = 0.0, value_name = "DEGREE")]
+    #[arg(long, default_value_t = 0.0, value_name = "DEGREE", value_parser = numbers::degree)]
     min_degree: f64,
 
     /// Add rules for combinations of terms without rows, each from the nearest combination with rows
@@ -65,7 +66,7 @@ enum Resolve {
     Mean,
 }
 
-/// What the report tells.
+/// The results for the report.
 struct Outcome {
     learned: Learned,
     /// The rule set with the learned rules.
@@ -96,6 +97,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let learned = whole.measured_output();
     let learned = learned.and_then(|output| whole.outputs.get(output));
     let learned = learned.map_or("", |output| output.variable.name.as_str());
+    arguments.rows.claims.check_inputs(whole)?;
     let claims = arguments.rows.claims.about(learned)?;
     let settings = settings(arguments, &claims);
     let mut learner = Learner::new(&model, settings.clone()).map_err(wrong)?;
@@ -183,7 +185,7 @@ fn settings(arguments: &Arguments, claims: &[check::Monotone]) -> Settings {
     settings
 }
 
-/// Where the learned rules contradict `--rising` and `--falling`, as `flagred check` finds it.
+/// Checks the learned rules for contradictions to `--rising` and `--falling`, as `flagred check` does.
 fn counterexamples(
     claims: &[check::Monotone],
     model: &Model,
@@ -192,8 +194,8 @@ fn counterexamples(
     check::counterexamples(&engine, claims).map_err(unusable)
 }
 
-/// What would make the output monotone, where that is known: inference by product and sum does not bend monotone rules where
-/// every combination of terms has one.
+/// Advice that makes the output monotone, if there is any: with inference by product and sum, monotone rules give a monotone output
+/// if every combination of terms has a rule.
 fn monotone_help(outcome: &Outcome) -> Option<&'static str> {
     let mut model = outcome.model.clone();
     model.operators.and = Conjunction::Product;
@@ -211,14 +213,14 @@ fn monotone_help(outcome: &Outcome) -> Option<&'static str> {
     }
 }
 
-/// The most cells of the map that `coverage` looks at: 13 inputs.
+/// Maximum number of map cells that `coverage` evaluates: enough for 13 inputs.
 const MOST_CELLS: usize = 2_000_000;
 
 fn unusable(error: impl std::fmt::Display) -> Failure {
     Failure::unusable("the learned rules cannot be used", &error)
 }
 
-/// The shares of the map that rules cover, and that have a value after filling; `None` of a map with too many cells.
+/// The shares of the map that rules cover, and that have a value after filling; `None` if the map has too many cells.
 fn coverage(model: &Model, gap: &GapSettings) -> Result<Option<(f64, f64)>, Failure> {
     let engine = Engine::new(model).map_err(unusable)?;
     let points = crate::map::points_along(model.inputs.len());

@@ -1,4 +1,4 @@
-//! What was learned, in words, as JSON, and as the rule set itself.
+//! The learned rules: as a report in words, as JSON, and as a rule set.
 
 use std::io::Write;
 
@@ -11,10 +11,10 @@ use serde::Serialize;
 use super::{Arguments, Outcome};
 use crate::{failure::Failure, provenance, rows::word};
 
-/// The antecedents without a rule that are named.
+/// Maximum number of antecedents without a rule that are listed.
 const SHOWN: usize = 12;
 
-/// The rule set with the step that made it. Degrees are kept to six digits: authors read them.
+/// The rule set with a provenance step for this command. Degrees are rounded to six digits for readability.
 pub(super) fn rule_set(
     arguments: &Arguments,
     outcome: &Outcome,
@@ -159,7 +159,7 @@ pub(super) fn words(
     Ok(())
 }
 
-/// The version of the document's layout.
+/// The version of the JSON document.
 const SCHEMA: &str = "flagred.learn/1";
 
 /// The document of `--json`.

@@ -1,4 +1,4 @@
-//! An open text as the protocol has it: its findings, and places as an editor counts them.
+//! An open text in terms of the protocol: its findings, and conversion of the editor's positions.
 
 use std::{
     ops::Range,
@@ -12,7 +12,7 @@ use percent_encoding::percent_decode_str;
 
 use crate::profile;
 
-/// Reads a text. A profile's rule set is looked for beside it.
+/// Opens a text. The rule set of a profile is searched for in the same folder.
 pub(super) fn open(uri: &lsp::Uri, text: String) -> Document {
     let path = path(uri);
     let folder = path.as_deref().and_then(Path::parent);
@@ -21,7 +21,7 @@ pub(super) fn open(uri: &lsp::Uri, text: String) -> Document {
     })
 }
 
-/// The findings of a text.
+/// Returns the findings of a text.
 pub(super) fn diagnostics(
     document: &Document,
     uri: &lsp::Uri,
@@ -66,7 +66,7 @@ fn path(uri: &lsp::Uri) -> Option<PathBuf> {
     Some(PathBuf::from(&*path))
 }
 
-/// How an editor counts the columns of a line.
+/// The unit in which an editor counts the columns of a line.
 #[derive(Clone, Copy, Default)]
 pub(super) enum Encoding {
     Utf8,
@@ -75,7 +75,7 @@ pub(super) enum Encoding {
 }
 
 impl Encoding {
-    /// Bytes where the editor can, else the protocol's default.
+    /// UTF-8 if the editor supports it, else the protocol's default.
     pub(super) fn of(initialize: &serde_json::Value) -> Encoding {
         let offered = initialize.pointer("/capabilities/general/positionEncodings");
         let offered = offered.and_then(|offered| offered.as_array());
@@ -99,7 +99,7 @@ impl Encoding {
         }
     }
 
-    /// The byte at a place; the end of a line where the column is beyond it.
+    /// Returns the byte offset of a position; the end of the line if the column is beyond it.
     pub(super) fn offset(self, text: &str, at: lsp::Position) -> usize {
         let mut start = 0;
         for line in text.split_inclusive('\n').take(at.line as usize) {
@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_are_counted_as_the_editor_does() {
+    fn positions_are_counted_as_by_the_editor() {
         let text = "a: °C 𝛼 x\nb: y";
         let x = text.find('x').unwrap();
         for (encoding, column) in [(Encoding::Utf8, 12), (Encoding::Utf16, 9)] {

@@ -31,7 +31,7 @@ pub(crate) fn run(_: &Arguments) -> Result<Exit, Failure> {
         let answers = match message {
             Message::Request(request) => vec![Message::Response(server.respond(request))],
             Message::Notification(notification) if notification.method == "exit" => {
-                // The protocol asks for 1 where the editor did not say `shutdown` before.
+                // The protocol requires exit code 1 if the editor did not send `shutdown` before.
                 return match server.phase {
                     Phase::ShutDown => Ok(Exit::Clean),
                     _ => Err(Failure::shown(1)),
@@ -41,7 +41,7 @@ pub(crate) fn run(_: &Arguments) -> Result<Exit, Failure> {
             Message::Response(_) => Vec::new(),
         };
         for answer in answers {
-            // An editor that reads no answers any more is gone.
+            // Writing fails if the editor has exited.
             if answer.write(&mut to).is_err() {
                 return Ok(Exit::Clean);
             }
@@ -84,7 +84,7 @@ struct Server {
     open: HashMap<lsp::Uri, Document>,
 }
 
-/// How far the conversation is.
+/// The state of the session.
 #[derive(Default, Clone, Copy, PartialEq, Eq)]
 enum Phase {
     #[default]
@@ -94,7 +94,7 @@ enum Phase {
 }
 
 impl Server {
-    /// The answer to a request, in the phases of the protocol.
+    /// Returns the answer to a request; the protocol allows some only in certain phases.
     fn respond(&mut self, request: Request) -> Response {
         let error = |code: ErrorCode, why: &str| {
             Response::new_err(request.id.clone(), code as i32, why.to_owned())
@@ -123,7 +123,7 @@ impl Server {
         }
     }
 
-    /// A change of a document; its diagnostics are the answer.
+    /// Processes a notification, and returns the diagnostics of the document that it changes.
     fn take(&mut self, notification: Notification) -> Vec<Message> {
         let notification =
             match of::<lsp::DidOpenTextDocumentParams>(notification, "textDocument/didOpen") {
@@ -138,7 +138,7 @@ impl Server {
         ) {
             Ok(changed) => {
                 let uri = changed.text_document.text_document_identifier.uri;
-                // Each change is the whole text, as the server asked for.
+                // Each change contains the whole text, as the server requested.
                 let text = changed.content_changes.into_iter().last().map(|change| match change {
                     lsp::TextDocumentContentChangeEvent::TextDocumentContentChangeWholeDocument(whole) => whole.text,
                     lsp::TextDocumentContentChangeEvent::TextDocumentContentChangePartial(part) => part.text,
@@ -266,7 +266,7 @@ fn item(found: Completion) -> lsp::CompletionItem {
     }
 }
 
-/// The answer to a request; `null` where there is none.
+/// Deserialises the parameters of a request and serialises its answer; `null` if there is no answer.
 fn reply<P: DeserializeOwned, A: Serialize>(
     request: Request,
     answer: impl FnOnce(P) -> Option<A>,
@@ -274,12 +274,12 @@ fn reply<P: DeserializeOwned, A: Serialize>(
     serde_json::to_value(answer(serde_json::from_value(request.params)?))
 }
 
-/// The parameters of a notification of this method; else the notification.
+/// Returns the parameters of a notification with this method; otherwise returns the notification as the error.
 fn of<P: DeserializeOwned>(notification: Notification, method: &str) -> Result<P, Notification> {
     match notification.extract(method) {
         Ok(parameters) => Ok(parameters),
         Err(ExtractError::MethodMismatch(notification)) => Err(notification),
-        // One that is damaged changes nothing: the next one carries the whole text again.
+        // A malformed notification changes nothing: the next one contains the whole text again.
         Err(ExtractError::JsonError { method, .. }) => Err(Notification::new(method, ())),
     }
 }

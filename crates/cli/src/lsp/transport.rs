@@ -1,4 +1,4 @@
-//! Messages on standard input: a head with their length, then JSON. Each is bounded: a wrong length could fill the memory.
+//! Messages on standard input: a header with the length, then JSON. The length is bounded, so that a wrong one cannot exhaust memory.
 
 use std::io::{self, BufRead, Read};
 
@@ -7,15 +7,15 @@ use lsp_server::Message;
 
 use crate::output::say;
 
-/// Bytes of a message: a rule set of the largest size, whose every fourth character is escaped.
+/// Maximum number of bytes of a message: the largest rule set, with every fourth character escaped.
 const LONGEST: u64 = 16_000_000;
-/// Bytes of a line of a head.
+/// Maximum number of bytes of a header line.
 const LONGEST_LINE: u64 = 4096;
 
-/// Reads a message; `None` at the end. One that is too long, or is not a message, is passed over: the next ones can be read.
+/// Reads a message; `None` at the end. Messages that are too long or malformed are skipped, since the next ones can still be read.
 ///
 /// # Errors
-/// The head of a message cannot be read, so that its end is unknown.
+/// The header of a message cannot be read, so the end of the message is unknown.
 pub(super) fn read<R: BufRead>(from: &mut R) -> io::Result<Option<Message>> {
     while let Some(length) = head(from)? {
         if length > LONGEST {
@@ -38,7 +38,7 @@ pub(super) fn read<R: BufRead>(from: &mut R) -> io::Result<Option<Message>> {
     Ok(None)
 }
 
-/// The length of the message that a head announces; `None` at the end.
+/// Reads a header, and returns the length of its message; `None` at the end.
 fn head<R: BufRead>(from: &mut R) -> io::Result<Option<u64>> {
     let mut length = None;
     loop {
@@ -85,7 +85,7 @@ mod tests {
     const EXIT: &str = "{\"jsonrpc\":\"2.0\",\"method\":\"exit\"}";
 
     #[test]
-    fn what_is_too_long_or_damaged_is_passed_over() {
+    fn messages_that_are_too_long_or_damaged_are_skipped() {
         let long = message(&" ".repeat(LONGEST as usize + 1));
         let all = format!("{long}{}{}", message("{"), message(EXIT));
         let mut all = all.as_bytes();
@@ -96,9 +96,9 @@ mod tests {
         assert!(read_one(&mut all).is_none());
     }
 
-    /// A length that no memory holds is not asked for.
+    /// A buffer of an excessive announced length is not allocated.
     #[test]
-    fn a_message_that_never_ends_takes_no_memory() {
+    fn a_message_without_end_takes_little_memory() {
         for length in ["18446744073709551615", "99999999999999", "3000000000"] {
             let text = format!("Content-Length: {length}\r\n\r\n{EXIT}");
             assert!(read(&mut text.as_bytes()).unwrap().is_none(), "{length}");

@@ -1,4 +1,4 @@
-//! Outputs compared with a table that was written before.
+//! Comparison of outputs with a table that was written earlier.
 
 use std::{io::Write as _, path::Path};
 
@@ -12,10 +12,10 @@ use crate::{
     table::{Cell, Table},
 };
 
-/// Values that differ by less, as a share of the output's range, are equal: the digits of another program.
+/// Smaller differences, relative to the range of the output, are ignored: another program may write fewer digits.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// The largest difference of an output.
+/// The row with the largest difference.
 struct Worst {
     line: u64,
     point: Vec<f64>,
@@ -23,7 +23,7 @@ struct Worst {
     now: Option<f64>,
 }
 
-/// Compares each output that the table has a column for.
+/// Compares each output for which the table has a column.
 pub(super) fn against(path: &Path, evaluated: &Evaluated) -> Result<Exit, Failure> {
     let table = Table::read(path, b',')?;
     let names: Vec<&str> = evaluated.engine.input_names().collect();
@@ -48,7 +48,7 @@ pub(super) fn against(path: &Path, evaluated: &Evaluated) -> Result<Exit, Failur
     for (output, name, column) in outputs {
         let mapped = Mapped {
             output,
-            // The profile fills the gaps of its own output.
+            // The filling applies only to the output of the profile.
             filling: evaluated
                 .mapped()
                 .filling
@@ -80,7 +80,7 @@ pub(super) fn against(path: &Path, evaluated: &Evaluated) -> Result<Exit, Failur
     Ok(exit)
 }
 
-/// How many rows differ, and the largest difference. A value and none differ more than any two values.
+/// Returns how many rows differ, and the largest difference. A missing value differs more than any two values.
 fn differences(
     table: &Table,
     mapped: &Mapped<'_>,

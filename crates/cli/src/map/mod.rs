@@ -6,7 +6,7 @@ mod slice;
 mod table;
 mod values;
 
-use std::path::PathBuf;
+use std::{collections::BTreeSet, path::PathBuf};
 
 use anstyle::{RgbColor, Style};
 use clap::ValueEnum;
@@ -25,6 +25,7 @@ use crate::{
     built_in,
     diagnostics::read_text,
     failure::{Exit, Failure},
+    numbers::{self, whole},
     output::{self, Files, print},
     profile::{self, Loaded},
     rule_set,
@@ -38,7 +39,7 @@ pub(crate) struct Arguments {
     model: PathBuf,
 
     /// Points along each axis [default: 51; fewer with `--csv` and more than two inputs]
-    #[arg(long, value_name = "POINTS", value_parser = clap::value_parser!(u16).range(2..=1001))]
+    #[arg(long, value_name = "POINTS", value_parser = whole(2_u16, 1001))]
     points: Option<u16>,
 
     /// Hold an input at a value: `battery=0.8`; may be repeated. An input that is neither held nor an axis is held at the middle
@@ -69,7 +70,7 @@ pub(crate) struct Arguments {
 
     /// With an interpolation: interpolate cells in which all firing strengths are below this [default: depends on AND and the
     /// terms; 0.5 for the minimum]
-    #[arg(long, value_name = "DEGREE")]
+    #[arg(long, value_name = "DEGREE", value_parser = numbers::degree_above_0)]
     coverage_below: Option<f64>,
 
     /// Write an SVG picture to this file instead of text; `-` is standard output
@@ -99,7 +100,7 @@ pub(crate) struct Arguments {
         value_name = "POINTS",
         requires = "csv",
         conflicts_with_all = ["points", "hold", "x", "y"],
-        value_parser = clap::value_parser!(u32).range(1..=1_000_000)
+        value_parser = whole(1_u32, 1_000_000)
     )]
     sample: Option<u32>,
 
@@ -140,7 +141,7 @@ impl Fill {
     }
 }
 
-/// The input of an axis, and the part of its range that is shown.
+/// The input of an axis, and the shown part of its range.
 #[derive(Debug, Clone)]
 struct AxisChoice {
     name: String,
@@ -178,24 +179,28 @@ fn hold(text: &str) -> Result<(String, f64), String> {
     }
 }
 
-/// A rule set, compiled, and what fills its gaps, with the name of the method.
+/// A compiled rule set, with the filling of its gaps and the name of the filling's method.
 struct Evaluated {
     engine: Engine,
     output: usize,
     filling: Option<(Filling, &'static str)>,
 }
 
-/// The most cells of a whole map by default.
+/// Default maximum number of cells of a whole map.
 const MAP_CELLS: f64 = 100_000.0;
 
-/// The default number of points of a whole map along each of so many inputs: 51, fewer where there would be more than
-/// 100,000 cells, at least 3.
+/// Returns the default number of points of a whole map along each of its inputs: at least 3, at most 51, and fewer if the map
+/// would otherwise exceed 100,000 cells.
 pub(crate) fn points_along(inputs: usize) -> usize {
     let most = MAP_CELLS.powf(1.0 / inputs.max(1) as f64);
     (most as usize).clamp(3, POINTS)
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut held = BTreeSet::new();
+    if let Some((name, _)) = arguments.hold.iter().find(|(name, _)| !held.insert(name)) {
+        return Err(Failure::usage(format!("`{name}` is held twice")).help("hold each input once"));
+    }
     let read = [&arguments.model].into_iter().chain(&arguments.check);
     let mut files = Files::reading(read)?;
     let svg = files.optional(arguments.svg.as_ref())?;
@@ -248,7 +253,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// A cell of a picture on a terminal, in its colour.
+/// Returns a cell of a picture for a terminal, in its colour.
 pub(crate) fn painted(cell: char, colour: Option<Colour>) -> String {
     let rgb = |colour: Colour| Some(RgbColor(colour.0, colour.1, colour.2).into());
     match colour {

@@ -1,4 +1,4 @@
-//! Points spread over all inputs, where a grid would have too many.
+//! Points spread over all inputs, for rule sets with too many inputs for a grid.
 
 use flagred_authoring::slice::at;
 use fuzzy::model::Variable;
@@ -6,7 +6,7 @@ use fuzzy::model::Variable;
 use super::{Evaluated, table};
 use crate::failure::Failure;
 
-/// A table of the output at so many points.
+/// Returns a table of the output at this number of points.
 pub(super) fn table(evaluated: &Evaluated, points: u32) -> Result<String, Failure> {
     let mapped = evaluated.mapped();
     let inputs = &evaluated.engine.model().inputs;
@@ -21,8 +21,7 @@ pub(super) fn table(evaluated: &Evaluated, points: u32) -> Result<String, Failur
     Ok(out)
 }
 
-/// A point of a sequence that fills the ranges evenly: the fractions of multiples of 1/g, 1/g^2, ..., where g is the root of
-/// g^(d + 1) = g + 1 for d inputs (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
+/// Returns a point of a sequence that fills the ranges evenly: the fractional parts of multiples of 1/g, 1/g^2, ..., where g is the root of
 fn point(inputs: &[Variable], index: u32) -> Vec<f64> {
     let dimensions = inputs.len() as f64;
     let mut root = 2.0_f64;
@@ -38,7 +37,7 @@ fn point(inputs: &[Variable], index: u32) -> Vec<f64> {
     inputs.iter().map(coordinate).collect()
 }
 
-/// A value with about four digits of the range, so that a table is short.
+/// Rounds a value to about four digits of the range, which keeps the table short.
 fn rounded(input: &Variable, value: f64) -> f64 {
     let width = input.high - input.low;
     let decimals = (3.0 - width.log10().floor()).clamp(0.0, 17.0) as usize;

@@ -1,4 +1,4 @@
-//! The part of a map that a picture shows: two inputs are the axes, the others are held.
+//! The part of a map that a picture shows: two inputs are the axes, the others have fixed values.
 
 use flagred_authoring::slice::{self, POINTS};
 use fuzzy::drawing::{Axis, Scale, Slice, short};
@@ -6,17 +6,17 @@ use fuzzy::drawing::{Axis, Scale, Slice, short};
 use super::{Arguments, AxisChoice, Evaluated};
 use crate::failure::Failure;
 
-/// The axes that the arguments ask for, each with the index of its input.
+/// The chosen axes, each with the index of its input.
 pub(super) struct Axes {
     pub(super) x: (usize, Axis),
     pub(super) y: Option<(usize, Axis)>,
-    /// The value of each input that is fixed.
+    /// The value of each input that the user fixed.
     pub(super) fixed: Vec<Option<f64>>,
-    /// A value for each input, at which those that are not axes are held.
+    /// A value for each input, used for inputs that are not axes.
     pub(super) middle: Vec<f64>,
 }
 
-/// The axes that the arguments ask for.
+/// Determines the axes from the arguments.
 pub(super) fn axes(arguments: &Arguments, evaluated: &Evaluated) -> Result<Axes, Failure> {
     let model = evaluated.engine.model();
     let unknown = |name: &str| {
@@ -57,7 +57,7 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &Evaluated) -> Result<Axes,
     if asked_x.is_some() && asked_x == asked_y {
         return Err(Failure::usage("`--x` and `--y` name the same input"));
     }
-    // First those that the output reads.
+    // Inputs that the output reads come first.
     let output = model.outputs.get(evaluated.output);
     let read = output.map_or(Vec::new(), |output| model.inputs_of(&output.variable.name));
     let is_read = |input: &usize| {
@@ -93,7 +93,7 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &Evaluated) -> Result<Axes,
     })
 }
 
-/// The slice that the arguments ask for, and notes about what they leave open.
+/// Cuts the requested slice, and returns notes about choices that the arguments left open.
 pub(super) fn cut(
     arguments: &Arguments,
     evaluated: &Evaluated,

@@ -9,7 +9,7 @@ use fuzzy::{
 use super::{Arguments, Evaluated, points_along};
 use crate::{failure::Failure, output};
 
-/// Every cell of the map over all inputs.
+/// Returns every cell of the map over all inputs.
 pub(super) fn whole(arguments: &Arguments, evaluated: Evaluated) -> Result<String, Failure> {
     let points = match arguments.points {
         Some(points) => usize::from(points),
@@ -49,7 +49,7 @@ pub(super) fn whole(arguments: &Arguments, evaluated: Evaluated) -> Result<Strin
     Ok(out)
 }
 
-/// The names of the columns.
+/// Returns the names of the columns.
 pub(super) fn head<'a>(
     axes: impl Iterator<Item = &'a str>,
     output: &'a str,
@@ -66,7 +66,7 @@ pub(super) fn head<'a>(
     Ok(String::from_utf8_lossy(&head).into_owned())
 }
 
-/// A row of the table. Inputs and values have the digits that read back as the same number, so that `--check` evaluates at the same
+/// Appends a row. Inputs and values have enough digits to read back as the same number, so that `--check` evaluates at the same
 /// points.
 pub(super) fn row(out: &mut String, point: &[f64], cell: &Cell) {
     for x in point {
@@ -87,7 +87,7 @@ pub(super) fn row(out: &mut String, point: &[f64], cell: &Cell) {
     ));
 }
 
-/// Every cell of a slice.
+/// Returns every cell of a slice.
 pub(super) fn of_slice(slice: &Slice) -> Result<String, Failure> {
     let axes = std::iter::once(&slice.x).chain(&slice.y);
     let mut out = head(axes.map(|axis| axis.name.as_str()), &slice.output)?;

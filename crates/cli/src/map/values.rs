@@ -1,4 +1,4 @@
-//! A map in numbers: a table for each slice.
+//! A map as numbers: a table for each slice.
 
 use flagred_authoring::slice::Mapped;
 use fuzzy::drawing::{map_text, values_text, visible};
@@ -6,11 +6,11 @@ use fuzzy::drawing::{map_text, values_text, visible};
 use super::{Arguments, Evaluated, painted, slice};
 use crate::{failure::Failure, output};
 
-/// The most slices: more are not read.
+/// Maximum number of slices: nobody would read more.
 const MOST_SLICES: usize = 100;
 
-/// The picture and the values of a map of one or two inputs; of more, the values of each slice at the peaks of the inputs that are
-/// not axes.
+/// Returns the picture and the values of a map of one or two inputs. With more inputs, it returns the values of a slice at every
+/// combination of the peaks of the inputs that are not axes.
 pub(super) fn text(arguments: &Arguments, evaluated: &Evaluated) -> Result<String, Failure> {
     let axes = slice::axes(arguments, evaluated)?;
     let mapped = evaluated.mapped();
@@ -52,7 +52,7 @@ pub(super) fn text(arguments: &Arguments, evaluated: &Evaluated) -> Result<Strin
     Ok(text)
 }
 
-/// The inputs that are not axes, each with its peaks; a fixed one, and one that the output does not read, with one value.
+/// Returns the inputs that are not axes, each with its peaks. A fixed input, or one that the output does not read, has one value.
 fn others(mapped: &Mapped<'_>, axes: &slice::Axes) -> Vec<(usize, Vec<f64>)> {
     let output = mapped.model.outputs.get(mapped.output);
     let read = output.map_or(Vec::new(), |output| {

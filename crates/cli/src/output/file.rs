@@ -1,4 +1,4 @@
-//! Files that are written whole or not at all, and never over what the same call reads or writes.
+//! Files that are written completely or not at all, and never over an input or another output of the same call.
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},
@@ -9,26 +9,26 @@ use std::{
 use super::{Stdout, is_standard};
 use crate::failure::Failure;
 
-/// The most links from one to the next that are followed, as Linux does.
+/// Maximum number of symbolic links that are followed, as in Linux.
 const LINKS: usize = 40;
 
-/// Whether a file that exists already is replaced.
+/// Whether an existing file is replaced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Replace {
-    /// It was made of other files, and can be made again.
+    /// The content is derived from other files and can be regenerated.
     Yes,
-    /// It may be written by hand: only with `--force`.
+    /// The file may be written by hand: it is replaced only with `--force`.
     No,
 }
 
 impl Replace {
-    /// As `--force` says.
+    /// Returns the variant for the value of `--force`.
     pub(crate) fn forced(force: bool) -> Replace {
         if force { Replace::Yes } else { Replace::No }
     }
 }
 
-/// Where an output goes.
+/// The destination of an output.
 pub(crate) struct Output {
     named: PathBuf,
     place: Place,
@@ -36,19 +36,19 @@ pub(crate) struct Output {
 
 enum Place {
     Stdout,
-    /// A device, a FIFO or a socket: written to, never replaced.
+    /// A device, a FIFO or a socket: it is written to and never replaced.
     Special,
-    /// Where the file is or will be, behind all links.
+    /// The path of the file after all symbolic links are resolved.
     File(PathBuf, Replace),
 }
 
-/// What tells one file from another, by whatever path.
+/// Identifies a file, whatever path leads to it.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
-    /// Device and inode; the path in full where there are none.
+    /// Device and inode; on other systems than Unix, the full path.
     #[cfg(unix)]
     Node(u64, u64),
-    /// A file that does not exist yet, behind all links.
+    /// A file that does not exist yet, with symbolic links resolved.
     Path(PathBuf),
 }
 
@@ -62,24 +62,24 @@ pub(crate) struct Files {
 
 struct Known {
     identity: Identity,
-    /// As the user knows it.
+    /// The name of the file for messages.
     shown: String,
     role: &'static str,
 }
 
 impl Files {
-    /// Begins with what is read; `-` is standard input.
+    /// Starts with the inputs; `-` is standard input.
     ///
     /// # Errors
     ///
-    /// Where standard output is one of them.
+    /// Standard output is redirected to an input.
     pub(crate) fn reading<P: AsRef<Path>>(
         inputs: impl IntoIterator<Item = P>,
     ) -> Result<Files, Failure> {
         let mut files = Files::default();
         for input in inputs {
             let input = input.as_ref();
-            // What is no regular file, or cannot be read, is not replaced either.
+            // An input that is not a regular file, or cannot be read, would not be replaced as an output either.
             let identity = match is_standard(input) {
                 true => standard(Stream::Input),
                 false => fs::metadata(input)
@@ -98,11 +98,11 @@ impl Files {
         Ok(files)
     }
 
-    /// An output that is to be written, `-` is standard output.
+    /// Registers an output; `-` is standard output.
     ///
     /// # Errors
     ///
-    /// Where it is an input or another output, exists and must not be replaced, or cannot be written.
+    /// The output is an input or another output, exists and must not be replaced, or cannot be written.
     pub(crate) fn output(&mut self, named: &Path, replace: Replace) -> Result<Output, Failure> {
         let shown = format!("`{}`", named.display());
         let output = |place| Output {
@@ -114,7 +114,7 @@ impl Files {
                 return Err(Failure::usage("two outputs are `-`, standard output")
                     .help("name a file for one of them"));
             }
-            // Whether that is one of the files was seen in the beginning.
+            // Standard output was compared with the inputs at the start.
             return Ok(output(Place::Stdout));
         }
         let failed = |error: &io::Error| cannot_write(named, error);
@@ -143,13 +143,13 @@ impl Files {
         if replace == Replace::No {
             return Err(exists(named));
         }
-        // A file that may not be written is not replaced either.
+        // A file without write permission is not replaced.
         let opened = OpenOptions::new().write(true).open(&target);
         opened.map_err(|error| failed(&error))?;
         Ok(output(Place::File(target, replace)))
     }
 
-    /// An output that may be asked for; what was there before is replaced.
+    /// As [`Files::output`] for an optional output, which replaces an existing file.
     pub(crate) fn optional(&mut self, named: Option<&PathBuf>) -> Result<Option<Output>, Failure> {
         let output = named.map(|named| self.output(named, Replace::Yes));
         output.transpose()
@@ -161,7 +161,7 @@ impl Files {
                 shown: other, role, ..
             } = other;
             let message = match shown == *other {
-                true => format!("{shown} is to be written, and is {role} as well"),
+                true => format!("{shown} is to be written, and it is {role}, too"),
                 false => format!(
                     "{shown} is to be written, and is the same file as {other}, which is {role}"
                 ),
@@ -182,12 +182,11 @@ impl Output {
         matches!(self.place, Place::Stdout)
     }
 
-    /// Writes a text.
     pub(crate) fn write(&self, text: &str) -> Result<(), Failure> {
         self.write_with(|out| out.write_all(text.as_bytes()))
     }
 
-    /// Writes what `fill` writes. A file is there whole or not at all: beside its place first, on the disk, then renamed.
+    /// Writes the output of `fill`. A file is complete or not written: it is written to the same folder, synced, then renamed.
     pub(crate) fn write_with(
         &self,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -206,7 +205,7 @@ impl Output {
                     out.flush()
                 });
                 match written {
-                    // Its reader has seen enough.
+                    // The reader closed the pipe.
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
                     written => written.map_err(failed),
                 }
@@ -221,8 +220,7 @@ impl Output {
     }
 }
 
-/// Writes several texts: files, then devices, then standard output, which may block. One that cannot be written stops no
-/// other.
+/// Writes several texts: files, then devices, then standard output, which may block. If one cannot be written, the others still are.
 ///
 /// # Errors
 ///
@@ -241,7 +239,7 @@ pub(crate) fn write_all(mut texts: Vec<(&Output, String)>) -> Result<(), Failure
     failed.map_or(Ok(()), Err)
 }
 
-/// A new file that is written as things happen. Where it exists already it is left alone; a device is written to.
+/// Creates a file for continuous writing. An existing file is refused; an existing device is opened.
 pub(crate) fn new_file(named: &Path) -> Result<File, Failure> {
     let special = fs::metadata(named).is_ok_and(|found| !found.is_file() && !found.is_dir());
     let opened = match special {
@@ -256,7 +254,7 @@ pub(crate) fn new_file(named: &Path) -> Result<File, Failure> {
     })
 }
 
-/// Whether a file can be replaced: written beside its place and renamed.
+/// Returns whether a file can be replaced, that is, whether a new file can be written to its folder.
 pub(crate) fn can_replace(path: &Path) -> bool {
     let target = target(path).ok();
     let folder = target.as_deref().and_then(Path::parent);
@@ -266,7 +264,7 @@ pub(crate) fn can_replace(path: &Path) -> bool {
 fn draft() -> tempfile::Builder<'static, 'static> {
     let mut draft = tempfile::Builder::new();
     draft.prefix(".flagred-").suffix(".part");
-    // As any new file: less what the user masks.
+    // Mode of a new file, reduced by the umask.
     #[cfg(unix)]
     draft.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     draft
@@ -294,7 +292,7 @@ fn write_file(
     Ok(())
 }
 
-/// Gives a file owner and mode of the one that it replaces.
+/// Gives a file the owner and mode of the one that it replaces.
 fn keep(draft: &File, old: &Metadata) -> io::Result<()> {
     #[cfg(unix)]
     {
@@ -302,7 +300,7 @@ fn keep(draft: &File, old: &Metadata) -> io::Result<()> {
         let new = draft.metadata()?;
         if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
             match fchown(draft, Some(old.uid()), Some(old.gid())) {
-                // Only root may give files away; another user's file becomes one's own, as with any editor.
+                // Only root may change owners. Another user's file then belongs to the current user, as with any editor.
                 Err(error) if error.kind() == ErrorKind::PermissionDenied => {}
                 other => other?,
             }
@@ -311,7 +309,7 @@ fn keep(draft: &File, old: &Metadata) -> io::Result<()> {
     draft.set_permissions(old.permissions())
 }
 
-/// The place behind all links, also where nothing is there yet.
+/// Resolves all symbolic links, also if the target does not exist yet.
 fn target(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..LINKS {
@@ -334,7 +332,7 @@ fn target(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many links"))
 }
 
-/// `None` for what is no regular file.
+/// Returns the identity of a regular file; `None` for anything else.
 #[cfg(unix)]
 fn identity(_: &Path, found: &Metadata) -> Option<Identity> {
     use std::os::unix::fs::MetadataExt;
@@ -353,7 +351,7 @@ enum Stream {
     Output,
 }
 
-/// The file that a standard stream is redirected to.
+/// Returns the file that a standard stream is redirected to.
 #[cfg(unix)]
 fn standard(stream: Stream) -> Option<Identity> {
     use std::os::fd::AsFd;
@@ -370,7 +368,7 @@ fn standard(_: Stream) -> Option<Identity> {
     None
 }
 
-/// A device or a FIFO is opened, a socket connected to.
+/// Opens a device or a FIFO, or connects to a socket.
 fn open_special(path: &Path) -> io::Result<Box<dyn Write>> {
     #[cfg(unix)]
     {

@@ -1,6 +1,6 @@
-//! All that a command writes: files, standard output, notes on standard error.
+//! All output of a command: files, standard output, notes on standard error.
 //!
-//! A command names what it reads and writes before it begins ([`Files`]), makes the contents, and writes them: files first,
+//! A command declares its inputs and outputs before it starts ([`Files`]), computes the contents, and writes them: files first,
 //! since standard output may block or close ([`write_all`]).
 
 mod file;
@@ -19,17 +19,17 @@ pub(crate) use self::{
 };
 use crate::failure::Failure;
 
-/// A file for an SVG picture: another extension would lie about what is in it.
+/// Parses the path of an SVG picture. Another extension is refused, since it would not match the contents.
 pub(crate) fn svg_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the picture is SVG", &["svg"])
 }
 
-/// A file for a rule set or a profile. A table that stands here by mistake is not replaced.
+/// Parses the path of a rule set or a profile. Other extensions are refused, so that a table named by mistake is not replaced.
 pub(crate) fn rules_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the file is YAML", &["yaml", "yml"])
 }
 
-/// A file for text or a table. A rule set that stands here by mistake is not replaced.
+/// Parses the path of a text or a table. Other extensions are refused, so that a rule set named by mistake is not replaced.
 pub(crate) fn text_path(text: &str) -> Result<PathBuf, String> {
     if has_ending(Path::new(text), &["svg"]) {
         return Err(format!(
@@ -43,37 +43,42 @@ pub(crate) fn text_path(text: &str) -> Result<PathBuf, String> {
     )
 }
 
-/// A file for a report. A log that stands here by mistake is not replaced.
+/// Parses the path of a report. Other extensions are refused, so that a log named by mistake is not replaced.
 pub(crate) fn html_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the report is HTML", &["html", "htm"])
 }
 
-/// A file for a page. A log that stands here by mistake is not replaced.
+/// Parses the path of a page. Other extensions are refused, so that a log named by mistake is not replaced.
 pub(crate) fn page_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the page is HTML", &["html", "htm"])
 }
 
-/// A file for a flight CSV. A log that stands here by mistake is not replaced.
+/// Parses the path of a flight CSV. Other extensions are refused, so that a log named by mistake is not replaced.
 pub(crate) fn csv_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the table is CSV", &["csv", "txt"])
 }
 
-/// A file for a table with whatever between its cells. A log that stands here by mistake is not replaced.
+/// Parses the path of a table with any delimiter. Other extensions are refused, so that a log named by mistake is not replaced.
 pub(crate) fn table_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the table is CSV", &["csv", "tsv", "txt"])
 }
 
-/// A path whose ending is one of these, if it has one.
+/// Parses a path whose extension, if any, must be one of these.
 ///
 /// # Errors
 ///
-/// What is written and the path with the first ending.
+/// The extension is another one. The message contains `what` and the path with the first allowed extension.
 pub(crate) fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     match extensions.first() {
-        Some(first) if path.extension().is_some() && !has_ending(&path, extensions) => Err(
-            format!("{what}; write `{}`", path.with_extension(first).display()),
-        ),
+        Some(first) if path.extension().is_some() && !has_ending(&path, extensions) => {
+            let stem = path.with_extension("");
+            let written = match has_ending(&stem, extensions) {
+                true => stem,
+                false => path.with_extension(first),
+            };
+            Err(format!("{what}; write `{}`", written.display()))
+        }
         _ => Ok(path),
     }
 }
@@ -83,7 +88,7 @@ fn has_ending(path: &Path, extensions: &[&str]) -> bool {
     ending.is_some_and(|ending| extensions.iter().any(|e| ending.eq_ignore_ascii_case(e)))
 }
 
-/// Writes a text to a file, or to standard output; on a terminal in its colours.
+/// Writes a text to a file, or to standard output; a terminal shows its colours.
 pub(crate) fn print(output: Option<&Output>, text: &str) -> Result<(), Failure> {
     if let Some(output) = output.filter(|output| !output.is_stdout()) {
         return output.write(&anstream::adapter::strip_str(text).to_string());
@@ -94,9 +99,9 @@ pub(crate) fn print(output: Option<&Output>, text: &str) -> Result<(), Failure> 
     Ok(())
 }
 
-/// A note on standard error, in one line.
+/// Prints a note on standard error, in one line.
 pub(crate) fn say(note: &str) {
-    // Nothing is left to tell a user whose standard error is closed.
+    // If standard error is closed, there is no other way to report that.
     let _ = writeln!(anstream::stderr(), "{}", fuzzy::drawing::visible(note));
 }
 

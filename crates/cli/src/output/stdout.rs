@@ -1,4 +1,4 @@
-//! Standard output, whose reader may go at any time.
+//! Standard output, whose reader may close it at any time.
 
 use std::io::{self, BufWriter, StderrLock, StdoutLock, Write};
 
@@ -6,8 +6,8 @@ use anstream::{AutoStream, ColorChoice};
 
 use crate::failure::Failure;
 
-/// Standard output. A reader who closes the pipe changes neither what a command does nor its exit code: what is written
-/// after that is dropped.
+/// Standard output. If the reader closes the pipe, the command continues with the same exit code, and further output is
+/// dropped.
 pub(crate) struct Stdout(BufWriter<Pipe>);
 
 struct Pipe {
@@ -21,12 +21,12 @@ enum Stream {
 }
 
 impl Stdout {
-    /// For people: colours where it is a terminal that has them.
+    /// Output for people: coloured if standard output is a terminal that supports it.
     pub(crate) fn text() -> Stdout {
         Stdout::new(Stream::Out(anstream::stdout().lock()))
     }
 
-    /// For people, on standard error where standard output holds a document.
+    /// Output for people, on standard error if standard output receives a document.
     pub(crate) fn beside(documents: &[&super::Output]) -> Stdout {
         if documents.iter().any(|output| output.is_stdout()) {
             Stdout::new(Stream::Err(anstream::stderr().lock()))
@@ -35,7 +35,7 @@ impl Stdout {
         }
     }
 
-    /// For programs: every byte as it is.
+    /// Output for programs: bytes are written unchanged.
     pub(crate) fn data() -> Stdout {
         let lock = io::stdout().lock();
         Stdout::new(Stream::Out(AutoStream::new(lock, ColorChoice::AlwaysAnsi)))
@@ -46,12 +46,12 @@ impl Stdout {
         Stdout(BufWriter::new(Pipe { stream, is_closed }))
     }
 
-    /// Whether nobody reads any more.
+    /// Returns whether the reader has closed the pipe.
     pub(crate) fn is_closed(&self) -> bool {
         self.0.get_ref().is_closed
     }
 
-    /// Writes what is left.
+    /// Flushes the buffer.
     pub(crate) fn finish(mut self) -> Result<(), Failure> {
         Ok(self.0.flush()?)
     }

@@ -1,13 +1,13 @@
-//! Derived schemas as programs and people read them: every object is closed, and descriptions are plain text.
+//! Derived schemas, simplified for programs and people: every object is closed, and descriptions are plain text.
 
 use serde_json::{Map, Value};
 
 type Object = Map<String, Value>;
 
-/// A schema whose objects have no names but those that it describes.
+/// Closes a schema: its objects may have no properties but those that it describes.
 ///
-/// What serde flattens is derived as a reference or as alternatives beside `properties`. Objects are closed only when these
-/// are merged, since `additionalProperties` looks at the `properties` beside it alone.
+/// Fields that serde flattens are derived as a reference or as alternatives beside `properties`. They are merged before the objects
+/// are closed, since `additionalProperties` considers only the `properties` beside it.
 pub(super) fn closed(mut root: Value) -> Value {
     let types = root.get("$defs").cloned().unwrap_or_default();
     close(&mut root, &types);
@@ -33,7 +33,7 @@ fn close(schema: &mut Value, types: &Value) {
             }
             for (keyword, part) in object.iter_mut() {
                 match (keyword.as_str(), part) {
-                    // Their keys are names, not keywords.
+                    // These keys are names, not keywords.
                     ("properties" | "$defs", Value::Object(named)) => {
                         named.values_mut().for_each(|part| close(part, types));
                     }
@@ -45,7 +45,7 @@ fn close(schema: &mut Value, types: &Value) {
     }
 }
 
-/// Takes in the properties of the type that an object refers to.
+/// Replaces an object's reference by the properties of the type that it refers to.
 fn merge_reference(object: &mut Object, types: &Value) {
     let Some(Value::String(reference)) = object.get("$ref") else {
         return;
@@ -57,7 +57,7 @@ fn merge_reference(object: &mut Object, types: &Value) {
     }
 }
 
-/// An object with alternatives becomes these alternatives, each with the properties of the object.
+/// Moves the properties of an object into each of its alternatives.
 fn merge_alternatives(object: &mut Object) {
     let Some(alternatives) = alternatives(object) else {
         return;
@@ -71,7 +71,7 @@ fn merge_alternatives(object: &mut Object) {
     object.insert("anyOf".into(), merged.collect());
 }
 
-/// Takes the alternatives out of an object.
+/// Removes the alternatives from an object and returns them.
 fn alternatives(object: &mut Object) -> Option<Vec<Value>> {
     let mut found = ["oneOf", "anyOf"].into_iter();
     match found.find_map(|keyword| object.remove(keyword)) {
@@ -80,7 +80,7 @@ fn alternatives(object: &mut Object) -> Option<Vec<Value>> {
     }
 }
 
-/// Alternatives, with those of alternatives.
+/// Collects alternatives, including nested ones.
 fn flat(found: Vec<Value>, all: &mut Vec<Object>) {
     for alternative in found {
         let Value::Object(mut alternative) = alternative else {
@@ -93,7 +93,7 @@ fn flat(found: Vec<Value>, all: &mut Vec<Object>) {
     }
 }
 
-/// The keywords of both; those of `first` win, and the properties and required names of `second` follow.
+/// Merges the keywords of two objects. Those of `first` take precedence; properties and required names of `second` are appended.
 fn merged(first: &Object, second: &Object) -> Object {
     let mut all = first.clone();
     for (keyword, value) in second {
@@ -107,7 +107,7 @@ fn merged(first: &Object, second: &Object) -> Object {
     all
 }
 
-/// Drops the types that nothing refers to any more. Those of a schema without a type of its own are all that it has.
+/// Removes types without references. A schema that consists of types only keeps them all.
 fn drop_unused(root: &mut Value) {
     let text = root.to_string();
     if let Value::Object(object) = root
@@ -118,7 +118,7 @@ fn drop_unused(root: &mut Value) {
     }
 }
 
-/// The first paragraph of a doc comment, without links and with `null` for `None`.
+/// Returns the first paragraph of a doc comment, without links and with `null` for `None`.
 fn plain(doc: &str) -> String {
     let first = doc.split("\n\n").next().unwrap_or_default();
     let mut text = first.replace('\n', " ").replace("`None`", "null");
@@ -136,7 +136,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn what_is_flattened_is_merged_before_objects_are_closed() {
+    fn flattened_parts_are_merged_before_objects_are_closed() {
         let schema = json!({
             "type": "object",
             "properties": {"at_s": {"type": "number", "format": "double"}, "format": {"type": "string"}},

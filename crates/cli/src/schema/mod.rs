@@ -89,7 +89,7 @@ fn generator() -> SchemaGenerator {
         .into_generator()
 }
 
-/// The schema of the layout of this name, which a command prints.
+/// Returns the schema of a document that a command prints, under this name.
 fn of<T: JsonSchema>(name: &str, command: &str) -> Value {
     let mut schema = generator().into_root_schema_for::<T>();
     schema.insert("$id".into(), format!("flagred.{name}/1").into());
@@ -97,7 +97,7 @@ fn of<T: JsonSchema>(name: &str, command: &str) -> Value {
     closed(schema.to_value())
 }
 
-/// The types of the documents that the npm package hands out, as the `$defs` of a schema.
+/// Returns the types of the documents that the npm package returns, as the `$defs` of a schema.
 pub fn npm_types() -> Value {
     let mut generator = generator();
     generator.subschema_for::<FlightDocument<'_>>();

@@ -16,27 +16,27 @@ use crate::{
     output::{Files, Replace, can_replace},
 };
 
-/// Digits of a hash that tell texts apart: 128 bits.
+/// Number of hash digits that identify a text: 128 bits.
 const TAG_DIGITS: usize = 32;
 
 pub(super) struct EditedFile {
     path: PathBuf,
-    /// Why it is not written, if it is not; empty where the user asked for that.
+    /// Why the file is read-only, if it is; empty if the user chose that.
     pub(super) read_only: Option<&'static str>,
 }
 
-/// What is in the file now.
+/// The current content of the file.
 pub(super) struct Content {
     pub(super) text: String,
-    /// Another one for every other text.
+    /// A hash that identifies the text.
     pub(super) tag: String,
 }
 
-/// What became of a text that was to be saved.
+/// The result of saving a text.
 pub(super) enum Saved {
-    /// It is there, under this tag.
+    /// The text was saved; this is its tag.
     Yes(String),
-    /// Somebody else changed the file meanwhile.
+    /// The file was changed meanwhile, by another program.
     Changed,
 }
 
@@ -60,14 +60,14 @@ impl EditedFile {
             return Err(Failure::unreadable(format!("`{shown}` is not a file"))
                 .help("name a rule set or a profile"));
         }
-        // Standard output is not to be the file itself.
+        // Standard output must not be the file itself.
         Files::reading([path])?;
         let file = EditedFile {
             path: path.to_owned(),
             read_only: match is_read_only {
                 true => Some(""),
                 false if !can_write(path) => Some("the file cannot be written to"),
-                // The new file is written beside the old one.
+                // The new file is written into the same folder, then renamed.
                 false if !can_replace(path) => Some("its folder cannot be written to"),
                 false => None,
             },
@@ -76,7 +76,7 @@ impl EditedFile {
         Ok(file)
     }
 
-    /// Without its folder.
+    /// The name of the file without its folder.
     pub(super) fn name(&self) -> String {
         let name = self.path.file_name().unwrap_or_default();
         name.to_string_lossy().into_owned()
@@ -88,7 +88,7 @@ impl EditedFile {
             Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
         };
         let file = open(&self.path).map_err(failed)?;
-        // It may have become something else, which is read without end or writes what it is sent somewhere.
+        // The path may have become a device or a FIFO, whose content never ends.
         if !file.metadata().map_err(failed)?.is_file() {
             return Err(Failure::unreadable(format!(
                 "`{shown}` is not a file any more"
@@ -105,7 +105,7 @@ impl EditedFile {
         Ok(Content { text, tag })
     }
 
-    /// Replaces the file with a text, if it still is the one of that tag.
+    /// Replaces the file with a text if its current content has the expected tag.
     pub(super) fn save(&self, text: &str, expected: &str) -> Result<Saved, Failure> {
         if self.read()?.tag != expected {
             return Ok(Saved::Changed);
@@ -116,7 +116,7 @@ impl EditedFile {
     }
 }
 
-/// Opens a file for reading without waiting for the other end of a FIFO.
+/// Opens a file for reading. Does not wait for the other end of a FIFO.
 fn open(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     #[cfg(unix)]

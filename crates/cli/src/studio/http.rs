@@ -1,4 +1,4 @@
-//! HTTP as far as a page on the same machine needs it: one request a connection, and nothing of any length or duration.
+//! The part of HTTP that a page on the same machine needs: one request per connection, with bounded lengths and durations.
 
 use std::{
     borrow::Cow,
@@ -7,28 +7,28 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The largest head of a request; browsers send about one kilobyte.
+/// Maximum number of bytes in the head of a request; browsers send about one kilobyte.
 const HEAD: usize = 16_384;
 const HEADERS: usize = 64;
-/// How long a request may take in all, with what of it is read after the answer.
+/// Time limit for a request, including the remainder that is read after the answer.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// How long the answer may take: the page may go through a slow tunnel.
+/// Time limit for the answer: the page may be sent through a slow tunnel.
 const PATIENCE_TO_ANSWER: Duration = Duration::from_secs(60);
-/// How much of a body that is refused is read all the same, so that whoever sends it comes to read the answer.
+/// Bytes of a refused body that are read nevertheless, so that the sender reaches the answer.
 const DRAINED: u64 = 64_000_000;
 
-/// A request whose body was not read yet.
+/// A request whose body has not been read yet.
 pub(super) struct Request<S> {
     pub(super) method: String,
-    /// Without a query.
+    /// The path without the query.
     pub(super) path: String,
     headers: Vec<(String, String)>,
-    /// What of the body came along with the head.
+    /// The beginning of the body, which arrived with the head.
     begun: Vec<u8>,
     stream: S,
 }
 
-/// An answer that is no success: its status and what is said.
+/// An error response: its status and its text.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Refusal(pub(super) Status, pub(super) String);
 
@@ -58,7 +58,7 @@ impl Status {
     pub(super) const INTERNAL_ERROR: Status = Status(500, "Internal Server Error");
 }
 
-/// What is sent back.
+/// A response to a request.
 pub(super) struct Response<'a> {
     pub(super) status: Status,
     pub(super) headers: Vec<(&'static str, String)>,
@@ -66,7 +66,7 @@ pub(super) struct Response<'a> {
 }
 
 impl<S: Read> Request<S> {
-    /// Reads the head. `None` where nothing came, as of the connections that browsers keep ready.
+    /// Reads the head. `None` if nothing arrived, as on connections that browsers open in advance.
     pub(super) fn read(mut stream: S) -> Result<Option<Request<S>>, Refusal> {
         let mut bytes = Vec::new();
         loop {
@@ -104,14 +104,14 @@ impl<S: Read> Request<S> {
         }
     }
 
-    /// The value of a header; that of several with one name is a list.
+    /// Returns the value of a header; repeated headers are joined to a list.
     pub(super) fn header(&self, name: &str) -> Option<String> {
         let named = self.headers.iter().filter(|(other, _)| other == name);
         let values: Vec<&str> = named.map(|(_, value)| value.as_str()).collect();
         (!values.is_empty()).then(|| values.join(", "))
     }
 
-    /// Reads the body, a text of not more than so many bytes.
+    /// Reads the body, a text of at most `limit` bytes.
     pub(super) fn body(&mut self, limit: usize) -> Result<String, Refusal> {
         let length = self.header("content-length");
         if self.header("transfer-encoding").is_some() {
@@ -173,7 +173,7 @@ impl Response<'_> {
         for (name, value) in &self.headers {
             text += &format!("{name}: {value}\r\n");
         }
-        // These two have no body, and so no length.
+        // Responses with these two statuses have no body and no length.
         if !matches!(self.status, Status::NO_CONTENT | Status::NOT_MODIFIED) {
             text += &format!("Content-Length: {}\r\n", self.body.len());
         }
@@ -186,7 +186,7 @@ impl Response<'_> {
     }
 }
 
-/// A connection that ends at some time, however slowly the other side sends or reads.
+/// A connection with a deadline, however slowly the other side sends or reads.
 pub(super) struct Timed<'s> {
     stream: &'s TcpStream,
     end: Instant,
@@ -225,7 +225,7 @@ impl Write for Timed<'_> {
     }
 }
 
-/// Answers the request of a connection, and ends it. `respond` is given the request; HEAD is answered as GET.
+/// Answers the request on a connection, and closes it. HEAD is answered as GET without the body.
 pub(super) fn serve<'a>(
     stream: &TcpStream,
     respond: impl FnOnce(&mut Request<&mut Timed<'_>>) -> Response<'a>,
@@ -238,7 +238,7 @@ pub(super) fn serve<'a>(
     };
     Timed::new(stream, PATIENCE_TO_ANSWER).write_all(&response.bytes(with_body))?;
     stream.shutdown(Shutdown::Write)?;
-    // Closed while something is left to read, the connection would be reset, and the answer lost.
+    // Closing the connection with unread input would reset it, and the answer would be lost.
     reading.end = reading.end.min(Instant::now() + Duration::from_secs(1));
     io::copy(&mut reading.take(DRAINED), &mut io::sink())?;
     Ok(())
@@ -262,9 +262,9 @@ mod tests {
         assert_eq!(request.body(3).unwrap(), "abc");
     }
 
-    /// Two lines of one name are one list, which is no host, no origin and no length.
+    /// Two headers with one name form a list, which is not a valid host, origin or length.
     #[test]
-    fn a_header_that_stands_twice_is_no_single_value() {
+    fn a_repeated_header_has_no_single_value() {
         let text = "PUT / HTTP/1.1\r\nContent-Length: 1\r\nContent-Length: 1\r\n\r\na";
         let mut request = read(text).unwrap().unwrap();
         assert_eq!(request.header("content-length").as_deref(), Some("1, 1"));
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_large_or_too_short_is_refused() {
+    fn requests_that_are_too_large_or_too_short_are_refused() {
         let status = |text: &str| read(text).map(|_| ()).unwrap_err().0;
         assert!(read("").unwrap().is_none());
         assert_eq!(status("GET / HT"), Status::BAD_REQUEST);
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_comes_is_answered() {
+    fn any_bytes_are_answered() {
         let seed =
             "PUT /token/api/file HTTP/1.1\r\nHost: 127.0.0.1:1\r\nContent-Length: 4\r\n\r\nabcd";
         let mut random = fastrand::Rng::with_seed(24);

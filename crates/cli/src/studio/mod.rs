@@ -23,13 +23,14 @@ use fuzzy::drawing::visible;
 
 use crate::{
     failure::{Exit, Failure},
+    numbers::whole,
     output::{self, Files, Replace, Stdout},
 };
 use file::EditedFile;
 use server::Server;
 use strangers::Strangers;
 
-/// How many connections are open at a time.
+/// Maximum number of open connections.
 const CONNECTIONS: usize = 256;
 
 #[derive(clap::Args)]
@@ -47,7 +48,8 @@ pub(crate) struct Arguments {
         long,
         value_name = "NUMBER",
         default_value_t = 0,
-        hide_default_value = true
+        hide_default_value = true,
+        value_parser = whole(0, u16::MAX)
     )]
     port: u16,
 
@@ -64,7 +66,7 @@ pub(crate) struct Arguments {
     page: Option<PathBuf>,
 }
 
-/// Serves until it is interrupted.
+/// Serves the page until interrupted.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let file = arguments
         .file
@@ -79,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let (interrupt, interrupted) = mpsc::channel();
     ctrlc::set_handler(move || {
-        // It is received already where a second one comes.
+        // Sending fails only for a second interrupt, when the first has been received already.
         let _ = interrupt.send(());
     })
     .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
@@ -106,19 +108,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     {
         output::say(&format!("no browser could be opened: {error}"));
     }
-    // An error means that nobody can interrupt any more.
+    // An error means that no interrupt can arrive any more.
     let _ = interrupted.recv();
     server.finish();
     Ok(Exit::Clean)
 }
 
-/// Answers each connection in a thread of its own: browsers keep some open that they do not use yet.
+/// Answers each connection in its own thread, since browsers open some before they use them.
 fn accept(listener: &TcpListener, server: &Arc<Server>) {
     let open = Arc::new(AtomicUsize::new(0));
     let strangers = Arc::new(Strangers::default());
     for connection in listener.incoming() {
         let Ok(stream) = connection else {
-            // Such as too many open files, which passes.
+            // The error may be temporary, such as too many open files.
             thread::sleep(Duration::from_millis(100));
             continue;
         };
@@ -130,7 +132,7 @@ fn accept(listener: &TcpListener, server: &Arc<Server>) {
         let strangers = Arc::clone(&strangers);
         let number = strangers.admit(&stream);
         thread::spawn(move || {
-            // A connection that fails has nobody to tell.
+            // A failed connection has no one to report the error to.
             let _ = http::serve(&stream, |request| {
                 if server.is_for_the_user(request) {
                     strangers.forget(number);

@@ -1,4 +1,4 @@
-//! The page: the one in the program or another, and the policy that it asks for.
+//! The page, built in or from a file, and its content security policy.
 
 use std::{fs, io::Read, path::Path};
 
@@ -6,10 +6,10 @@ use flate2::read::GzDecoder;
 
 use crate::failure::Failure;
 
-/// What `build.rs` found, gzipped.
+/// The gzipped page that `build.rs` found.
 const PACKED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/studio.html.gz"));
 
-/// What stands around the policy in the page.
+/// The text before and after the policy in the page.
 const POLICY: (&str, &str) = (
     "<meta http-equiv=\"Content-Security-Policy\" content=\"",
     "\">",
@@ -17,11 +17,11 @@ const POLICY: (&str, &str) = (
 
 pub(super) struct Page {
     pub(super) html: String,
-    /// What the page may load, as it says itself: its scripts are named there by their hashes.
+    /// The content security policy of the page, which contains the hashes of its scripts.
     pub(super) policy: String,
 }
 
-/// The page in a file, or the one in the program.
+/// Returns the page in a file, or the built-in one.
 pub(super) fn find(file: Option<&Path>) -> Result<Page, Failure> {
     match file {
         Some(path) => {
@@ -49,7 +49,7 @@ fn built_in(packed: &[u8]) -> Result<Page, Failure> {
     })
 }
 
-/// A page with its policy. What has none is another file.
+/// Extracts the policy of a page. A file without a policy is not the page.
 fn page(html: String) -> Option<Page> {
     let (before, after) = POLICY;
     let policy = html.split_once(before)?.1.split_once(after)?.0;
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_without_the_page_says_where_it_comes_from() {
+    fn a_program_without_the_page_explains_how_to_get_it() {
         let failure = built_in(&packed("")).map(|page| page.html).unwrap_err();
         let told = failure.to_string();
         assert!(told.contains("without the page") && told.contains("`web/build`"));

@@ -1,8 +1,8 @@
-//! Who gets what: the page and its file, for this machine's user alone.
+//! Access to the page and its file, only for the user of this machine who started the studio.
 //!
-//! Everybody on the machine can connect, and every page in a browser can send requests here. So the path begins with a
-//! token that nobody can guess, the host is the served address (a name that leads here is another's page), and requests
-//! of other pages are refused.
+//! Every user of the machine can connect, and every page in a browser can send requests here. So the path begins with a
+//! token that cannot be guessed, the host must be the served address (another name that resolves to it belongs to another page),
+//! and requests of other pages are refused.
 
 use std::{
     borrow::Cow,
@@ -25,21 +25,21 @@ use super::{
 };
 use crate::failure::Failure;
 
-/// For answers that are no page.
+/// The policy of responses other than the page.
 const NOTHING: &str = "default-src 'none'";
-/// What a page cannot say of itself.
+/// A directive that a page cannot set in its own policy.
 const NO_FRAMES: &str = "; frame-ancestors 'none'";
 
 pub(super) struct Server {
     /// The host and port, as a browser names them.
     authority: String,
     token: String,
-    /// Leads to the page once. Other users see the command line of a browser, and so this; not where it leads.
+    /// A path that redirects to the page once. Other users can see a browser's command line, which contains it, but not the target.
     ticket: String,
     is_used: AtomicBool,
     page: Page,
     file: Option<EditedFile>,
-    /// Held from the look at the file to the end of its writing.
+    /// Locked from the comparison of the file's content until the new content is written.
     saving: Mutex<()>,
 }
 
@@ -50,7 +50,7 @@ impl Server {
         file: Option<EditedFile>,
     ) -> Result<Server, Failure> {
         Ok(Server {
-            // A browser leaves out the port that is common for http.
+            // Browsers omit the default port of HTTP.
             authority: match address.port() {
                 80 => address.ip().to_string(),
                 _ => address.to_string(),
@@ -64,22 +64,22 @@ impl Server {
         })
     }
 
-    /// Where the page is.
+    /// The address of the page.
     pub(super) fn address(&self) -> String {
         format!("http://{}/{}/", self.authority, self.token)
     }
 
-    /// An address that leads to the page once.
+    /// The address that redirects to the page once.
     pub(super) fn address_once(&self) -> String {
         format!("http://{}/{}/", self.authority, self.ticket)
     }
 
-    /// Returns when nothing is being written.
+    /// Waits until no file is being written.
     pub(super) fn finish(&self) {
         drop(self.saving.lock());
     }
 
-    /// Whether a request shows the token, or the ticket.
+    /// Returns whether the path of a request begins with the token or the ticket.
     pub(super) fn is_for_the_user<S: Read>(&self, request: &Request<S>) -> bool {
         let first = request.path.split('/').nth(1);
         first.is_some_and(|first| first == self.token || first == self.ticket)
@@ -216,7 +216,7 @@ fn failed(failure: Failure) -> Refusal {
     Status::INTERNAL_ERROR.says(&failure.to_string())
 }
 
-/// What nobody can guess, in digits and letters.
+/// Returns a random secret, in digits and letters.
 fn secret() -> Result<String, Failure> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes)

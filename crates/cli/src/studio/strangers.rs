@@ -1,4 +1,4 @@
-//! Connections that have not shown the token yet. They must not keep the user's out, however many there are.
+//! Connections that have not sent the token yet. They must not block the user's connections, however many there are.
 
 use std::{
     collections::VecDeque,
@@ -6,10 +6,10 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-/// How many there are at a time; a browser opens about six.
+/// Maximum number of them; a browser opens about six.
 const MOST: usize = 64;
 
-/// Connections that have not shown the token yet, the oldest first.
+/// Connections that have not sent the token yet, the oldest first.
 #[derive(Default)]
 pub(super) struct Strangers(Mutex<Waiting>);
 
@@ -20,8 +20,8 @@ struct Waiting {
 }
 
 impl Strangers {
-    /// Takes in a connection, and returns its number. Where there are too many, the oldest is closed: a browser sends its request
-    /// at once.
+    /// Adds a connection, and returns its number. If there are too many, the oldest is closed: a browser sends its request
+    /// immediately.
     pub(super) fn admit(&self, stream: &TcpStream) -> u64 {
         let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.count += 1;
@@ -32,13 +32,13 @@ impl Strangers {
         if waiting.open.len() > MOST
             && let Some((_, oldest)) = waiting.open.pop_front()
         {
-            // One that is closed already has no place to free.
+            // This fails if the connection is closed already.
             let _ = oldest.shutdown(Shutdown::Both);
         }
         number
     }
 
-    /// The connection ended, or showed the token.
+    /// Removes a connection that ended or sent the token.
     pub(super) fn forget(&self, number: u64) {
         let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.open.retain(|(other, _)| *other != number);

@@ -1,4 +1,4 @@
-//! `flagred tune`: the numbers of a rule set from rows of data.
+//! `flagred tune`: fits the numbers of a rule set to rows of data.
 
 mod report;
 
@@ -29,6 +29,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{
     failure::{Exit, Failure},
+    numbers::{self, whole},
     output::{self, Output, Stdout},
     rows, rule_set,
 };
@@ -55,7 +56,7 @@ pub(crate) struct Arguments {
     weights: bool,
 
     /// Minimum distance between neighbouring peaks, as a share of the range
-    #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = rows::share)]
+    #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = numbers::share)]
     min_distance: f64,
 
     /// Let constants leave the range of the output, by its width at most
@@ -67,15 +68,15 @@ pub(crate) struct Arguments {
     round: Digits,
 
     /// Number of starts: the rule set, then random points around it
-    #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = whole(1_u32, 1000))]
     starts: u32,
 
     /// Maximum number of steps per start
-    #[arg(long, default_value_t = 100, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, default_value_t = 100, value_name = "COUNT", value_parser = whole(1_u32, 100_000))]
     iterations: u32,
 
     /// Random seed (starting points, folds of cross-validation)
-    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 0, value_name = "NUMBER", value_parser = numbers::seed)]
     seed: u64,
 
     /// Save the best rule set so far to this file; if the file exists, start from it
@@ -83,7 +84,7 @@ pub(crate) struct Arguments {
     checkpoint: Option<PathBuf>,
 
     /// Number of cross-validation folds
-    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=100))]
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = whole(2_u32, 100))]
     folds: u32,
 
     /// Also report the cross-validation error after tuning on 1/8, 1/4 and 1/2 of the training rows
@@ -105,7 +106,7 @@ enum LossName {
     Ranking,
 }
 
-/// Significant digits; `None` for all.
+/// Number of significant digits; `None` for all.
 #[derive(Debug, Clone, Copy)]
 struct Digits(Option<u32>);
 
@@ -128,16 +129,16 @@ impl Arguments {
     }
 }
 
-/// What the report tells.
+/// The results for the report.
 struct Outcome {
     rows: usize,
     refused: Vec<String>,
     tuned: Tuned,
-    /// `None` where it was not wanted, or ended.
+    /// `None` if not requested or interrupted.
     validation: Option<Validation>,
-    /// `None` where it was not wanted, or ended.
+    /// `None` if not requested or interrupted.
     curve: Option<Vec<CurvePoint>>,
-    /// Whether the search began with a checkpoint.
+    /// Whether the search started from a checkpoint.
     is_resumed: bool,
 }
 
@@ -148,6 +149,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let name = arguments.rows.rewrite.model.display().to_string();
     let source = rule_set::read(&arguments.rows.rewrite.model)?;
     let original = rule_set::engine(&source, &name)?.model();
+    arguments.rows.claims.check_inputs(original)?;
     let settings = settings(arguments)?;
     let resumed = resumed(arguments, original, &settings)?;
     let begun = resumed.as_ref().unwrap_or(original);
@@ -163,7 +165,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         watch.step(progress, None)
     });
     let tuned = tuned.map_err(failed)?;
-    // Whatever cannot be written is an error in the end. Until then the search goes on.
+    // A checkpoint that cannot be written is reported as an error at the end; cross-validation runs first.
     let kept = watch.keep(&tuned.model);
     let validation = match arguments.rows.no_validation || tuned.is_stopped {
         true => None,
@@ -233,9 +235,10 @@ fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
     Ok(settings)
 }
 
-/// The rows as columns, and why others cannot be used.
+/// The rows as columns, and the reasons why other rows cannot be used.
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
     let read = rows::read(&arguments.rows, model)?;
+    let read = rows::in_range(read, model, !arguments.beyond_range);
     let (data, refused) = rows::in_columns(read, model.inputs.len(), arguments.loss());
     if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
         let failure = rows::refuse(&refused, "used");
@@ -249,7 +252,7 @@ fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Fai
     Ok((data, refused))
 }
 
-/// The rule set to tune with the numbers of a checkpoint that exists and differs in nothing else.
+/// Returns the rule set with the numbers of a checkpoint, if that exists. It must not differ in anything else.
 fn resumed(
     arguments: &Arguments,
     model: &Model,
@@ -329,7 +332,7 @@ fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
     }
 }
 
-/// Follows a search: shows how far it is, keeps a checkpoint, ends it when the user asks.
+/// Observes a search: shows its progress, writes checkpoints, and stops it if the user interrupts.
 struct Watch<'a> {
     stop: Arc<AtomicBool>,
     bar: ProgressBar,
@@ -337,7 +340,7 @@ struct Watch<'a> {
     iterations: u32,
     checkpoint: Option<&'a Output>,
     kept: Instant,
-    /// Whether the user knows that the checkpoint could not be written.
+    /// Whether a checkpoint that could not be written has been reported.
     is_refused: bool,
 }
 
@@ -369,7 +372,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// A step of the search, or of a part of cross-validation.
+    /// Called after each step of the search and of cross-validation.
     fn step(&mut self, progress: &Progress<'_>, fold: Option<u32>) -> ControlFlow<()> {
         const BETWEEN: Duration = Duration::from_secs(5);
         let part = fold.map_or(0, |fold| fold + 1);
@@ -381,7 +384,7 @@ impl<'a> Watch<'a> {
             Some(fold) => format!("validation, part {}", fold + 1),
         });
         if fold.is_none() && self.kept.elapsed() > BETWEEN {
-            // It may be possible to write it later; in the end it is an error.
+            // A later attempt may succeed. If the last one fails, it is an error.
             if let Err(failure) = self.keep(progress.model)
                 && !std::mem::replace(&mut self.is_refused, true)
             {
@@ -392,7 +395,7 @@ impl<'a> Watch<'a> {
         self.flow()
     }
 
-    /// A step of what comes after all that the bar counts.
+    /// Called after each step of work that the progress bar does not count.
     fn more(&self, what: &'static str) -> ControlFlow<()> {
         self.bar.set_message(what);
         self.flow()

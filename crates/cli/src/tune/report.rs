@@ -1,4 +1,4 @@
-//! What moved, in words, as JSON, and as the rule set itself.
+//! The tuned rule set: as a report in words, as JSON, and as a file.
 
 use std::io::Write;
 
@@ -26,7 +26,7 @@ fn loss(arguments: &Arguments) -> &'static str {
     }
 }
 
-/// The rule set with the step that made it.
+/// The rule set with a provenance step for this command.
 pub(super) fn rule_set(
     arguments: &Arguments,
     outcome: &Outcome,
@@ -58,12 +58,12 @@ pub(super) fn rule_set(
     provenance::rule_set(model_text, tuned.model.clone(), step)
 }
 
-/// Six digits: authors read them.
+/// Rounds to six digits, for readability.
 fn rounded(loss: f64) -> f64 {
     format!("{loss:.5e}").parse().unwrap_or(loss)
 }
 
-/// `heat.warm peak from 20 to 22.5`
+/// Describes a moved number: `heat.warm peak from 20 to 22.5`.
 fn moved(moved: &Moved) -> String {
     let [before, after] = [moved.before, moved.after].map(short);
     format!("{} {} from {before} to {after}", moved.of, moved.name)
@@ -197,7 +197,7 @@ pub(super) fn words(
     Ok(())
 }
 
-/// The version of the document's layout.
+/// The version of the JSON document.
 const SCHEMA: &str = "flagred.tune/1";
 
 /// The document of `--json`.

@@ -1,4 +1,4 @@
-//! `flagred watch --all`: every vehicle on one or several links, a line each. It only listens.
+//! `flagred watch --all`: every vehicle on one or several links, one line each. It only receives.
 
 use std::{
     io::{self, IsTerminal},
@@ -32,10 +32,10 @@ use crate::{
     failure::{Exit, Failure},
 };
 
-/// How often time passes for all vehicles, and how often the screen is drawn.
+/// Intervals at which all vehicles are updated, and at which the screen is drawn.
 const TICK: Duration = Duration::from_millis(50);
 const FRAME: Duration = Duration::from_millis(500);
-/// Packets that wait to be evaluated; then the links wait, too.
+/// Maximum number of packets queued for evaluation. When the queue is full, the links wait.
 const PACKETS: usize = 20_000;
 
 /// A packet or a message from a link.
@@ -44,7 +44,7 @@ enum LinkItem {
     Note(String),
 }
 
-/// How it is shown.
+/// The form of the output.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Face {
     Json,
@@ -52,7 +52,7 @@ enum Face {
     Screen,
 }
 
-/// Watches until it is interrupted.
+/// Watches until interrupted.
 pub(super) fn run(
     endpoints: &[Endpoint],
     (jsonl, waits): (bool, bool),
@@ -103,7 +103,7 @@ pub(super) fn run(
     Ok(exit_of(&worst(&all), FailOn::Warn))
 }
 
-/// A link, in a thread of its own.
+/// Receives from a link, in its own thread.
 fn listen(
     link: usize,
     name: &str,
@@ -138,7 +138,7 @@ fn listen(
         let mut is_heard =
             note.is_none_or(|note| sender.send((link, LinkItem::Note(note))).is_ok());
         while let Some(packet) = stream.packet() {
-            // Nothing rests on messages that cannot be verified.
+            // Messages that cannot be verified are not used.
             if packet.sound == Some(true) {
                 let heard = LinkItem::Packet(source, packet.bytes.to_vec());
                 is_heard &= sender.send((link, heard)).is_ok();
@@ -187,7 +187,7 @@ fn follow<'e>(
     }
 }
 
-/// Where it is told.
+/// Prints events in the chosen form.
 struct Shown<'e> {
     face: Face,
     printer: Printer,
@@ -208,7 +208,7 @@ impl<'e> Shown<'e> {
         self.printer.print(text);
     }
 
-    /// A vehicle by its system and where it is heard.
+    /// The name of a vehicle: its system and its address.
     fn name(&self, id: Id) -> String {
         let from = match id.source {
             Some(address) => address.to_string(),
@@ -253,7 +253,7 @@ impl<'e> Shown<'e> {
         }
     }
 
-    /// The text of a screen of so many columns and rows.
+    /// The text of a screen of this size, in columns and rows.
     fn frame(&self, fleet: &Fleet<'e>, (columns, rows): (usize, usize)) -> String {
         let views = fleet.views();
         let in_air = views.iter().filter(|(_, view)| view.is_in_air).count();
@@ -357,7 +357,7 @@ impl<'e> Shown<'e> {
     }
 }
 
-/// The terminal is as it was before, however the watch ends.
+/// Restores the terminal, however the watch ends.
 impl Drop for Shown<'_> {
     fn drop(&mut self) {
         if self.face == Face::Screen {
@@ -366,7 +366,7 @@ impl Drop for Shown<'_> {
     }
 }
 
-/// What fits in a row: a full one would wrap.
+/// Truncates a line to a row, less one character: a full row would wrap.
 fn cut(line: &str, columns: usize) -> String {
     line.chars().take(columns.saturating_sub(1)).collect()
 }
@@ -380,7 +380,7 @@ mod tests {
     };
 
     #[test]
-    fn the_gravest_vehicle_is_on_the_smallest_screen() {
+    fn the_vehicle_in_most_danger_is_on_the_smallest_screen() {
         let estimator = estimator();
         let mut air = Air::new(&estimator);
         let calm: Vec<(u8, bool, [u16; 4])> =

@@ -1,16 +1,16 @@
-//! Where the packets come from: `udpin:0.0.0.0:14550`, `tcp:127.0.0.1:5760`, `/dev/ttyACM0:57600`.
+//! The origin of the packets: `udpin:0.0.0.0:14550`, `tcp:127.0.0.1:5760`, `/dev/ttyACM0:57600`.
 
 use std::{fmt, str::FromStr};
 
-/// The baud rate of a serial port that names none: that of telemetry radios.
+/// The default baud rate of a serial port: that of telemetry radios.
 const BAUD: u32 = 57_600;
 
-/// A place to find a vehicle at.
+/// An address at which a vehicle can be received.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Endpoint {
-    /// Wait for datagrams at an address.
+    /// Receive datagrams at an address.
     UdpIn(String),
-    /// Send datagrams to an address, and wait for answers.
+    /// Send datagrams to an address, and receive answers.
     UdpOut(String),
     /// Connect to an address.
     Tcp(String),
@@ -35,11 +35,14 @@ impl FromStr for Endpoint {
             }
         });
         if let Some(endpoint) = socket {
+            if let Some((kind, address)) = text.split_once("://") {
+                return Err(format!("write `{kind}:{address}`, without `//`"));
+            }
             let port = text.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
             return match (port, text.matches(':').count()) {
                 (Some(Ok(_)), 2..) => Ok(endpoint),
                 _ => Err(format!(
-                    "`{text}` names no address with a port, such as `127.0.0.1:14550`"
+                    "`{text}` has no address with a port from 0 to 65535, such as `127.0.0.1:14550`"
                 )),
             };
         }
@@ -56,7 +59,10 @@ impl FromStr for Endpoint {
                 baud,
             });
         }
-        Err(unknown(text))
+        match std::path::Path::new(text).is_file() {
+            true => Err(format!("`{text}` is a file: `flagred assess {text}`")),
+            false => Err(unknown(text)),
+        }
     }
 }
 
@@ -99,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_endpoint_is_told() {
+    fn invalid_endpoints_are_reported() {
         for text in [
             "",
             "14550",

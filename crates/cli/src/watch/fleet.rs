@@ -1,4 +1,4 @@
-//! Many vehicles: each sender of a multirotor's heartbeats is followed by a session of its own.
+//! Many vehicles: a separate session follows each sender of a multirotor's heartbeats.
 
 use std::collections::HashMap;
 
@@ -10,18 +10,18 @@ use flagred_flightlog::mavlink::{Packet, vehicle_of};
 
 use super::session::{Event, Out, Session, Source, View, may_be_multirotor};
 
-/// Vehicles at a time.
+/// Maximum number of vehicles at a time.
 const MOST: usize = 1_000;
-/// Vehicles that are gone, in the summary.
+/// Maximum number of vehicles in the summary that are no longer received.
 const MOST_GONE: usize = 10_000;
-/// A sender that is silent for so long without having proved to be a vehicle is forgotten.
+/// A sender that has not proved to be a vehicle is dropped after this silence.
 const STRAY_S: f64 = 10.0;
-/// A vehicle that is silent for so long is gone; when it is heard again it is a new one.
+/// A vehicle is dropped after this silence. If it is received again, it counts as a new one.
 const GONE_S: f64 = 60.0;
-/// Samples of a flight that are kept, in case limits become known later: a minute at 25 Hz, in 0.1 MB.
+/// Maximum number of stored samples of a flight, in case limits become known later: a minute at 25 Hz, in 0.1 MB.
 const HISTORY: usize = 1_500;
 
-/// Who a vehicle is: systems of different senders are different vehicles, since a new autopilot is number 1.
+/// The identity of a vehicle. Equal systems of different senders are different vehicles, since every new autopilot has system id 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Id {
     pub(crate) link: usize,
@@ -36,7 +36,7 @@ pub(crate) struct Member<'e> {
     risk_max: Option<f64>,
 }
 
-/// What is left of a vehicle.
+/// The summary of a vehicle.
 #[derive(Debug, Clone)]
 pub(crate) struct Summary {
     pub(crate) id: Id,
@@ -45,13 +45,13 @@ pub(crate) struct Summary {
     pub(crate) lost_share: f64,
 }
 
-/// All vehicles that are heard.
+/// All vehicles that are received.
 pub(crate) struct Fleet<'e> {
     estimator: &'e Estimator,
     members: HashMap<Id, Member<'e>>,
     gone: Vec<Summary>,
     out: Out,
-    /// Heartbeats of vehicles beyond the bound, and vehicles that are gone and not in the summary.
+    /// Numbers of refused heartbeats of vehicles beyond the maximum, and of dropped vehicles missing from the summary.
     pub(crate) refused: u64,
     pub(crate) forgotten: u64,
 }
@@ -68,7 +68,7 @@ impl<'e> Fleet<'e> {
         }
     }
 
-    /// Takes in a packet, and calls `tell` with what it changed.
+    /// Processes a packet, and calls `tell` with its events.
     pub(crate) fn receive(
         &mut self,
         now_s: f64,
@@ -102,7 +102,7 @@ impl<'e> Fleet<'e> {
         member.tell(id, &mut self.out, &mut tell);
     }
 
-    /// What is due without any packet; forgets who is gone.
+    /// Does everything that is due without a packet, and drops vehicles that are silent.
     pub(crate) fn tick(&mut self, now_s: f64, mut tell: impl FnMut(Id, &Event, &Session<'e>)) {
         let mut gone = Vec::new();
         for (id, member) in &mut self.members {
@@ -127,7 +127,7 @@ impl<'e> Fleet<'e> {
         }
     }
 
-    /// Ends all flights; gives a summary of each vehicle, the gravest first.
+    /// Ends all flights, and returns a summary of each vehicle, the worst first.
     pub(crate) fn finish(
         &mut self,
         mut tell: impl FnMut(Id, &Event, &Session<'e>),
@@ -142,8 +142,8 @@ impl<'e> Fleet<'e> {
         all
     }
 
-    /// The vehicles that were found: the gravest level first, then the highest risk. A vehicle in the air whose risk is unknown
-    /// stands between WARN and GOOD, one on the ground last.
+    /// The vehicles that were found: the worst level first, then the highest risk. A vehicle in the air with unknown risk
+    /// ranks between WARN and GOOD, a vehicle on the ground last.
     pub(crate) fn views(&self) -> Vec<(Id, View<'_>)> {
         let members = self.members.iter();
         let mut views: Vec<(Id, View<'_>)> = members
@@ -170,7 +170,7 @@ impl<'e> Fleet<'e> {
 
 impl<'e> Member<'e> {
     fn tell(&mut self, id: Id, out: &mut Out, tell: &mut impl FnMut(Id, &Event, &Session<'e>)) {
-        // It only listens.
+        // A fleet only receives.
         out.packets.clear();
         for event in out.events.drain(..) {
             if let Event::Risk { update } = &event
@@ -200,7 +200,7 @@ impl<'e> Member<'e> {
     }
 }
 
-/// The worst verdict of several vehicles. One that never flew counts where nothing else is known.
+/// The worst verdict of several vehicles. A vehicle that never flew counts only if no other verdict is available.
 pub(crate) fn worst(all: &[Summary]) -> Verdict {
     let none = Verdict::NotAvailable(Reason::NoFlight);
     all.iter()
@@ -245,7 +245,7 @@ pub(crate) mod tests {
             (self.fleet).receive(self.now_s, (0, None), &packet, |_, _, _| {});
         }
 
-        /// Lets time pass; vehicles send pulses at 10 Hz, and heartbeats.
+        /// Advances the time; vehicles send pulses at 10 Hz, and heartbeats.
         pub(crate) fn fly(&mut self, seconds: u32, vehicles: &[(u8, bool, [u16; 4])]) {
             for tick in 0..10 * seconds {
                 for (system, in_air, pulses_us) in vehicles {
@@ -268,7 +268,7 @@ pub(crate) mod tests {
     pub(crate) const AT_LIMITS: [u16; 4] = [1000, 2000, 1000, 2000];
 
     #[test]
-    fn a_vehicle_lost_in_the_air_stands_above_those_that_are_good() {
+    fn a_vehicle_lost_in_the_air_is_listed_above_good_ones() {
         let estimator = estimator();
         let mut air = Air::new(&estimator);
         let calm = [(1, false, [1000; 4]), (2, true, HOVER), (3, true, HOVER)];
@@ -328,7 +328,7 @@ pub(crate) mod tests {
         assert_eq!(air.fleet.members.len(), 2);
         air.fly(2, &[other]);
         assert_eq!(air.systems(), [2]);
-        // Heard again, it is a new vehicle.
+        // After its silence it counts as a new vehicle.
         air.fly(30, &[one, other]);
         air.fly(5, &[(1, false, [1000; 4]), (2, false, [1000; 4])]);
         let all = air.fleet.finish(|_, _, _| {});

@@ -1,4 +1,4 @@
-//! `--jsonl`: what happens, one object a line.
+//! `--jsonl`: events as JSON, one object per line.
 
 use std::io;
 
@@ -17,7 +17,7 @@ use super::{
 };
 use flagred_report::document::FindingDocument;
 
-/// The versions of the layouts; they grow when a name changes its meaning or goes.
+/// The versions of the layouts. They change when a name is removed or changes its meaning.
 const SCHEMA: &str = "flagred.watch/1";
 const FLEET_SCHEMA: &str = "flagred.watch-all/1";
 
@@ -90,7 +90,7 @@ pub(crate) enum EventLine<'a> {
 }
 
 impl<'a> EventLine<'a> {
-    /// The first line.
+    /// Returns the first line.
     pub(crate) fn started(endpoint: &'a str, profile: &'a str) -> EventLine<'a> {
         EventLine::Started {
             schema: SCHEMA,
@@ -214,7 +214,7 @@ pub(crate) enum FleetLine<'a> {
 }
 
 impl<'a> FleetLine<'a> {
-    /// The first line.
+    /// Returns the first line.
     pub(crate) fn started(endpoints: &'a [String], profile: &'a str) -> FleetLine<'a> {
         FleetLine::Started {
             schema: FLEET_SCHEMA,
@@ -224,7 +224,7 @@ impl<'a> FleetLine<'a> {
     }
 }
 
-/// The line of an event; `None` for samples on the ground, which have no risk.
+/// Returns the line of an event; `None` for samples on the ground, which have no risk.
 pub(crate) fn line<'a>(
     at_s: f64,
     event: &'a Event,
@@ -264,20 +264,20 @@ pub(crate) fn line<'a>(
     Some(Line::new(at_s, line))
 }
 
-/// A line as text.
+/// Serialises a line.
 pub(crate) fn text(line: &impl Serialize) -> io::Result<String> {
     Ok(serde_json::to_string(line)? + "\n")
 }
 
 impl<'a> Line<'a> {
-    /// A line at a time of the receiver's clock.
+    /// Creates a line with the time of the receiver's clock.
     pub(crate) fn new(at_s: f64, line: EventLine<'a>) -> Line<'a> {
         let at_s = rounded(at_s);
         Line { at_s, line }
     }
 }
 
-/// A time to the millisecond.
+/// Rounds a time to milliseconds.
 pub(crate) fn rounded(at_s: f64) -> f64 {
     (at_s * 1e3).round() / 1e3
 }

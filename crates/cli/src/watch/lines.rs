@@ -1,4 +1,4 @@
-//! What happens in words, line by line, for people and pipes.
+//! Events in words, line by line, for people and pipes.
 
 use flagred::{
     estimator::Estimator,
@@ -12,10 +12,10 @@ use fuzzy::drawing::visible;
 use super::session::{Doubt, End, Event, Flown, Left, Lost, Session, Silent, Source, View};
 use flagred_report::{finding::Teller, words::effective_range};
 
-/// Seconds of the vehicle's clock between two lines of risk in words.
+/// Seconds of the vehicle's clock between two lines with the risk.
 const STEP_S: f64 = 1.0;
 
-/// One line an event, and one a second in the air.
+/// Formats events: one line per event, and one line per second in the air.
 #[derive(Default)]
 pub(crate) struct Words {
     next_s: Option<f64>,
@@ -46,12 +46,12 @@ impl Words {
     }
 }
 
-/// A line of words with the receiver's time.
+/// Formats a line of words with the receiver's time.
 pub(crate) fn words(at_s: f64, text: &str) -> String {
     format!("{at_s:8.1} s  {}\n", visible(text))
 }
 
-/// An event in words; a risk is described with how things stand, by [`Words`].
+/// Describes an event other than a risk, for which [`Words`] adds the current state.
 pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimator) -> String {
     match event {
         Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),
@@ -150,7 +150,7 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
     }
 }
 
-/// Where something came from, if that is known.
+/// Formats the origin of a packet, if known.
 fn from(source: Source) -> String {
     source.map_or(String::new(), |address| format!(" from {address}"))
 }
@@ -205,7 +205,7 @@ pub(super) fn teller<'a>(view: Option<&View<'a>>, estimator: &'a Estimator) -> T
     }
 }
 
-/// A vehicle in a few words.
+/// Describes a vehicle in a few words.
 pub(crate) fn name(vehicle: &Vehicle) -> String {
     let frame = vehicle.frame.clone();
     let kind = frame.unwrap_or_else(|| vehicle.kind.to_string());
@@ -237,7 +237,7 @@ fn ready(setup: &Setup) -> String {
     text
 }
 
-/// The risk of a moment and what it comes from, in words.
+/// Describes the risk of a moment and the values behind it.
 fn risk(update: &Update, view: &View<'_>, estimator: &Estimator) -> String {
     let number = |value: Option<f64>| value.map_or("unknown".to_owned(), |v| format!("{v:.2}"));
     let tail = format!(
@@ -258,7 +258,7 @@ fn risk(update: &Update, view: &View<'_>, estimator: &Estimator) -> String {
     }
 }
 
-/// Why a verdict is NA.
+/// Explains why a verdict is NA.
 pub(crate) fn reason(verdict: &Verdict) -> Option<String> {
     match verdict {
         Verdict::Known(_) => None,

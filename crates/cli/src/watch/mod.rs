@@ -1,4 +1,4 @@
-//! `flagred watch`: the risk of a flight while it is flown.
+//! `flagred watch`: the risk of a flight in progress.
 
 mod all;
 mod endpoint;
@@ -24,11 +24,15 @@ use std::{
 };
 
 use flagred::{estimator::Estimator, flight::Verdict};
-use flagred_flightlog::mavlink::{Key, Sender, Skipped, Stream};
+use flagred_flightlog::{
+    Format, known_signals,
+    mavlink::{Key, Sender, Skipped, Stream},
+};
 
 use crate::{
     assess::{FailOn, exit_of},
     failure::{Exit, Failure},
+    numbers::whole,
     profile,
     range::RangeArgument,
 };
@@ -40,16 +44,16 @@ use printer::Printer;
 use screen::Screen;
 use session::{Doubts, Event, Out, Session};
 
-/// The default component id: the first of those for onboard computers.
+/// The default component id: the first one reserved for onboard computers.
 const COMPONENT: u8 = 191;
-/// The most that is read of a key file: digits and some white space.
+/// Maximum number of bytes read of a key file: digits and some white space.
 const KEY_FILE: u64 = 256;
-/// The largest datagram there is.
+/// The largest possible datagram.
 const DATAGRAM: usize = 65_536;
-/// How often the screen is drawn, and how many frames may wait for the terminal.
+/// The interval between screen frames, and the maximum number of frames queued for the terminal.
 const FRAME: Duration = Duration::from_millis(100);
 const FRAMES: usize = 2;
-/// How many lines may wait for whoever reads them: half an hour of the vehicle's samples.
+/// Maximum number of queued output lines: half an hour of the vehicle's samples.
 const LINES: usize = 50_000;
 
 #[derive(clap::Args)]
@@ -62,7 +66,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with_all = ["record", "send_anyway", "component", "range"])]
     all: bool,
 
-    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-battery`, `flagred-paper`, or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, `flagred-battery`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
@@ -90,7 +94,7 @@ pub(crate) struct Arguments {
     no_wait: bool,
 
     /// The MAVLink component id to send as
-    #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = clap::value_parser!(u8).range(2..))]
+    #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = whole(2, u8::MAX))]
     component: u8,
 
     /// Record received packets to this telemetry log, a new file
@@ -98,15 +102,33 @@ pub(crate) struct Arguments {
     record: Option<PathBuf>,
 }
 
-/// Watches until it is interrupted.
+/// The first input without `if_missing` whose signal is in no MAVLink message, and that signal.
+fn not_live(estimator: &Estimator) -> Option<(&str, &str)> {
+    let known = known_signals();
+    let is_live = |signal: &str| {
+        let mut known = known.iter().filter(|known| known.name == signal);
+        known.any(|known| known.formats.contains(&Format::Tlog))
+    };
+    let inputs = estimator.profile().inputs.iter();
+    let needed = inputs.filter(|input| input.if_missing.is_none());
+    let mut signals = needed.flat_map(|input| {
+        let carried = input.source.signal.carried();
+        carried.map(|signal| (input.name.as_str(), signal))
+    });
+    signals.find(|(_, signal)| !is_live(signal))
+}
+
+/// Watches until interrupted.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let estimator = profile::load(&arguments.profile)?.estimator;
-    if let Some(signal) = estimator.profile().signals().first() {
+    if let Some((input, signal)) = not_live(&estimator) {
         return Err(Failure::usage(format!(
-            "profile `{}` needs the signal `{signal}`, which is not known live",
+            "profile `{}` needs the signal `{signal}`, which is not in MAVLink messages",
             arguments.profile
         ))
-        .help("watch takes profiles whose inputs come from the motors alone"));
+        .help(format!(
+            "give input `{input}` a value with `if_missing`, or use a signal of tlogs: docs/profiles.md#signals-of-logs"
+        )));
     }
     let (endpoint, others) = match arguments.endpoints.split_first() {
         Some(split) => split,
@@ -164,7 +186,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut buffer = vec![0; DATAGRAM];
     let mut out = Out::default();
     let start = Instant::now();
-    // Who is sent warnings or reads the recording still needs the watch when nobody reads what it prints.
+    // If nobody reads the output, the watch continues as long as it sends warnings or records.
     let is_needed = !arguments.no_send || arguments.record.is_some();
     while !stop.load(Ordering::Relaxed) && (is_needed || !display.printer.is_closed()) {
         let received = port.receive(&mut buffer);
@@ -197,13 +219,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             if is_vehicles {
                 port.answer();
             }
-            // A telemetry log has no addresses: whoever reads it would believe others.
+            // A telemetry log contains no addresses, so its reader would attribute packets of other senders to the vehicle.
             if is_vehicles || !session.is_doubtful(&packet) {
                 let recorded = recording.as_mut().map_or(Ok(()), |r| r.add(packet.bytes));
                 let failed = recorded.err().map(|text| Event::Note { text });
                 out.events.extend(failed);
             }
-            // At once: what is sent must not wait for what is shown.
+            // Packets are sent at once: they must not wait for the display.
             out.packets.drain(..).for_each(|packet| port.send(&packet));
             display.show(now_s, &mut out.events, &session, &estimator)?;
         }
@@ -231,10 +253,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit_of(&worst, FailOn::Warn))
 }
 
-/// The key of MAVLink signatures in a file.
+/// Reads the key of MAVLink signatures from a file.
 fn read_key(path: &Path) -> Result<Key, Failure> {
     let name = path.display();
-    // A key is short: no more is read of a file that is none.
+    // A key is short, so reading is limited in case the file is not a key.
     let mut bytes = Vec::new();
     File::open(path)
         .and_then(|file| file.take(KEY_FILE).read_to_end(&mut bytes))
@@ -245,7 +267,7 @@ fn read_key(path: &Path) -> Result<Key, Failure> {
     })
 }
 
-/// What the link cost.
+/// Counts of packets that were skipped, doubted or not sent.
 struct Totals {
     skipped: Skipped,
     doubts: Doubts,
@@ -279,7 +301,7 @@ impl Totals {
     }
 }
 
-/// Where it is told.
+/// Prints events in the chosen form.
 struct Display {
     face: Face,
     printer: Printer,
@@ -318,7 +340,7 @@ impl Display {
         })
     }
 
-    /// Tells the events, and takes them away.
+    /// Prints the events, and clears the list.
     fn show(
         &mut self,
         at_s: f64,
@@ -345,7 +367,7 @@ impl Display {
         Ok(())
     }
 
-    /// Says once of each kind that something is passed over; how much of it is told at the end.
+    /// Adds a note the first time that packets of a kind are skipped. The counts are reported at the end.
     fn skipped(&mut self, now: Skipped, events: &mut Vec<Event>) {
         let told = std::mem::replace(&mut self.told, now);
         let kinds = [
@@ -418,10 +440,10 @@ impl Display {
         Ok(())
     }
 
-    /// The screen goes before the last words, which are to stay.
+    /// Leaves the screen before the final line, which must remain visible.
     fn leave(&mut self) {
         if let Face::Screen(_) = self.face {
-            // Frames that wait go first.
+            // Queued frames are printed first.
             std::thread::sleep(FRAME);
             self.printer.print(screen::LEAVE.to_owned());
             self.face = Face::Words(lines::Words::default());
@@ -429,7 +451,7 @@ impl Display {
     }
 }
 
-/// The terminal is as it was before, however the watch ends.
+/// Restores the terminal, however the watch ends.
 impl Drop for Display {
     fn drop(&mut self) {
         self.leave();

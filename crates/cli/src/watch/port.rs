@@ -1,4 +1,4 @@
-//! Sockets and serial ports: bytes in, bytes out, and nothing else.
+//! Sockets and serial ports: they transfer bytes and do not interpret them.
 
 use std::{
     io::{self, Read, Write},
@@ -10,31 +10,31 @@ use std::{
 use super::endpoint::Endpoint;
 use crate::failure::Failure;
 
-/// How long a call waits for bytes: the beat of everything that does not hang on a packet.
+/// How long a call waits for bytes, which is also the interval of all periodic work.
 const WAIT: Duration = Duration::from_millis(20);
-/// How long a connection may take, and how long until it is tried again.
+/// The time limit for connecting, and the interval between attempts.
 const CONNECT: Duration = Duration::from_secs(3);
 const RETRY: Duration = Duration::from_secs(1);
 
-/// What the system is to keep of datagrams while the program does not run: a second of 500 vehicles, with what it needs beside
-/// each packet. Defaults suffice for a tenth of that.
+/// Requested size of the system's buffer for datagrams while the program does not run: a second of 500 vehicles, including the
+/// overhead of each packet. The default suffices for a tenth of that.
 const BUFFER: usize = 4 << 20;
 
 /// An open endpoint.
 pub(crate) struct Port {
     kind: Kind,
-    /// Why it could not be opened at first, until that is told.
+    /// Why the endpoint could not be opened at first, until this is reported.
     closed_because: Option<String>,
     /// Packets that could not be sent.
     unsent: u64,
 }
 
 enum Kind {
-    /// It could not be opened yet.
+    /// The endpoint could not be opened yet.
     Closed { endpoint: Endpoint, tried: Instant },
     Udp {
         socket: UdpSocket,
-        /// Where the latest datagram came from, and where answers go.
+        /// The origin of the latest datagram, and the address to which packets are sent.
         from: Option<SocketAddr>,
         to: Option<SocketAddr>,
     },
@@ -46,7 +46,7 @@ enum Kind {
     TcpIn {
         listener: TcpListener,
         client: Option<Client>,
-        /// Connections that are served where the client falls silent, the oldest first.
+        /// Connections that replace the client if it is silent, the oldest first.
         waiting: Vec<Client>,
     },
     Serial {
@@ -57,40 +57,40 @@ enum Kind {
     },
 }
 
-/// Connections that wait for their turn, at most.
+/// Maximum number of waiting connections.
 const MOST_WAITING: usize = 8;
-/// A client that is silent for so long gives way to one that is not.
+/// A waiting connection that sends replaces a client after this silence.
 const CLIENT_SILENT: Duration = Duration::from_secs(2);
 
-/// A connection to us.
+/// An incoming connection.
 struct Client {
     stream: TcpStream,
     address: SocketAddr,
     heard: Instant,
 }
 
-/// What a look at the port gave.
+/// The result of reading from the port.
 pub(crate) enum Received {
-    /// So many bytes.
+    /// This number of bytes.
     Bytes(usize),
-    /// A datagram of so many bytes: a packet does not go on in the next one.
+    /// A datagram of this number of bytes. A packet does not continue in the next datagram.
     Datagram(usize),
-    /// Nothing in this time.
+    /// Nothing within the waiting time.
     Nothing,
-    /// It could not be opened for this reason; it is tried again.
+    /// The endpoint could not be opened for this reason. Opening is retried.
     Waiting(String),
-    /// The other side is there.
+    /// The connection is open.
     Opened,
-    /// The other side is gone; it is waited for.
+    /// The connection was closed for this reason. Opening is retried.
     Closed(String),
 }
 
 impl Port {
-    /// Opens it. Where nobody answers there yet it is tried again, unless `waits` is false.
+    /// Opens an endpoint. If the other side is not available yet, opening is retried later, unless `waits` is false.
     ///
     /// # Errors
     ///
-    /// When another program has the port, or it is not ours to open; without waiting whenever it does not open.
+    /// Another program uses the port, or permission is denied. If `waits` is false, any failure to open it.
     pub(crate) fn open(endpoint: &Endpoint, waits: bool) -> Result<Port, Failure> {
         let (kind, closed_because) = match open(endpoint) {
             Ok(kind) => (kind, None),
@@ -110,7 +110,7 @@ impl Port {
         })
     }
 
-    /// The address that is listened at, where there is one: a port of 0 has become a real one.
+    /// The local address of a listening endpoint, with the actual port instead of 0.
     pub(crate) fn listens_at(&self) -> Option<SocketAddr> {
         match &self.kind {
             Kind::Udp { socket, .. } => socket.local_addr().ok(),
@@ -119,7 +119,7 @@ impl Port {
         }
     }
 
-    /// How many bytes the system keeps of datagrams, where that is less than half of what it was asked for.
+    /// The size of the system's buffer for datagrams, if it is less than half of the requested size.
     pub(crate) fn small_buffer(&self) -> Option<usize> {
         match &self.kind {
             Kind::Udp { socket, .. } => buffer(socket).filter(|bytes| *bytes < BUFFER / 2),
@@ -127,7 +127,7 @@ impl Port {
         }
     }
 
-    /// Waits a moment for bytes.
+    /// Waits briefly for bytes.
     pub(crate) fn receive(&mut self, buffer: &mut [u8]) -> Received {
         if let Some(why) = self.closed_because.take() {
             return Received::Waiting(why);
@@ -152,7 +152,7 @@ impl Port {
                     *from = Some(address);
                     Received::Datagram(count)
                 }
-                // Nobody listens yet where this was sent to: whoever it is may come later.
+                // The other side is not listening yet, and may start later.
                 Err(error) => pause(&error),
             },
             Kind::Tcp {
@@ -188,7 +188,7 @@ impl Port {
         }
     }
 
-    /// Where the latest bytes came from; `None` on a serial port.
+    /// The origin of the latest bytes; `None` on a serial port.
     pub(crate) fn source(&self) -> Option<SocketAddr> {
         match &self.kind {
             Kind::Udp { from, .. } => *from,
@@ -198,14 +198,14 @@ impl Port {
         }
     }
 
-    /// Answers go to where the latest datagram came from.
+    /// Directs answers to the origin of the latest datagram.
     pub(crate) fn answer(&mut self) {
         if let Kind::Udp { from, to, .. } = &mut self.kind {
             *to = from.or(*to);
         }
     }
 
-    /// Sends a packet, where there is somebody to send it to.
+    /// Sends a packet if there is a receiver.
     pub(crate) fn send(&mut self, packet: &[u8]) {
         let sent = match &mut self.kind {
             Kind::Udp {
@@ -229,7 +229,7 @@ impl Port {
         self.unsent += u64::from(sent.is_err());
     }
 
-    /// How many packets could not be sent.
+    /// The number of packets that could not be sent.
     pub(crate) fn unsent(&self) -> u64 {
         self.unsent
     }
@@ -275,7 +275,7 @@ fn open(endpoint: &Endpoint) -> io::Result<Kind> {
     }
 }
 
-/// Has the system keep many datagrams. Linux gives as much as it may; others refuse what is too much.
+/// Enlarges the system's buffer for datagrams. Linux grants at most its limit; other systems refuse a request that is too large.
 fn enlarge(socket: &UdpSocket) {
     #[cfg(unix)]
     (0..5)
@@ -285,7 +285,7 @@ fn enlarge(socket: &UdpSocket) {
     let _ = socket;
 }
 
-/// How many bytes the system keeps for a socket; unknown elsewhere than on Unix.
+/// The size of the system's buffer for a socket; unknown on systems other than Unix.
 fn buffer(socket: &UdpSocket) -> Option<usize> {
     #[cfg(unix)]
     return rustix::net::sockopt::socket_recv_buffer_size(socket).ok();
@@ -293,8 +293,8 @@ fn buffer(socket: &UdpSocket) -> Option<usize> {
     return None;
 }
 
-/// Whether an endpoint that does not open may do so later without anybody acting here: the vehicle, its cable, the network or
-/// the name are not there yet.
+/// Returns whether an endpoint may open later without the user's help: the vehicle, its cable, the network or the name may be
+/// missing for now.
 fn is_temporary(error: &io::Error) -> bool {
     !matches!(
         error.kind(),
@@ -302,7 +302,7 @@ fn is_temporary(error: &io::Error) -> bool {
     )
 }
 
-/// Serves one client at a time: the next one where it closes, and one that speaks where it is silent.
+/// Serves one client at a time. A waiting connection replaces it if it closes, or if it is silent and the waiting one sends.
 fn serve(
     listener: &TcpListener,
     client: &mut Option<Client>,
@@ -335,11 +335,11 @@ fn serve(
         if open.heard.elapsed() < CLIENT_SILENT {
             return Received::Nothing;
         }
-        // A look at each, without waiting: those that closed go.
+        // Drops waiting connections that closed.
         waiting.retain(|next| !matches!(peek(&next.stream), Ok(0)));
         let speaks = |next: &Client| matches!(peek(&next.stream), Ok(1..));
         let Some(index) = waiting.iter().position(speaks) else {
-            // One that never says anything does not keep others from waiting.
+            // If all waiting connections are silent, the oldest makes room for another one.
             if waiting.len() == MOST_WAITING {
                 waiting.remove(0);
             }
@@ -358,7 +358,7 @@ fn serve(
     Received::Opened
 }
 
-/// What is there to read, without waiting for it.
+/// Peeks without waiting: 1 if a byte is available, 0 if the connection closed, otherwise an error.
 fn peek(stream: &TcpStream) -> io::Result<usize> {
     stream.set_nonblocking(true)?;
     let count = stream.peek(&mut [0]);
@@ -390,7 +390,7 @@ fn pause(error: &io::Error) -> Received {
     Received::Nothing
 }
 
-/// Tries to open what was closed, not too often.
+/// Tries to open a closed port again, at intervals.
 fn again<T>(
     tried: &mut Instant,
     open: impl FnOnce() -> io::Result<T>,
@@ -426,7 +426,7 @@ fn prepare(stream: TcpStream) -> io::Result<TcpStream> {
     Ok(stream)
 }
 
-/// Opens it for nobody else: a second program would take some of the bytes.
+/// Opens a serial port exclusively: a second program would take some of the bytes.
 fn open_serial(path: &str, baud: u32) -> io::Result<serial2::SerialPort> {
     let mut port = serial2::SerialPort::open(path, baud)?;
     port.set_read_timeout(WAIT)?;
@@ -461,9 +461,9 @@ mod tests {
 
     use super::*;
 
-    /// As much as the system allows; Linux counts what it needs beside the packets, too.
+    /// The buffer is as large as the system allows; Linux also counts the overhead of the packets.
     #[test]
-    fn a_socket_keeps_a_second_of_many_vehicles() {
+    fn a_socket_buffers_a_second_of_many_vehicles() {
         let usual = buffer(&UdpSocket::bind("127.0.0.1:0").unwrap()).unwrap();
         let most = std::fs::read_to_string("/proc/sys/net/core/rmem_max").unwrap();
         let most: usize = most.trim().parse().unwrap();
@@ -493,14 +493,14 @@ mod tests {
             Port::open(&endpoint, true).unwrap_or_else(|_| panic!("{path} does not open"));
         let mut buffer = [0; 16];
         assert!(matches!(port.receive(&mut buffer), Received::Nothing));
-        // Bytes are bytes: no line ends are waited for or made, and nothing is echoed.
+        // Bytes are unchanged: line ends are neither awaited nor converted, and nothing is echoed.
         rustix::io::write(&other, b"\xfd\n\r\x03\x04").unwrap();
         assert!(matches!(port.receive(&mut buffer), Received::Bytes(5)));
         assert_eq!(&buffer[..5], b"\xfd\n\r\x03\x04");
         port.send(b"\xfe\n\x11");
         assert_eq!(rustix::io::read(&other, &mut buffer).unwrap(), 3);
         assert_eq!((&buffer[..3], port.unsent()), (&b"\xfe\n\x11"[..], 0));
-        // The other end is pulled out.
+        // The other end is disconnected.
         drop(other);
         let closed = (0..10).find_map(|_| match port.receive(&mut buffer) {
             Received::Closed(why) => Some(why),

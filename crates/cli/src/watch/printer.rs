@@ -1,4 +1,4 @@
-//! Standard output from a thread of its own: who does not read it, or stops the terminal, must not stop the watch.
+//! Standard output in its own thread: a reader that stops, or a stopped terminal, must not block the watch.
 
 use std::{
     io::{self, Write},
@@ -9,7 +9,7 @@ use std::{
 
 use crate::output;
 
-/// How long the end waits for the last words to be read.
+/// How long the end of the program waits for the last output to be read.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
 /// Prints pieces of text in their order.
@@ -20,7 +20,7 @@ pub(crate) struct Printer {
 }
 
 impl Printer {
-    /// At most so many pieces wait to be printed.
+    /// Creates a printer with a queue of this many pieces.
     pub(crate) fn new(waiting: usize) -> Printer {
         let (sender, receiver) = sync_channel(waiting);
         Printer {
@@ -30,8 +30,8 @@ impl Printer {
         }
     }
 
-    /// Prints a piece as soon as there is somebody to read it; it is dropped where too many wait for that, and where
-    /// standard output cannot be written any more, which is said once.
+    /// Queues a piece of text. It is dropped if the queue is full. If standard output cannot be written any more, the piece is dropped
+    /// too, and the error is reported once.
     pub(crate) fn print(&mut self, piece: String) {
         let sent = self.pieces.as_ref().map(|pieces| pieces.try_send(piece));
         match sent {
@@ -49,12 +49,12 @@ impl Printer {
         }
     }
 
-    /// Whether nothing can be printed any more.
+    /// Returns whether standard output cannot be written any more.
     pub(crate) fn is_closed(&self) -> bool {
         self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
-    /// How many pieces nobody read in time.
+    /// The number of pieces that were dropped because the queue was full.
     pub(crate) fn dropped(&self) -> u64 {
         self.dropped
     }

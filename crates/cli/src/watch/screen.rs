@@ -1,4 +1,4 @@
-//! The full screen: the present state and the latest events.
+//! The full screen: the current state and the latest events.
 
 use std::collections::VecDeque;
 
@@ -11,17 +11,17 @@ use super::{
 };
 use flagred_report::words::level_style;
 
-/// Enter and leave the alternate screen, without a cursor.
+/// Escape sequences that enter and leave the alternate screen, without a cursor.
 pub(crate) const ENTER: &str = "\x1b[?1049h\x1b[?25l";
 pub(crate) const LEAVE: &str = "\x1b[?25h\x1b[?1049l";
 const HOME: &str = "\x1b[H";
 const CLEAR_LINE: &str = "\x1b[K";
 const CLEAR_REST: &str = "\x1b[J";
-/// Columns of a bar.
+/// Number of columns of a bar.
 const BAR: usize = 40;
-/// Events shown.
+/// Maximum number of events shown.
 const LATEST: usize = 8;
-/// The column where the words of an event begin.
+/// The column in which the text of an event begins.
 const INDENT: usize = 12;
 
 /// The latest events, for the screen.
@@ -38,7 +38,7 @@ impl Screen {
         }
     }
 
-    /// Adds an event to the latest ones.
+    /// Adds an event.
     pub(crate) fn add(
         &mut self,
         at_s: f64,
@@ -57,8 +57,8 @@ impl Screen {
         }
     }
 
-    /// The text of a screen of so many columns and rows, which replaces the one before. The present state comes first;
-    /// the latest events take the remaining rows.
+    /// The text of a screen of this size, in columns and rows, which replaces the one before. The current state comes first;
+    /// the latest events fill the remaining rows.
     pub(crate) fn frame(
         &self,
         view: Option<&View<'_>>,
@@ -84,7 +84,7 @@ impl Screen {
     }
 }
 
-/// The text that replaces what is on the screen by lines, as many as there are rows for.
+/// The text that replaces the screen's contents by lines, as many as fit.
 pub(crate) fn text(lines: &[String], rows: usize) -> String {
     let mut text = HOME.to_owned();
     // A line end in the last row would scroll the first row away.
@@ -96,15 +96,15 @@ pub(crate) fn text(lines: &[String], rows: usize) -> String {
     text + CLEAR_REST
 }
 
-/// Columns and rows of the terminal; 80 and 24 where they are unknown.
+/// The columns and rows of the terminal; 80 and 24 if unknown.
 pub(crate) fn size() -> (usize, usize) {
     terminal_size::terminal_size().map_or((80, 24), |(width, height)| {
         (width.0.into(), height.0.into())
     })
 }
 
-/// Breaks lines between words, one column short of the width: a full line would wrap. Lines with a style are short and
-/// stay whole.
+/// Breaks lines between words, one column before the width: a full line would wrap. Lines with a style are short and
+/// are not broken.
 fn wrapped<'a>(lines: impl Iterator<Item = &'a str>, columns: usize) -> Vec<String> {
     let width = columns.saturating_sub(1).max(1);
     let mut all = Vec::new();
@@ -200,7 +200,7 @@ fn state(view: &View<'_>, estimator: &Estimator) -> String {
     text
 }
 
-/// A name, a bar for a share of 0 to 1, and the value.
+/// A row with a name, a bar for a share from 0 to 1, and the value.
 fn row(name: &str, share: f64, value: &str) -> String {
     format!("{name:<9} {} {value}\n", bar(share, BAR))
 }

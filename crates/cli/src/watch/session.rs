@@ -1,7 +1,7 @@
-//! Packets in, events and packets out: everything `flagred watch` does but sockets, files and the screen.
+//! Packets in, events and packets out: all of `flagred watch` except sockets, files and the screen.
 //!
-//! Two clocks are kept apart. Risk is taken over the vehicle's clock, which its motor commands carry; what concerns
-//! the link (silence, asking again, how often to send) goes by the receiver's, which is passed in.
+//! There are two clocks. The risk is computed over the vehicle's clock, which its motor commands contain. The state of the link
+//! (silence, repeated requests, sending rates) depends on the receiver's clock, which is passed in.
 
 use flagred::{
     estimator::Estimator,
@@ -23,6 +23,7 @@ mod trust;
 use super::voice;
 pub(crate) use event::{End, Event, Flown, Left, Lost, Silent};
 use flagred_report::finding::numbered;
+use history::Received;
 use speech::Speech;
 pub(crate) use tracked::View;
 use tracked::{Tracked, Watch, tell};
@@ -31,20 +32,20 @@ pub(crate) use trust::{Doubt, Doubts, Source, may_be_multirotor};
 
 /// Seconds between two heartbeats.
 const HEARTBEAT_S: f64 = 1.0;
-/// Seconds between two risks. At this rate one arrives every second over a link that loses a tenth of its packets.
+/// Seconds between two sent risks. At this rate one arrives every second even if the link loses a tenth of its packets.
 const RISK_S: f64 = 0.25;
-/// A vehicle that sends no motor commands for so long although they are requested gives way to another one.
+/// A vehicle that sends no motor commands for this long despite requests is replaced by another one.
 const PROOF_S: f64 = 5.0;
-/// A vehicle that is silent for so long gives way to one of another system.
+/// A vehicle that is silent for this long is replaced by one of another system.
 const GONE_S: f64 = 30.0;
-/// Systems told apart: there are no more.
+/// Maximum number of other systems that are remembered: MAVLink has no more.
 const SYSTEMS: usize = 256;
 
-/// What comes out.
+/// The output of a session.
 #[derive(Default)]
 pub(crate) struct Out {
     pub(crate) events: Vec<Event>,
-    /// Packets to send, in their order.
+    /// Packets to send, in order.
     pub(crate) packets: Vec<Vec<u8>>,
 }
 
@@ -59,16 +60,16 @@ pub(crate) struct Session<'e> {
     heartbeat_s: Option<f64>,
     /// The worst verdict of the flights so far.
     worst: Verdict,
-    /// The verdict of a part of a flight of which no risk is known.
+    /// The verdict of a part of a flight whose risk is unknown.
     unknown_part: Option<Verdict>,
-    /// Samples of a flight that are kept at most.
+    /// Maximum number of stored samples of a flight.
     history: usize,
-    /// The range of motor outputs where the vehicle does not report it.
+    /// The range of motor outputs to assume if the vehicle does not report it.
     range: Option<PulseRange>,
 }
 
 impl<'e> Session<'e> {
-    /// Speaks by `sender`, or listens only; where another watch speaks, only if it `insists`.
+    /// Creates a session that sends by `sender`, or only listens. If another watch sends warnings, it sends its own only if it `insists`.
     pub(crate) fn new(
         estimator: &'e Estimator,
         sender: Option<Sender>,
@@ -89,17 +90,17 @@ impl<'e> Session<'e> {
         }
     }
 
-    /// The same, with the given range of motor outputs where a vehicle does not report its own.
+    /// Sets the range of motor outputs to assume if a vehicle does not report its own.
     pub(crate) fn with_range(self, range: Option<PulseRange>) -> Session<'e> {
         Session { range, ..self }
     }
 
-    /// The same, keeping at most so many samples of a flight.
+    /// Sets the maximum number of stored samples of a flight.
     pub(crate) fn keeping(self, history: usize) -> Session<'e> {
         Session { history, ..self }
     }
 
-    /// Takes in a packet that came from `source` at `now_s` of the receiver's clock; says whether it is the vehicle's.
+    /// Processes a packet from `source` at `now_s` of the receiver's clock, and returns whether it comes from the vehicle.
     pub(crate) fn receive(
         &mut self,
         now_s: f64,
@@ -107,7 +108,7 @@ impl<'e> Session<'e> {
         packet: &Packet<'_>,
         out: &mut Out,
     ) -> bool {
-        // Nothing is known of an unknown message but whom it is from: it is counted and recorded.
+        // Only the sender of an unknown message can be identified. The message is counted and recorded.
         if packet.sound.is_none() {
             let is_followed = self.is_followed(source, packet);
             if let Some(tracked) = self.tracked.as_mut().filter(|_| is_followed) {
@@ -155,14 +156,14 @@ impl<'e> Session<'e> {
         true
     }
 
-    /// The connection that packets came on is closed: the vehicle may come back on another one.
+    /// Notes that the connection has closed. The vehicle may return on another one.
     pub(crate) fn closed(&mut self) {
         if let Some(tracked) = &mut self.tracked {
             tracked.is_gone = true;
         }
     }
 
-    /// Whether a packet that is not the vehicle's would be taken for it where addresses are not known.
+    /// Returns whether a packet of another sender could be mistaken for the vehicle's if addresses are unknown.
     pub(crate) fn is_doubtful(&self, packet: &Packet<'_>) -> bool {
         let tracked = self.tracked.as_ref();
         match doubt_of(packet) {
@@ -172,7 +173,7 @@ impl<'e> Session<'e> {
         }
     }
 
-    /// How much was not believed.
+    /// The numbers of packets that were not trusted.
     pub(crate) fn doubts(&self) -> Doubts {
         self.doubts
     }
@@ -184,7 +185,7 @@ impl<'e> Session<'e> {
         packet.component == 1 && self.tracked.as_ref().is_some_and(is_it)
     }
 
-    /// What comes in the name of the vehicle, but not from its autopilot where that is heard.
+    /// Counts a doubtful packet of the vehicle's system from another sender, except a second sender while the vehicle is silent.
     fn doubt(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut Out) {
         let Some(tracked) = &self.tracked else {
             return;
@@ -204,7 +205,7 @@ impl<'e> Session<'e> {
         }
     }
 
-    /// What is due without any packet; to be called often.
+    /// Does everything that is due without a packet. Must be called often.
     pub(crate) fn tick(&mut self, now_s: f64, out: &mut Out) {
         self.ask(now_s, out);
         self.beat(now_s, out);
@@ -238,7 +239,7 @@ impl<'e> Session<'e> {
         add(&mut self.worst, verdict);
     }
 
-    /// Ends the watch and the flight that is still on. Gives the worst verdict of the flights.
+    /// Ends the watch and the current flight. Returns the worst verdict of the flights.
     pub(crate) fn finish(&mut self, out: &mut Out) -> Verdict {
         let verdict = self
             .tracked
@@ -257,13 +258,13 @@ impl<'e> Session<'e> {
             }
         }
         match (&self.worst, self.unknown_part.take()) {
-            // A flight is not GOOD where a part of it is not known.
+            // A flight is not GOOD if a part of it is unknown.
             (Verdict::Known(Level::Good | Level::Info), Some(part)) => part,
             _ => self.worst.clone(),
         }
     }
 
-    /// Whether the sender of a packet becomes the one to follow.
+    /// Considers the sender of a packet as the vehicle to follow, and returns whether it is.
     fn consider(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut Out) -> bool {
         let is_open =
             (self.tracked.as_ref()).is_none_or(|tracked| !tracked.is_proved || tracked.is_silent());
@@ -315,7 +316,9 @@ impl<'e> Session<'e> {
             let system = tracked.telemetry.system();
             out.events.push(Event::GivenUp { system });
         }
-        let telemetry = Telemetry::new(packet, vehicle.clone()).with_range(self.range);
+        let telemetry = Telemetry::new(packet, vehicle.clone())
+            .with_range(self.range)
+            .with_signals(&self.estimator.profile().signals());
         self.tracked = Some(Tracked::new(telemetry, source, now_s, self.history));
         self.candidates.clear();
         self.speech.forget();
@@ -383,9 +386,14 @@ impl<'e> Session<'e> {
         let to = tracked.address();
         let in_air = tracked.telemetry.is_in_air();
         let reported = tracked.telemetry.reported_in_air(now_s);
-        let pulses = tracked.telemetry.pulses();
+        let received = Received {
+            t_s,
+            in_air: reported,
+            pulses: tracked.telemetry.pulses(),
+            signals: tracked.telemetry.signals().collect(),
+        };
         if in_air {
-            tracked.history.push(t_s, reported, pulses);
+            tracked.history.push(received.clone());
         } else {
             tracked.history.clear();
         }
@@ -400,7 +408,7 @@ impl<'e> Session<'e> {
             });
         }
         watch.commands_s = now_s;
-        let update = watch.push(t_s, reported, &pulses);
+        let update = watch.push(&received);
         if update.risk == Err(Unknown::OutOfOrder) {
             return;
         }
@@ -409,17 +417,18 @@ impl<'e> Session<'e> {
         if in_air && !watch.is_flying {
             watch.is_flying = true;
             out.events.push(Event::TookOff { t_s });
+            watch.note_assumed(out);
         } else if !in_air {
             let verdict = watch.end_flight(End::Landed, out);
             add(&mut self.worst, verdict);
         }
         out.events.push(Event::Risk { update });
         let before = std::mem::replace(&mut watch.level, update.level);
-        // Where the level stands already, but not for a notice that was raised, that is told, too.
+        // A notice that is raised while the level is unchanged is reported, too.
         let raised = watch.raised_notice();
         let is_new = match (before, update.level) {
             (None, Some(level)) => level > Level::Good,
-            // A landing is an event of its own.
+            // A landing is a separate event.
             (Some(before), None) => before > Level::Good && update.risk != Err(Unknown::OnGround),
             (before, level) => before != level,
         };
@@ -457,13 +466,13 @@ impl<'e> Session<'e> {
         }
     }
 
-    /// How things stand, for a screen.
+    /// The current state, for a screen.
     pub(crate) fn view(&self) -> Option<View<'_>> {
         self.tracked.as_ref().map(Tracked::view)
     }
 }
 
-/// Tells the level after the one before it, and sends its text.
+/// Reports a change of level, and sends its text.
 fn tell_level(
     now_s: f64,
     to: (Version, u8),
@@ -497,13 +506,13 @@ fn tell_level(
     });
 }
 
-/// Whether an autopilot sends the values of others again as its own.
+/// Returns whether an autopilot forwards values of other senders as its own.
 fn echoes(telemetry: &Telemetry) -> bool {
     let firmware = telemetry.vehicle().firmware.as_deref();
     firmware.is_some_and(|firmware| firmware.starts_with("PX4"))
 }
 
-/// A doubt as an event.
+/// Returns a doubt as an event.
 fn told(what: Doubt, source: Source, packet: &Packet<'_>) -> Event {
     Event::Doubt {
         what,
@@ -513,7 +522,7 @@ fn told(what: Doubt, source: Source, packet: &Packet<'_>) -> Event {
     }
 }
 
-/// Keeps the graver verdict.
+/// Keeps the worse verdict.
 fn add(worst: &mut Verdict, verdict: Option<Verdict>) {
     if let Some(verdict) = verdict {
         *worst = verdict.worst(worst.clone());

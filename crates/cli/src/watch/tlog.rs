@@ -1,4 +1,4 @@
-//! `--record`: what was received, as a telemetry log.
+//! `--record`: the received packets, as a telemetry log.
 
 use std::{
     fs::File,
@@ -9,19 +9,19 @@ use std::{
 
 use crate::{failure::Failure, output};
 
-/// A telemetry log that is being written: before each packet 8 bytes with the time in microseconds since 1970, the
-/// most significant first.
+/// A telemetry log under construction. The time precedes each packet, as 8 bytes with microseconds since 1970, the most
+/// significant byte first.
 pub(crate) struct Recording {
     name: String,
-    /// `None` once it could not be written.
+    /// `None` after an error.
     file: Option<BufWriter<File>>,
-    /// The bytes added, and those of them that are surely in the file. Both end with a packet.
+    /// The number of bytes added, and the number of these that are certainly in the file. Both end with a packet.
     added: u64,
     written: u64,
 }
 
 impl Recording {
-    /// Begins one; a file of that name is not overwritten.
+    /// Creates a recording. An existing file is not overwritten.
     pub(crate) fn create(path: &Path) -> Result<Recording, Failure> {
         Ok(Recording {
             name: path.display().to_string(),
@@ -31,11 +31,11 @@ impl Recording {
         })
     }
 
-    /// Adds a packet that arrived just now.
+    /// Adds a packet that has just arrived.
     ///
     /// # Errors
     ///
-    /// What to say where it cannot be written: once, the recording ends there with its last whole packet.
+    /// A message if the file cannot be written. It is returned once; the recording ends with its last complete packet.
     pub(crate) fn add(&mut self, packet: &[u8]) -> Result<(), String> {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
         let t_us = since_1970.map_or(0, |time| time.as_micros() as u64);
@@ -47,7 +47,7 @@ impl Recording {
         result.map_err(|error| self.end(&error))
     }
 
-    /// Brings what was added to the disk: a watch may end at any moment.
+    /// Writes all buffered packets to the file: a watch may end at any moment.
     ///
     /// # Errors
     ///
@@ -61,7 +61,7 @@ impl Recording {
 
     fn end(&mut self, error: &io::Error) -> String {
         let told = format!("`{}` cannot be recorded to: {error}", self.name);
-        // What the buffer holds is given up.
+        // The buffered bytes are dropped.
         let file = self.file.take().map(|file| file.into_parts().0);
         let is_whole = file.is_some_and(|file| file.set_len(self.written).is_ok());
         match is_whole {

@@ -1,4 +1,4 @@
-//! The messages to the vehicle and its ground station.
+//! Messages to the vehicle and its ground station.
 
 use flagred::{
     flight::{Finding, Words},
@@ -15,28 +15,28 @@ use flagred_flightlog::mavlink::{
 
 use fuzzy::drawing::visible;
 
-/// The names of the values that are sent.
+/// The names of the sent values.
 pub(crate) const RISK: &str = "FR_RISK";
 pub(crate) const ELEVATED: &str = "FR_ELEV";
-/// The system id of the sender until a vehicle is found: that of a ground station.
+/// The sender's system id until a vehicle is found: that of a ground station.
 pub(crate) const NOBODY: u8 = 255;
-/// The longest text of a STATUSTEXT.
+/// Maximum length of a STATUSTEXT.
 const TEXT: usize = 50;
 
-/// The first byte of `custom_mode` in the heartbeats of a watch. The others are its age in tenths of a second: of two
-/// watches of one vehicle the older speaks.
+/// The first byte of `custom_mode` in the heartbeats of a watch. The others are its running time in tenths of a second: of two
+/// watches of one vehicle, the one with the longer running time sends the warnings.
 const WATCH: u32 = 0xf1 << 24;
 const AGE: u32 = (1 << 24) - 1;
 
-/// Numbers of messages.
+/// Message ids.
 const HEARTBEAT: u32 = 0;
 const NAMED_VALUE_FLOAT: u32 = 251;
 const STATUSTEXT: u32 = 253;
 
-/// What every text begins with.
+/// The beginning of every text.
 const PREFIX: &str = "FLAGRED: ";
 
-/// The heartbeat of an onboard computer that has been watching for so long.
+/// The heartbeat of an onboard computer that has been running for this time.
 pub(crate) fn heartbeat(age_s: f64) -> MavMessage {
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
         custom_mode: WATCH | ((age_s * 10.0) as u32).min(AGE),
@@ -48,9 +48,9 @@ pub(crate) fn heartbeat(age_s: f64) -> MavMessage {
     })
 }
 
-/// The age in a heartbeat of another watch, in seconds.
+/// The running time in a heartbeat of another watch, in seconds.
 pub(crate) fn age_of(packet: &Packet<'_>) -> Option<f64> {
-    // The message is read only where it may be one.
+    // Only messages that may be such a heartbeat are decoded.
     if packet.id != HEARTBEAT || packet.component == 1 {
         return None;
     }
@@ -63,7 +63,7 @@ pub(crate) fn age_of(packet: &Packet<'_>) -> Option<f64> {
     is_watch.then(|| f64::from(beat.custom_mode & AGE) / 10.0)
 }
 
-/// The risk that a packet of another watch, or of a program on the autopilot, reports.
+/// The risk in a packet of another watch, or of a program on the autopilot.
 pub(crate) fn risk_of(packet: &Packet<'_>) -> Option<f32> {
     if packet.id != NAMED_VALUE_FLOAT {
         return None;
@@ -74,7 +74,7 @@ pub(crate) fn risk_of(packet: &Packet<'_>) -> Option<f32> {
     (value.name.to_str() == Ok(RISK)).then_some(value.value)
 }
 
-/// What a text of a watch is about: its first word, a level in most of them.
+/// The topic of a watch's text: its first word, usually a level.
 pub(crate) fn topic_of(packet: &Packet<'_>) -> Option<String> {
     if packet.id != STATUSTEXT {
         return None;
@@ -82,7 +82,7 @@ pub(crate) fn topic_of(packet: &Packet<'_>) -> Option<String> {
     topic(&packet.message()?)
 }
 
-/// The same of a message.
+/// As [`topic_of`], for a decoded message.
 pub(crate) fn topic(message: &MavMessage) -> Option<String> {
     let MavMessage::STATUSTEXT(status) = message else {
         return None;
@@ -91,7 +91,7 @@ pub(crate) fn topic(message: &MavMessage) -> Option<String> {
     words.split_whitespace().next().map(str::to_owned)
 }
 
-/// The text about a station that slows the motor commands down.
+/// The text about a station that reduces the rate of the motor commands.
 pub(crate) fn slowed(rate_hz: f64, asker: Option<(u8, u8)>) -> String {
     match asker {
         Some((system, _)) => {
@@ -101,7 +101,7 @@ pub(crate) fn slowed(rate_hz: f64, asker: Option<(u8, u8)>) -> String {
     }
 }
 
-/// A value at a time of the vehicle's clock.
+/// A value with a time of the vehicle's clock.
 pub(crate) fn value(t_s: f64, name: &str, value: f64) -> MavMessage {
     MavMessage::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA {
         time_boot_ms: (t_s * 1e3).round() as u32,
@@ -110,7 +110,7 @@ pub(crate) fn value(t_s: f64, name: &str, value: f64) -> MavMessage {
     })
 }
 
-/// A text that ground stations show and read aloud.
+/// A text that ground stations show and read out.
 pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     let mut bytes = [0; TEXT];
     let text = visible(text);
@@ -130,9 +130,9 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     })
 }
 
-/// A change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, fighting gusts`, or where motors are
-/// near a limit `FLAGRED: WARN risk 78 %, upper limit, motor 3`, or `FLAGRED: WARN motor 3 weak: +24 %`. The finding comes with
-/// its words. Without one an alarm stands because the motors do not work as before it.
+/// The text of a change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, fighting gusts`, or if motors
+/// are near a limit `FLAGRED: WARN risk 78 %, upper limit, motor 3`, or `FLAGRED: WARN motor 3 weak: +24 %`. The finding comes with
+/// its words. Without a finding, the alarm is still on because the motors have changed since it was raised.
 pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Words)>) -> String {
     if level > Level::Good && finding.is_none() {
         return format!("{PREFIX}{level} stands: motors not as before");
@@ -170,7 +170,7 @@ pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Wor
     text
 }
 
-/// The text where the risk becomes unknown while an alarm stands.
+/// The text for a risk that becomes unknown during an alarm.
 pub(crate) fn unknown(last: Level) -> String {
     format!("{PREFIX}risk unknown, last level {last}")
 }
@@ -180,9 +180,9 @@ mod tests {
     use super::*;
     use flagred_flightlog::mavlink::{Next, Sender, Version, next_packet};
 
-    /// Names of rule sets stand in it.
+    /// The text may contain names from rule sets.
     #[test]
-    fn a_text_does_nothing_on_a_terminal_and_ends_with_a_whole_character() {
+    fn a_text_is_safe_on_a_terminal_and_ends_with_a_whole_character() {
         let MavMessage::STATUSTEXT(sent) = status(Level::Warn, "a\u{1b}[2J\u{202e}") else {
             panic!("another message");
         };

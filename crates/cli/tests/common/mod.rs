@@ -1,9 +1,9 @@
-//! What tests of commands on files share.
+//! Shared by tests of commands that read and write files.
 #![allow(clippy::unwrap_used)]
 
 use std::{path::Path, process::Command};
 
-/// Runs a command in a folder, and returns its exit code, what it prints and its errors.
+/// Runs a command in a folder, and returns its exit code, its output and its errors.
 pub(crate) fn flagred(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_flagred"))
         .current_dir(folder)
@@ -18,7 +18,7 @@ pub(crate) fn flagred(folder: &Path, arguments: &[&str]) -> (Option<i32>, String
     )
 }
 
-/// A folder with files.
+/// Creates a folder with files.
 pub(crate) fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {

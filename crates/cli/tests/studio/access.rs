@@ -1,4 +1,4 @@
-//! Who gets what: the page for its user, nothing for anybody else.
+//! Access: the page for its user, nothing for anyone else.
 
 use std::{
     fs,
@@ -16,7 +16,7 @@ use super::{
 };
 
 #[test]
-fn the_page_comes_with_its_own_policy() {
+fn the_page_has_its_own_content_security_policy() {
     let folder = folder(&[]);
     let studio = Studio::start(folder.path(), &[]);
     assert_eq!(studio.said.len(), 2, "{:?}", studio.said);
@@ -37,14 +37,14 @@ fn the_page_comes_with_its_own_policy() {
     let head = studio.ask("HEAD", "", &[], "");
     assert_eq!((head.status, head.body.as_str()), (200, ""));
     assert_eq!(head.header("content-length"), page().len().to_string());
-    // Nothing to edit.
+    // There is no file to edit.
     assert_eq!(studio.file().status, 204);
     assert_eq!(studio.save("\"x\"", "text").status, 404);
     assert_eq!(studio.interrupt(), Some(0));
 }
 
 #[test]
-fn nobody_else_gets_anything() {
+fn requests_of_others_are_refused() {
     let folder = folder(&[("rules.yaml", RULES), ("secret.txt", "secret")]);
     let studio = Studio::start(folder.path(), &["rules.yaml"]);
     let (authority, token) = (&studio.authority, &studio.token);
@@ -61,7 +61,7 @@ fn nobody_else_gets_anything() {
         request(&file, authority, &format!("Origin: {own}\r\n")).status,
         200
     );
-    // A name that another page made lead here.
+    // Another page may use a name that resolves to this machine.
     for host in [
         "evil.example",
         &format!("evil.example:{port}"),
@@ -124,13 +124,13 @@ fn nobody_else_gets_anything() {
         fs::read_to_string(folder.path().join("rules.yaml")).unwrap(),
         RULES
     );
-    // None of it made it stop.
+    // The server is still running.
     assert_eq!(studio.file().status, 200);
 }
 
-/// What is sent on the command line of the browser leads to the page once, so that who reads it there comes too late.
+/// The address in the browser's command line redirects to the page once, so that another user who reads it is too late.
 #[test]
-fn the_address_that_a_browser_is_given_works_once() {
+fn the_address_for_the_browser_works_once() {
     let folder = folder(&[]);
     let opener = folder.path().join("xdg-open");
     fs::write(
@@ -167,9 +167,9 @@ fn the_address_that_a_browser_is_given_works_once() {
     assert!(second.body.contains("opened already"), "{}", second.body);
 }
 
-/// Whoever is on the machine can connect, and send a byte now and then.
+/// Any user of the machine can connect and send single bytes slowly.
 #[test]
-fn connections_that_drip_keep_nobody_out() {
+fn slow_connections_do_not_block_others() {
     let folder = folder(&[("rules.yaml", RULES)]);
     let studio = Studio::start(folder.path(), &["rules.yaml"]);
     let start = Instant::now();
@@ -177,7 +177,7 @@ fn connections_that_drip_keep_nobody_out() {
     for i in 0..200 {
         let mut stream = TcpStream::connect(&studio.authority).unwrap();
         let head = match i % 2 {
-            // In the head, and in a body that is refused.
+            // In the head, and in the body of a refused request.
             0 => "GET / HTTP/1.1\r\n",
             _ => "PUT /wrong/api/file HTTP/1.1\r\nHost: x\r\nContent-Length: 60000000\r\n\r\n",
         };
@@ -185,7 +185,7 @@ fn connections_that_drip_keep_nobody_out() {
         dripping.push(stream);
     }
     for stream in &mut dripping {
-        // Some of them are closed by now.
+        // Some of the connections are closed by now.
         let _ = stream.write_all(b"x");
     }
     assert_eq!(studio.file().status, 200);
@@ -198,9 +198,9 @@ fn connections_that_drip_keep_nobody_out() {
     );
 }
 
-/// However it drips, a request ends.
+/// A request ends, however slowly it is sent.
 #[test]
-fn a_request_that_is_refused_is_not_listened_to_for_long() {
+fn a_refused_request_is_not_read_for_long() {
     let folder = folder(&[]);
     let studio = Studio::start(folder.path(), &[]);
     let mut stream = TcpStream::connect(&studio.authority).unwrap();

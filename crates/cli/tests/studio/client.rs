@@ -1,4 +1,4 @@
-//! A running `flagred studio`, and requests as a browser or anybody else sends them.
+//! A running `flagred studio`, and requests as a browser or another program sends them.
 
 use std::{
     fs,
@@ -13,7 +13,7 @@ use std::{
 pub(crate) const POLICY: &str = "default-src 'none'; script-src 'sha256-abc='; connect-src 'self'";
 pub(crate) const RULES: &str = "fuzzy: 1\nname: fan\n";
 
-/// What stands for the page: what is in it does not matter here.
+/// A substitute for the page, whose contents do not matter here.
 pub(crate) fn page() -> String {
     format!(
         "<!doctype html><meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\
@@ -21,7 +21,7 @@ pub(crate) fn page() -> String {
     )
 }
 
-/// A running studio that serves the page, with the arguments added.
+/// A running studio that serves the page, with additional arguments.
 pub(crate) struct Studio {
     child: Child,
     /// The host and port.
@@ -64,7 +64,7 @@ impl Studio {
         }
     }
 
-    /// Sends a request as it is, and reads the answer.
+    /// Sends a request unchanged, and reads the answer.
     pub(crate) fn send(&self, request: &str) -> Answer {
         let mut stream = TcpStream::connect(&self.authority).unwrap();
         let patience = Some(Duration::from_secs(20));
@@ -75,7 +75,7 @@ impl Studio {
         Answer::parse(&String::from_utf8(bytes).unwrap())
     }
 
-    /// Asks for a path below the token.
+    /// Requests a path below the token.
     pub(crate) fn ask(
         &self,
         method: &str,
@@ -126,7 +126,7 @@ impl Studio {
 
 impl Drop for Studio {
     fn drop(&mut self) {
-        // Neither can be told to anybody: it has ended already, or the test has failed.
+        // Errors are ignored: the process has ended already, or the test has failed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,4 +1,4 @@
-//! The file that the page edits: what is read, saved and refused.
+//! The file that the page edits: reading, saving and refusals.
 
 use std::{
     fs,
@@ -14,7 +14,7 @@ use super::{
 };
 
 #[test]
-fn the_file_is_read_and_written_as_long_as_nobody_else_writes_it() {
+fn the_file_is_written_only_if_nobody_else_changed_it() {
     let folder = folder(&[("my räder.yaml", RULES)]);
     let studio = Studio::start(folder.path(), &["my räder.yaml"]);
     assert_eq!(studio.said[1], "edits `my räder.yaml`");
@@ -38,7 +38,7 @@ fn the_file_is_read_and_written_as_long_as_nobody_else_writes_it() {
         (200, text.as_str())
     );
     assert_eq!(changed.header("etag"), saved.header("etag"));
-    // The tag of before, another's tag, none.
+    // The previous tag, a wrong one, none.
     assert_eq!(studio.save(tag, "lost").status, 412);
     assert_eq!(studio.save("*", "lost").status, 412);
     assert_eq!(studio.ask("PUT", "api/file", &[], "lost").status, 428);
@@ -66,7 +66,7 @@ fn the_file_is_read_and_written_as_long_as_nobody_else_writes_it() {
 }
 
 #[test]
-fn a_text_that_is_too_large_or_none_changes_nothing() {
+fn refused_texts_change_nothing() {
     let folder = folder(&[("rules.yaml", RULES)]);
     let studio = Studio::start(folder.path(), &["rules.yaml"]);
     let tag = studio.file().header("etag").to_owned();
@@ -103,7 +103,7 @@ fn a_text_that_is_too_large_or_none_changes_nothing() {
         fs::read_to_string(folder.path().join("rules.yaml")).unwrap(),
         RULES
     );
-    // One that says nothing keeps nobody waiting.
+    // Silent connections block no one.
     let _silent: Vec<TcpStream> = (0..8)
         .map(|_| TcpStream::connect(authority).unwrap())
         .collect();
@@ -113,7 +113,7 @@ fn a_text_that_is_too_large_or_none_changes_nothing() {
 }
 
 #[test]
-fn what_is_read_only_is_never_written() {
+fn a_read_only_file_is_never_written() {
     let folder = folder(&[("rules.yaml", RULES)]);
     let studio = Studio::start(folder.path(), &["rules.yaml", "--read-only"]);
     assert_eq!(studio.said[1], "shows `rules.yaml`, read only");
@@ -130,9 +130,9 @@ fn what_is_read_only_is_never_written() {
     );
 }
 
-/// Another name of the old file shows that the new one is another file, put in its place.
+/// A hard link to the old file shows that the new file is another one in its place.
 #[test]
-fn the_file_is_replaced_where_its_link_leads_and_keeps_its_mode() {
+fn the_target_of_a_link_is_replaced_and_keeps_its_mode() {
     let folder = folder(&[("real.yaml", RULES)]);
     let (real, old) = (
         folder.path().join("real.yaml"),
@@ -158,9 +158,9 @@ fn the_file_is_replaced_where_its_link_leads_and_keeps_its_mode() {
     assert!(names.into_iter().all(|name| !name.ends_with(".part")));
 }
 
-/// A FIFO would wait for its other end for ever, and so would whoever saves next.
+/// Opening a FIFO would wait for its other end forever, and so would the next save.
 #[test]
-fn a_file_that_becomes_something_else_is_told_at_once() {
+fn a_file_that_becomes_unreadable_is_reported_at_once() {
     let folder = folder(&[("rules.yaml", RULES)]);
     let studio = Studio::start(folder.path(), &["rules.yaml"]);
     let tag = studio.file().header("etag").to_owned();
@@ -206,7 +206,7 @@ fn a_file_in_utf_16_is_shown_and_not_rewritten() {
     assert_eq!(fs::read(folder.path().join("rules.yaml")).unwrap(), bytes);
 }
 
-/// Nothing can be written beside a file of `/proc`, whoever asks.
+/// No file can be created in a folder of `/proc`, by any user.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_file_in_a_folder_that_cannot_be_written_is_read_only_from_the_start() {

@@ -1,4 +1,4 @@
-//! `flagred studio` as a browser, another page and another user meet it.
+//! `flagred studio` as seen by a browser, another page and another user.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -14,7 +14,7 @@ use client::{RULES, page};
 use common::folder;
 
 #[test]
-fn the_page_is_written_as_one_file_and_over_no_input() {
+fn the_page_is_written_as_one_file_and_never_over_an_input() {
     let folder = folder(&[("page.html", &page())]);
     let run = |arguments: &[&str]| common::flagred(folder.path(), arguments);
     let written = run(&["studio", "--page", "page.html", "--html", "out.html"]);
@@ -42,7 +42,7 @@ fn the_page_is_written_as_one_file_and_over_no_input() {
 }
 
 #[test]
-fn what_cannot_be_served_is_told() {
+fn files_that_cannot_be_served_are_reported() {
     let folder = folder(&[
         ("page.html", &page()),
         ("other.html", "<p>"),

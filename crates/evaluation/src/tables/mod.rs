@@ -261,7 +261,7 @@ fn percent(part: usize, whole: usize, digits: usize) -> String {
     }
 }
 
-/// `0.904 [0.882, 0.919]`
+/// Formats an area with its interval: `0.904 [0.882, 0.919]`.
 fn area(area: Option<f64>, interval: Option<Interval>) -> Option<String> {
     let area = area?;
     Some(match interval {

@@ -66,7 +66,8 @@ fn number_of(header: &[HeaderLine], key: &str) -> Result<Option<f64>, ReadError>
         Ok(value) if value.is_finite() => Ok(Some(value)),
         _ => {
             let text = format!("`{key}` is `{}`, not a number", entry.value);
-            Err(problem(entry.line, text, "write it as `# key: number`"))
+            let help = "write it as `# key: number`, without a unit";
+            Err(problem(entry.line, text, help))
         }
     }
 }
@@ -88,7 +89,10 @@ pub(super) fn apply_header(
         for key in [low, high] {
             if let Some(value) = value(key)?.filter(|value| !(least..=most).contains(value)) {
                 let text = format!("`{key}` is {value}, not in {least} to {most}");
-                let help = "write the limit of the vehicle";
+                let help = match value {
+                    2.0..=100.0 if most <= 1.0 => "write a fraction: 0.15 for 15 %",
+                    _ => "write the limit of the vehicle",
+                };
                 return Err(problem(line_of(key), text, help));
             }
         }
@@ -202,7 +206,10 @@ pub(super) fn apply_header(
                 flight.rebooted_in_air_s.extend(times);
             }
             "vehicle_kind" => {
-                flight.vehicle.kind = VehicleKind::from_name(&entry.value);
+                flight.vehicle.kind = VehicleKind::from_name(&entry.value).ok_or_else(|| {
+                    let text = format!("`{}` is not a kind of vehicle", entry.value);
+                    problem(entry.line, text, VehicleKind::NAMES_HELP)
+                })?;
                 flight.vehicle.source = "header vehicle_kind".into();
             }
             _ => {}

@@ -219,6 +219,10 @@ impl Layout {
             let text = format!("there are {} motors, more than {MOST_MOTORS}", motors.len());
             return Err(problem(line, text, "name other columns otherwise"));
         }
+        if let Some((0, _)) = motors.first() {
+            let text = format!("there is a column `{stem}0`");
+            return Err(problem(line, text, "number the motors from 1 without gaps"));
+        }
         for (index, &(number, _)) in motors.iter().enumerate() {
             if number != index as u64 + 1 {
                 let text = format!(

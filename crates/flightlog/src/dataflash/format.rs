@@ -188,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fields_are_where_their_types_put_them() {
+    fn fields_have_the_offsets_of_their_types() {
         let format = Format::new(200, 3 + 8 + 2 + 4, "TEST", "QcL", "TimeUS,A,Lat");
         let mut payload = 1_500_000_u64.to_le_bytes().to_vec();
         payload.extend((-1234_i16).to_le_bytes());
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_definition_shorter_than_its_fields_is_none() {
+    fn a_definition_shorter_than_its_fields_is_refused() {
         let mut payload = vec![200, 12];
         for (text, width) in [("TEST", 4), ("QQ", 16), ("TimeUS,A", 64)] {
             payload.extend(text.bytes().chain(std::iter::repeat(0)).take(width));

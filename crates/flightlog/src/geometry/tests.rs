@@ -133,7 +133,7 @@ fn four_motors_are_assumed_to_be_numbered_as_usual() {
 }
 
 #[test]
-fn a_declared_layout_that_the_commands_contradict_is_told() {
+fn a_declared_layout_that_the_commands_contradict_is_reported() {
     for (declared, flown, doubted) in [
         ("OCTAQUAD/X", "OCTAQUAD/X", false),
         ("OCTA/X", "OCTAQUAD/X", true),
@@ -156,7 +156,7 @@ fn a_declared_layout_that_the_commands_contradict_is_told() {
 }
 
 #[test]
-fn a_motor_that_stops_is_no_sign_of_another_layout() {
+fn a_motor_that_stops_does_not_suggest_another_layout() {
     let mut log = Vec::new();
     flight("# frame: HEXA/X\n", &mixer("HEXA/X"))
         .write_csv(&mut log)
@@ -223,7 +223,7 @@ fn a_written_geometry_is_read_back() {
 }
 
 #[test]
-fn parameters_of_either_autopilot_tell_the_layout() {
+fn parameters_of_both_autopilots_determine_the_layout() {
     use super::Declared;
     let of = |declared: &Declared, motors: u16| {
         let motors = crate::ardupilot::numbered_motors(motors, |n| n.to_string(), "test");

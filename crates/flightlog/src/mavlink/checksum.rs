@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_check_value_of_the_algorithm() {
+    fn the_checksum_has_the_check_value_of_its_algorithm() {
         // CRC-16/MCRF4XX of "123456789" is 0x6f91.
         assert_eq!(accumulate(b"12345678", b'9'), 0x6f91);
         // Eight bytes at a time give the same result as single bytes.
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn messages_are_in_order_to_be_found() {
+    fn messages_are_sorted() {
         assert!(EXTRA.is_sorted_by_key(|(id, _)| *id));
         assert_eq!(
             (extra(0), extra(253), extra(400_000)),

@@ -15,6 +15,7 @@ mod send;
 pub(crate) mod servo;
 #[cfg(feature = "mavlink")]
 mod setup;
+pub(crate) mod signals;
 #[cfg(feature = "mavlink")]
 mod signing;
 mod stream;

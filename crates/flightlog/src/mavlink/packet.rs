@@ -196,7 +196,7 @@ mod tests {
     ];
 
     #[test]
-    fn a_heartbeat_is_sound_and_a_damaged_one_is_not() {
+    fn a_heartbeat_is_valid_and_a_damaged_one_is_not() {
         let packet = Packet::at(&HEARTBEAT).unwrap();
         assert_eq!((packet.system, packet.component, packet.id), (1, 1, 0));
         assert_eq!((packet.bytes.len(), packet.sound), (17, Some(true)));
@@ -248,7 +248,7 @@ mod round_trips {
     }
 
     #[test]
-    fn one_wrong_bit_is_no_packet() {
+    fn one_wrong_bit_invalidates_a_packet() {
         for version in [Version::V1, Version::V2] {
             let bytes = risk(version);
             for bit in 0..bytes.len() * 8 {
@@ -263,7 +263,7 @@ mod round_trips {
     }
 
     #[test]
-    fn a_part_of_a_packet_asks_for_more() {
+    fn a_partial_packet_requires_more_bytes() {
         let bytes = risk(Version::V2);
         for end in 0..bytes.len() {
             assert_eq!(next_packet(&bytes[..end]), Next::More, "{end} bytes");
@@ -273,7 +273,7 @@ mod round_trips {
     proptest! {
         /// With any input, every step consumes at least one byte or needs more, and never panics.
         #[test]
-        fn any_bytes_are_taken(bytes in prop::collection::vec(prop_oneof![Just(0xfd), Just(0xfe), any::<u8>()], 0..600)) {
+        fn any_bytes_are_accepted(bytes in prop::collection::vec(prop_oneof![Just(0xfd), Just(0xfe), any::<u8>()], 0..600)) {
             let mut at = 0;
             loop {
                 match next_packet(&bytes[at..]) {

@@ -16,13 +16,20 @@ use super::{
 /// The requested rate of motor commands in Hz, for which the shipped profiles are calibrated.
 pub const MOTOR_RATE_HZ: f64 = 25.0;
 
-/// The requested rate of each message in [`RATED`], in Hz: motor commands, attitude and the landed state.
-const RATES_HZ: [f64; RATED.len()] = [MOTOR_RATE_HZ, 4.0, 4.0];
+/// The requested rate of each message in [`RATED`], in Hz.
+const RATES_HZ: [f64; RATED.len()] = [MOTOR_RATE_HZ, 4.0, 4.0, 2.0, 2.0, 4.0, 4.0, 4.0, 2.0, 2.0];
 /// The old message groups (streams) that contain them.
 const STREAMS: [MavDataStream; RATED.len()] = [
     MavDataStream::MAV_DATA_STREAM_RC_CHANNELS,
     MavDataStream::MAV_DATA_STREAM_EXTRA1,
     MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
+    MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
+    MavDataStream::MAV_DATA_STREAM_EXTRA3,
+    MavDataStream::MAV_DATA_STREAM_POSITION,
+    MavDataStream::MAV_DATA_STREAM_EXTRA2,
+    MavDataStream::MAV_DATA_STREAM_EXTRA3,
+    MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
+    MavDataStream::MAV_DATA_STREAM_RC_CHANNELS,
 ];
 /// The time to listen before the first request, in seconds. Rates apply to the whole link, and another station that
 /// shares it may have requested higher ones.
@@ -137,7 +144,8 @@ impl Requests {
             let arrives = 1.0 - lost_share.clamp(0.0, MOST_LOST);
             let rate_hz = |i: usize| (seen[i] - then[i]) as f64 / waited_s / arrives;
             self.slow = std::array::from_fn(|i| {
-                rate_hz(i) + outside / waited_s / arrives < share * RATES_HZ[i]
+                telemetry.wants(i)
+                    && rate_hz(i) + outside / waited_s / arrives < share * RATES_HZ[i]
             });
             self.has_been_fast |= !self.slow[0];
             self.slow_looks = if self.slow[0] { self.slow_looks + 1 } else { 0 };

@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn px4_names_its_motors_by_function_in_either_bank() {
+    fn px4_motors_are_found_by_function_in_both_banks() {
         let known = parameters(&[
             ("PWM_MAIN_FUNC1", 102.0),
             ("PWM_MAIN_FUNC2", 0.0),
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn px4_is_asked_for_functions_until_all_motors_are_found_and_then_for_their_limits() {
+    fn functions_of_px4_are_requested_until_all_motors_are_found_then_their_limits() {
         let nothing = missing(&parameters(&[]), &vehicle(4), true);
         assert!(nothing.contains(&"PWM_MAIN_FUNC16".to_owned()));
         assert!(nothing.contains(&"PWM_AUX_FUNC8".to_owned()));
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn px4_before_its_functions_has_motors_on_the_first_outputs() {
+    fn px4_without_output_functions_has_motors_on_the_first_outputs() {
         let old = parameters(&[("PWM_MIN", 1075.0), ("PWM_MAX", 1950.0)]);
         let setup = Setup::of(&old, &vehicle(4), true, None);
         assert_eq!(setup.outputs, [1, 2, 3, 4]);
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn ardupilot_has_motors_on_outputs_over_16_where_the_first_do_not_have_them_all() {
+    fn ardupilot_motors_on_outputs_over_16_are_found() {
         let mut names: Vec<(String, f64)> = (1..=16)
             .map(|n| {
                 (

@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_signed_with_the_key_is_taken_and_only_once() {
+    fn packets_are_accepted_only_if_signed_and_only_once() {
         let mut genuine = Sender::new(1).signed(Key::from_bytes(&[7; 32]).unwrap());
         let mut foreign = Sender::new(1).signed(Key::from_bytes(&[8; 32]).unwrap());
         let first = genuine.packet(Version::V2, 1, &heartbeat());
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn one_wrong_bit_is_not_genuine() {
+    fn one_wrong_bit_invalidates_a_signature() {
         let key = Key::from_bytes(&[7; 32]).unwrap();
         let packet = Sender::new(1)
             .signed(key)

@@ -5,6 +5,7 @@ use super::{
     decoder::{AUTOPILOT, Decoder, Payload, ServoOutputs, Told, filled, number},
     servo::OUTPUTS_A_PORT,
     setup::missing,
+    signals::{SPECS, Spec, spec_of},
 };
 use crate::{
     Parameter, PulseRange, Vehicle,
@@ -12,14 +13,37 @@ use crate::{
     field::Kind,
 };
 
+const SYS_STATUS: u32 = 1;
+const GPS_RAW_INT: u32 = 24;
 const ATTITUDE: u32 = 30;
+const GLOBAL_POSITION_INT: u32 = 33;
+const RC_CHANNELS: u32 = 65;
+const VFR_HUD: u32 = 74;
 const COMMAND_ACK: u32 = 77;
 /// MAV_CMD_SET_MESSAGE_INTERVAL, and the MAV_RESULT of an accepted command.
 const SET_MESSAGE_INTERVAL: f64 = 511.0;
 const ACCEPTED: f64 = 0.0;
 
-/// The messages for which a rate is requested: motor commands, attitude and the landed state.
-pub(super) const RATED: [u32; 3] = [36, ATTITUDE, 245];
+const BATTERY_STATUS: u32 = 147;
+const VIBRATION: u32 = 241;
+
+/// The messages for which a rate is requested: motor commands, attitude and the landed state; then the messages of
+/// signals, which are requested only if a signal is wanted. Messages that only one kind of autopilot has (wind, wanted
+/// angles, radio) are read but not requested, because a refusal does not name its message.
+pub(super) const RATED: [u32; 10] = [
+    36,
+    ATTITUDE,
+    245,
+    SYS_STATUS,
+    BATTERY_STATUS,
+    GLOBAL_POSITION_INT,
+    VFR_HUD,
+    VIBRATION,
+    GPS_RAW_INT,
+    RC_CHANNELS,
+];
+/// The number of messages that are always requested.
+const ALWAYS: usize = 3;
 
 /// The number of ports of SERVO_OUTPUT_RAW. The second port has ArduPilot's outputs from 17 on, and PX4's AUX outputs.
 const PORTS: usize = 2;
@@ -125,6 +149,31 @@ pub struct Telemetry {
     rate_asker: Option<(u8, u8)>,
     /// The range of motor outputs to use if the vehicle does not report it.
     given: Option<PulseRange>,
+    signals: Vec<LatestSignal>,
+}
+
+/// The latest value of a signal that is wanted.
+#[derive(Debug)]
+struct LatestSignal {
+    name: String,
+    /// The position in [`SPECS`] of the message that it came from; a later one does not replace it.
+    spec: usize,
+    /// NaN is unknown.
+    value: f64,
+}
+
+impl LatestSignal {
+    fn new(name: &str) -> LatestSignal {
+        LatestSignal {
+            name: name.to_owned(),
+            spec: SPECS.len(),
+            value: f64::NAN,
+        }
+    }
+
+    fn is_in(&self, spec: &Spec) -> bool {
+        spec.signals.iter().any(|(_, name, _)| *name == self.name)
+    }
 }
 
 impl Telemetry {
@@ -149,7 +198,16 @@ impl Telemetry {
             interval_refused: false,
             rate_asker: None,
             given: None,
+            signals: Vec::new(),
         }
+    }
+
+    /// Keeps the latest values of these signals, for [`Telemetry::signals`]. Names are those of
+    /// [`known_signals`](crate::known_signals).
+    #[must_use]
+    pub fn with_signals(self, names: &[&str]) -> Telemetry {
+        let signals = names.iter().map(|name| LatestSignal::new(name)).collect();
+        Telemetry { signals, ..self }
     }
 
     /// Uses the given range of motor outputs instead of an assumed one until the vehicle reports its own.
@@ -217,6 +275,14 @@ impl Telemetry {
         self.rate_asker
     }
 
+    /// Whether a message of [`RATED`] is needed.
+    pub(super) fn wants(&self, rated: usize) -> bool {
+        let id = RATED.get(rated);
+        let specs = || SPECS.iter().filter(|spec| Some(&spec.id) == id);
+        let is_wanted = |signal: &LatestSignal| specs().any(|spec| signal.is_in(spec));
+        rated < ALWAYS || self.signals.iter().any(is_wanted)
+    }
+
     /// Whether it refused MAV_CMD_SET_MESSAGE_INTERVAL.
     pub(super) fn interval_refused(&self) -> bool {
         self.interval_refused
@@ -263,6 +329,7 @@ impl Telemetry {
             Told::Outputs(outputs) => return self.command(&outputs, now_s),
             Told::State if packet.id == 0 => self.version = packet.version,
             Told::Nothing if packet.component == AUTOPILOT => {
+                self.keep_signals(packet.id, &payload);
                 return self.other(packet.id, &payload, now_s);
             }
             Told::State | Told::Text(_) | Told::Nothing => {}
@@ -280,6 +347,25 @@ impl Telemetry {
         let index = RATED.iter().position(|&rated| rated == id);
         if let Some(index) = index.filter(|_| !is_other_port) {
             self.seen[index] += 1;
+        }
+    }
+
+    fn keep_signals(&mut self, id: u32, payload: &Payload) {
+        if self.signals.is_empty() {
+            return;
+        }
+        let Some((index, spec)) = spec_of(id, payload).and_then(|i| Some((i, SPECS.get(i)?)))
+        else {
+            return;
+        };
+        for (from, name, _) in spec.signals {
+            let mut of_name = self.signals.iter_mut().filter(|kept| kept.name == *name);
+            if let Some(kept) = of_name.next()
+                && index <= kept.spec
+            {
+                kept.spec = index;
+                kept.value = from.value(payload).unwrap_or(f64::NAN);
+            }
         }
     }
 
@@ -359,6 +445,9 @@ impl Telemetry {
         self.interval_refused = false;
         self.rate_asker = None;
         self.last_port = 0;
+        for signal in &mut self.signals {
+            *signal = LatestSignal::new(&signal.name);
+        }
         News::Rebooted
     }
 
@@ -393,6 +482,11 @@ impl Telemetry {
     pub fn pulses(&self) -> Pulses {
         let [(first, _), (second, _)] = self.outputs;
         Pulses([first, second])
+    }
+
+    /// The latest values of the signals that [`Telemetry::with_signals`] named, in its order; NaN is unknown.
+    pub fn signals(&self) -> impl Iterator<Item = f64> {
+        self.signals.iter().map(|signal| signal.value)
     }
 
     /// The latest commands on the effective range, 0..1, one value for each motor; NaN is unknown.

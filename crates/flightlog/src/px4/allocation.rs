@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn commands_are_clipped_and_unknown_set_points_give_none() {
+    fn commands_are_clipped_and_unknown_set_points_give_no_command() {
         let allocation = Allocation::of(&parameters(&[], &QUAD)).unwrap();
         let mut commands = allocation.commands([1.0, 0.0, 0.0, -0.9]);
         let first = commands.next().unwrap();
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn other_vehicles_have_none() {
+    fn other_vehicles_have_no_allocation() {
         let collinear = QUAD.map(|[x, _, km]| [x, x, km]);
         for parameters in [
             parameters(&[("CA_AIRFRAME", 2.0)], &QUAD),

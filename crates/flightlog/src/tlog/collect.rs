@@ -1,6 +1,5 @@
 //! Converts MAVLink packets to a `Flight`.
 
-use super::signals::{SPECS, Spec};
 use super::time::VehicleTime;
 use crate::ardupilot::{self, Mode};
 use crate::clock::Latest;
@@ -8,6 +7,7 @@ use crate::geometry;
 use crate::mavlink::decoder::{AUTOPILOT, Decoder, Payload, ServoOutputs, Told, filled};
 use crate::mavlink::packet::Packet;
 use crate::mavlink::servo::OUTPUTS_A_PORT;
+use crate::mavlink::signals::{SPECS, Spec, spec_of};
 use crate::outputs::Outputs;
 use crate::signal::{Label, preferred};
 use crate::{
@@ -16,8 +16,6 @@ use crate::{
 
 /// The longest pause of telemetry while the link is lost, in seconds; a time further ahead is damage.
 const LONGEST_PAUSE_S: f64 = 3600.0;
-
-const BATTERY_STATUS: u32 = 147;
 
 pub(super) struct Collector<'o> {
     options: &'o Options,
@@ -183,10 +181,7 @@ impl Heard {
         options: &Options,
         report: &mut Report,
     ) {
-        // Only the first battery.
-        let is_other = id == BATTERY_STATUS && payload[32] != 0;
-        let index = SPECS.iter().position(|spec| spec.id == id);
-        let Some(index) = index.filter(|_| !is_other) else {
+        let Some(index) = spec_of(id, payload) else {
             return;
         };
         let spec = &SPECS[index];

@@ -3,7 +3,6 @@
 //! the time of reception since the first packet.
 
 mod collect;
-mod signals;
 mod time;
 
 use std::io;
@@ -11,6 +10,7 @@ use std::io;
 use self::collect::Collector;
 use crate::input::Input;
 use crate::mavlink::packet::{LONGEST as LONGEST_PACKET, Packet};
+use crate::mavlink::signals::SPECS;
 use crate::{Flight, Options};
 
 /// The length of a timestamp in bytes.
@@ -21,7 +21,7 @@ const STAMPS_US: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_0
 
 /// The names and units of the signals that these logs can contain.
 pub(crate) fn known_signals() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let signals = signals::SPECS.iter().flat_map(|spec| spec.signals);
+    let signals = SPECS.iter().flat_map(|spec| spec.signals);
     signals.map(|(_, name, unit)| (*name, *unit))
 }
 

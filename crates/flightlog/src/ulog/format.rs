@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn fields_stand_behind_nested_topics() {
+    fn fields_follow_nested_topics() {
         let formats = formats();
         assert_eq!(formats.logged_size("all"), Some(8 + 2 * 16 + 16 + 1));
         assert_eq!(formats.logged_size("esc"), Some(12));
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn damaged_definitions_are_none() {
+    fn damaged_definitions_are_refused() {
         let mut formats = formats();
         for text in ["no colon", "a:float", "a:float[x] b", "a:float[3 b"] {
             assert!(formats.define(text).is_err(), "{text}");

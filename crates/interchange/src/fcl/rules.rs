@@ -9,7 +9,7 @@ use super::{read::Reader, term::is_number};
 use crate::{Format, blocks, conditions::dual, draft::MOST_BLOCKS, rules, words};
 
 impl Reader<'_, '_> {
-    /// `KEY : WORD;`
+    /// Reads `KEY : WORD;`.
     pub(super) fn setting<T: Copy>(
         &mut self,
         key: &str,
@@ -77,7 +77,7 @@ impl Reader<'_, '_> {
         self.blocks.push(block);
     }
 
-    /// `1 : IF ... THEN ...;`
+    /// Reads `1 : IF ... THEN ...;`.
     pub(super) fn rule(&mut self) {
         while self.peek().is_some() && !self.is("IF") && !self.is(";") {
             self.next += 1;
@@ -98,7 +98,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The aggregation of an output; `None` if it computes its values, so that each rule is weighed.
+    /// The aggregation of an output; `None` if it computes its values, so that each rule has its own weight.
     pub(super) fn aggregation(&mut self, index: usize) -> Option<Aggregation> {
         let written = self.accumulations.get(index).copied().flatten();
         // The default is MAX; in fuzzylite's dialect it is NONE.

@@ -112,7 +112,7 @@ fn shape<'t>(
     Some((function, words.to_vec()))
 }
 
-/// `(x, y) (x, y) ...`
+/// Reads `(x, y) (x, y) ...`.
 fn points<'t>(
     draft: &mut Draft<'_>,
     words: &[&'t str],

@@ -14,7 +14,7 @@ use crate::{
 };
 
 impl<'t> Reader<'_, 't> {
-    /// `name : REAL;` up to END_VAR.
+    /// Reads `name : REAL;` up to END_VAR.
     pub(super) fn variables(&mut self, outputs: bool) {
         while !self.ends("END_VAR") {
             let statement = self.statement(&["END_VAR"]);
@@ -127,7 +127,7 @@ impl<'t> Reader<'_, 't> {
             && !self.is_fuzzylite
             && output.variable.terms.iter().all(term::is_number)
         {
-            // The centre of gravity for singletons: degrees are aggregated before they weigh the positions.
+            // The centre of gravity for singletons: degrees are aggregated before they are used as weights of the positions.
             output.defuzzifier = Defuzzifier::Centroid;
         }
         let weighted = words::is_weighted(output.defuzzifier);
@@ -148,7 +148,7 @@ impl<'t> Reader<'_, 't> {
         self.draft.spans.outputs.push(spans);
     }
 
-    /// `DEFAULT := 0;`, `DEFAULT := NC;`. Some files have `=`, and no semicolon.
+    /// Reads `DEFAULT := 0;` or `DEFAULT := NC;`. Some files use `=` and omit the semicolon.
     pub(super) fn default(&mut self, output: &mut Output, spans: &mut VariableSpans) {
         if !self.take(":=") && !self.take("=") && !self.take(":") {
             return self.unexpected("`:=`");
@@ -165,7 +165,7 @@ impl<'t> Reader<'_, 't> {
         }
     }
 
-    /// `TERM name := ...;` or `RANGE := (low .. high);`
+    /// Reads `TERM name := ...;` or `RANGE := (low .. high);`.
     pub(super) fn part(&mut self, variable: &mut Variable, spans: &mut VariableSpans) -> bool {
         if self.take("TERM") {
             let statement = self.statement(&[

@@ -97,7 +97,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         }
         let word = paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
         paper.line(format!("  METHOD : {word};"));
-        // The sum of singletons weighs each rule.
+        // The sum of singletons weights each rule separately.
         let aggregation = match computes {
             true => Aggregation::Sum,
             false => output.aggregation.unwrap_or(model.operators.aggregation),
@@ -236,7 +236,7 @@ fn function(paper: &mut Paper, term: &Term, variable: &Variable) {
     paper.note("not-in-iec", message, help);
 }
 
-/// `0.5 * food - 2 * service + 3`
+/// Writes a linear function: `0.5 * food - 2 * service + 3`.
 fn linear(coefficients: &[(String, f64)], constant: f64) -> String {
     let mut text = String::new();
     let products = coefficients
@@ -254,7 +254,7 @@ fn linear(coefficients: &[(String, f64)], constant: f64) -> String {
     text
 }
 
-/// The points without repetitions at the same position and height, which the shoulder of a triangle has.
+/// Removes repeated points at the same position and height, which the shoulder of a triangle has.
 fn edges(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut points = points.to_vec();
     points.dedup();

@@ -18,7 +18,7 @@ pub(super) struct Section<'t> {
     entries: Vec<Entry<'t>>,
 }
 
-/// `Key=value`; a line without `=` is a value without a key.
+/// A line `Key=value`; a line without `=` is a value without a key.
 struct Entry<'t> {
     key: &'t str,
     value: &'t str,
@@ -309,7 +309,7 @@ fn variable(
     Some((variable, spans))
 }
 
-/// A name that no other term of the variable has. Rules of FIS refer to terms by number, so names may be equal.
+/// Makes a name distinct from those of the variable's other terms. Rules of FIS refer to terms by number, so names may be equal there.
 fn distinct(draft: &mut Draft<'_>, variable: &Variable, name: String, spans: &TermSpans) -> String {
     let taken = |name: &str| variable.terms.iter().any(|term| term.name == name);
     if !taken(&name) {

@@ -217,7 +217,7 @@ fn shape(
     written
 }
 
-/// `1 -2, 3 (0.5) : 1`
+/// Writes a rule: `1 -2, 3 (0.5) : 1`.
 fn line(rule: &Rule, model: &Model) -> Result<String, &'static str> {
     let rule = &rule.rule;
     let condition = conditions::without_not(&rule.condition, model.operators);

@@ -29,7 +29,7 @@ enum Kind {
     Rules,
 }
 
-/// `key: value`.
+/// A line `key: value`.
 #[derive(Clone, Copy)]
 struct Entry<'t> {
     key: &'t str,
@@ -274,7 +274,7 @@ fn output(draft: &mut Draft<'_>, section: &Section<'_>, inputs: &[&str]) {
     draft.spans.outputs.push(spans);
 }
 
-/// `Centroid 100`, `WeightedAverage Automatic`.
+/// Reads `Centroid 100` or `WeightedAverage Automatic`.
 fn defuzzifier(draft: &mut Draft<'_>, written: &str, output: &mut Output) {
     let mut parts = written.split_whitespace();
     let word = parts.next().unwrap_or("");

@@ -11,7 +11,7 @@ use crate::{Format, draft::Draft, formula, shapes};
 /// Shapes with a variable number of parameters.
 const OTHERS: [&str; 5] = ["Discrete", "Constant", "Linear", "Function", "Binary"];
 
-/// `NAME Shape PARAMETER...`
+/// Reads `NAME Shape PARAMETER...`.
 pub(super) fn read(
     draft: &mut Draft<'_>,
     written: &str,
@@ -107,7 +107,7 @@ pub(crate) fn of_shape(
     ))
 }
 
-/// `x y x y ...`, with a height if the number of values is odd.
+/// Reads `x y x y ...`, with a height if the number of values is odd.
 fn points(numbers: &[f64]) -> (MembershipFunction, usize) {
     let pairs = numbers.chunks_exact(2).map(|pair| (pair[0], pair[1]));
     let points: Vec<(f64, f64)> = pairs.collect();

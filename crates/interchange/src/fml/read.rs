@@ -291,7 +291,7 @@ impl Reader<'_> {
         self.computed(node, output, spans);
     }
 
-    /// Adds an output that weighs a value for each rule.
+    /// Adds an output that computes a value for each rule.
     fn computed(&mut self, node: Node<'_, '_>, mut output: Output, spans: VariableSpans) {
         if let Some(value) = self.number(node, "defaultValue") {
             output.when_no_rule_fires = NoRuleFires::Value(value);
@@ -462,7 +462,7 @@ impl Reader<'_> {
         })
     }
 
-    /// `<clause modifier="very"><variable>food</variable><term>rancid</term></clause>`
+    /// Reads `<clause modifier="very"><variable>food</variable><term>rancid</term></clause>`.
     fn clause(&mut self, node: Node<'_, '_>) -> Option<Proposition> {
         let part = tag(self.draft.text, node);
         let span = self.draft.span(part);

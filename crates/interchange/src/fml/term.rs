@@ -117,7 +117,7 @@ fn function(
             right: d,
         },
         "gaussianShape" => To::Gaussian { mean: a, sd: b },
-        // 1 on one side of the mean: a plateau to the end of the range.
+        // The degree is 1 on one side of the mean: a plateau to the end of the range.
         "leftGaussianShape" | "rightGaussianShape" => To::Gaussian2 {
             left_mean: if rising { a } else { low.min(a) },
             left_sd: b,
@@ -128,7 +128,7 @@ fn function(
         "leftLinearShape" | "rightLinearShape" => To::LeftShoulder { top: a, foot: b },
         "rectangularShape" => To::Rectangle { left: a, right: b },
         "singletonShape" => To::Singleton { at: a },
-        // Rises from `a` to 1 at `b`, and falls over the same width.
+        // The degree rises from `a` to 1 at `b`, and falls over the same width.
         "piShape" => To::PiShape {
             left: a,
             left_top: b,

@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_heap_of_rows_is_a_cluster() {
+    fn each_group_of_rows_is_a_cluster() {
         let mut random = Rng::with_seed(7);
         let heaps = [(1.0, 10.0), (5.0, 60.0), (9.0, 20.0)];
         let mut data = Data {
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn no_more_clusters_than_asked_for() {
+    fn the_number_of_clusters_is_bounded() {
         let data = Data {
             inputs: vec![(0..50).map(f64::from).collect()],
             truths: (0..50).map(|x| f64::from(x % 7)).collect(),

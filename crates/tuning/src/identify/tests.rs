@@ -89,7 +89,7 @@ fn named_inputs_are_used_and_unknown_ones_refused() {
 }
 
 #[test]
-fn noise_alone_makes_no_model() {
+fn noise_gives_no_model() {
     let (names, data) = rows(300, |_, _| 0.0);
     let (_, mut constant) = rows(30, |_, _| 0.0);
     constant.truths.fill(4.0);
@@ -127,7 +127,7 @@ fn combinations_without_rows_have_no_rule() {
 }
 
 #[test]
-fn what_was_left_out_is_predicted_better_than_by_a_line_where_the_truth_bends() {
+fn a_curved_relation_is_predicted_better_than_by_a_line() {
     let (names, data) = rows(600, wave);
     let mut parts = Vec::new();
     let judged = judge(
@@ -162,7 +162,7 @@ fn what_was_left_out_is_predicted_better_than_by_a_line_where_the_truth_bends() 
 
 /// Compares with linear regression, by the formula for one input.
 #[test]
-fn a_straight_truth_is_no_better_predicted_than_by_a_line() {
+fn a_linear_relation_is_not_predicted_better_than_by_a_line() {
     let (names, data) = rows(400, |x, y| 2.0 * x - y + 1.0);
     let judged = judge(
         &names,

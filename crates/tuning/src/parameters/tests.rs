@@ -44,7 +44,7 @@ fn names(variable: &Variable) -> Vec<&str> {
 }
 
 #[test]
-fn zeros_are_the_model_itself() {
+fn zeros_give_the_original_model() {
     let settings = Settings {
         weights: true,
         ..Settings::default()
@@ -59,7 +59,7 @@ fn zeros_are_the_model_itself() {
 }
 
 #[test]
-fn a_vertical_edge_stays_one() {
+fn a_vertical_edge_stays_vertical() {
     let parameters = Parameters::new(&model(), &Settings::default()).unwrap();
     let moved = parameters.model(&vec![0.7; parameters.free()]);
     let MembershipFunction::Triangle { left, peak, right } =
@@ -72,7 +72,7 @@ fn a_vertical_edge_stays_one() {
 }
 
 #[test]
-fn what_is_named_moves_and_what_is_fixed_stays() {
+fn named_parameters_move_and_fixed_ones_stay() {
     let settings = Settings {
         only: vec!["heat".into(), "food.d".into()],
         fix: vec!["heat.hot".into()],
@@ -92,7 +92,7 @@ fn what_is_named_moves_and_what_is_fixed_stays() {
 }
 
 #[test]
-fn an_unknown_name_and_nothing_to_move_are_errors() {
+fn an_unknown_name_and_no_free_parameter_are_errors() {
     let of = |only: &[&str], fix: &[&str]| {
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
         let settings = Settings {

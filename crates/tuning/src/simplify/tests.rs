@@ -99,7 +99,7 @@ rules:
 }
 
 #[test]
-fn nine_rules_say_what_twenty_eight_do() {
+fn twenty_eight_rules_become_nine_with_the_same_outputs() {
     let found = simplified(&risk());
     insta::assert_snapshot!(rules(&found.model).join("\n"), @r"
     IF at_limit IS much THEN risk IS very_high
@@ -123,7 +123,7 @@ fn nine_rules_say_what_twenty_eight_do() {
 }
 
 #[test]
-fn a_run_of_terms_becomes_or_by_the_disjunction_that_fits() {
+fn adjacent_terms_become_an_or_with_a_suitable_disjunction() {
     let mut text = String::from(
         "
 fuzzy: 1
@@ -153,7 +153,7 @@ rules:
 }
 
 #[test]
-fn by_maximum_a_run_of_terms_is_an_or() {
+fn adjacent_terms_become_an_or_with_maximum() {
     let found = simplified(&table("", "slow slow slow even even fast even even fast")).model;
     assert_eq!(found.operators.or, Disjunction::Maximum);
     insta::assert_snapshot!(rules(&found).join("\n"), @r"
@@ -165,7 +165,7 @@ fn by_maximum_a_run_of_terms_is_an_or() {
 }
 
 #[test]
-fn duplicates_and_rules_that_others_say_are_dropped() {
+fn duplicate_and_redundant_rules_are_dropped() {
     let mut model = table("", "slow - - - even - - - fast");
     let wider: fuzzy::rule::Rule = "IF heat IS high THEN speed IS fast".parse().unwrap();
     let like = |rule: fuzzy::rule::Rule| fuzzy::model::Rule {
@@ -180,7 +180,7 @@ fn duplicates_and_rules_that_others_say_are_dropped() {
 }
 
 #[test]
-fn a_gap_stays_a_gap() {
+fn simplification_keeps_gaps() {
     let model = table(SUMS, "slow slow - slow slow slow slow slow slow");
     let found = simplified(&model).model;
     let engine = Engine::new(&found).unwrap();
@@ -217,7 +217,7 @@ rules:
 }
 
 #[test]
-fn rows_alone_allow_more() {
+fn points_from_rows_alone_allow_more() {
     let model = table(SUMS, "slow slow slow even even even fast fast fast");
     let settings = SimplifySettings {
         rows_only: true,
@@ -237,7 +237,7 @@ fn rows_alone_allow_more() {
 }
 
 #[test]
-fn a_list_of_which_the_first_rule_counts_keeps_its_meaning() {
+fn a_list_with_only_the_first_firing_rule_keeps_its_meaning() {
     let model = parse(
         "
 fuzzy: 1
@@ -397,7 +397,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn random_models_say_the_same_with_fewer_rules(seed in any::<u64>()) {
+    fn random_models_keep_their_outputs_with_fewer_rules(seed in any::<u64>()) {
         let model = random_model(seed);
         let found = simplified(&model);
         prop_assert!(found.model.rules.len() <= model.rules.len());

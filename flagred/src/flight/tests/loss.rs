@@ -45,7 +45,7 @@ proptest! {
     /// Whichever motors are unknown, all the time or repeatedly, a flight that fails is never rated GOOD because of
     /// that.
     #[test]
-    fn no_unknown_motor_makes_a_failed_flight_good(
+    fn an_unknown_motor_does_not_make_a_failed_flight_good(
         unknown in prop::array::uniform4(any::<bool>()),
         is_paper: bool,
         has_geometry: bool,
@@ -73,7 +73,7 @@ proptest! {
     /// Trouble that occurs only while a motor is unknown, for moments at a time, is not hidden by the known time in
     /// between.
     #[test]
-    fn moments_without_a_motor_hide_no_trouble(
+    fn moments_without_a_motor_do_not_hide_a_failure(
         motor in 0..4usize,
         (unknown_s, known_s) in (0.3..1.95f64, 0.9..4.0f64),
         once_s in 0.5..2.0f64,
@@ -100,7 +100,7 @@ proptest! {
 }
 
 #[test]
-fn motors_that_are_unknown_in_turns_are_named_as_several() {
+fn several_motors_that_are_unknown_in_turns_are_named() {
     let flown = in_trouble(&shipped::flagred(), &[], HOVER, |t_s, motors| {
         if (5.0..30.0).contains(&t_s) {
             motors[(t_s / 1.5) as usize % 4] = f64::NAN;
@@ -115,7 +115,7 @@ fn motors_that_are_unknown_in_turns_are_named_as_several() {
     );
 }
 
-/// Calm, then samples at limits without a valid time, then calm.
+/// Calm flight, then samples at limits without a valid time, then calm flight.
 fn around(odd_time_s: impl Fn(i32) -> f64) -> String {
     let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
     let mut push = |t_s: f64, motors: &[f64; 4]| {
@@ -163,7 +163,7 @@ fn samples_that_are_ignored_for_their_times_are_a_reason_for_no_verdict() {
 }
 
 #[test]
-fn a_moment_without_a_motor_changes_no_verdict() {
+fn a_moment_without_a_motor_does_not_change_the_verdict() {
     let estimator = shipped::flagred();
     let moment = |t_s: f64, motors: &mut [f64; 4]| {
         if t_s % 10.0 < 0.5 {

@@ -65,7 +65,7 @@ fn a_risk_has_the_words_of_its_input_and_its_numbers() {
 }
 
 #[test]
-fn motors_near_a_limit_are_named_with_it() {
+fn motors_near_a_limit_are_named_with_the_limit() {
     let mut finding = by("at_limit", "much", 0.5);
     finding.found.motor = motor(3, None, Side::Upper);
     let words = finding.words(&shipped::flagred());
@@ -86,7 +86,7 @@ fn another_risk_is_named() {
 }
 
 #[test]
-fn a_motor_is_named_as_it_is_known() {
+fn words_name_the_motor_and_its_direction() {
     let estimator = shipped::flagred();
     let mut weak = finding(Measure::WeakMotor, 23.7);
     weak.found.motor = motor(3, Some(8), Side::Upper);
@@ -105,7 +105,7 @@ fn a_motor_is_named_as_it_is_known() {
 }
 
 #[test]
-fn no_number_is_left_out() {
+fn findings_contain_all_numbers() {
     let estimator = shipped::flagred();
     for measure in Measure::ALL {
         let mut finding = finding(measure, 50.0);
@@ -122,7 +122,7 @@ fn no_number_is_left_out() {
     }
 }
 
-/// The names that an author chooses may be anything.
+/// Authors may choose any names.
 #[test]
 fn an_input_without_words_is_described_by_name_and_description() {
     let battery = shipped::flagred_battery();

@@ -13,7 +13,7 @@ fn line(places: usize) -> Knots {
 }
 
 #[test]
-fn a_gap_between_two_knots_takes_from_both() {
+fn a_gap_between_two_knots_is_interpolated() {
     let filled = |method| {
         let known = [Some(0.0), None, None, None, Some(100.0)];
         assert_eq!(distances(&line(5), &known), [0.0, 0.25, 0.5, 0.25, 0.0]);
@@ -32,7 +32,7 @@ fn a_gap_between_two_knots_takes_from_both() {
 }
 
 #[test]
-fn beyond_the_outermost_peaks_nothing_changes_but_the_distance() {
+fn beyond_the_outermost_peaks_only_the_distance_changes() {
     let text = "
 fuzzy: 1
 name: test
@@ -81,7 +81,7 @@ rules: [IF {condition} THEN y IS low]
 /// The table of the paper's ten rules at the knots, without its corner, and the filled values: computed independently
 /// with numpy from the same definitions.
 #[test]
-fn the_papers_corner_is_as_computed_elsewhere() {
+fn the_papers_corner_has_the_independently_computed_values() {
     let model = crate::shipped::flagred_paper_rules();
     let engine = Engine::new(&model).unwrap();
     for (method, expected) in [

@@ -190,7 +190,7 @@ fn input(
     })
 }
 
-/// `per: OTHER, at_least: NUMBER`.
+/// Reads `per: OTHER, at_least: NUMBER`.
 fn ratio(fields: &Fields, entry: &Entry, entries: &[Entry], found: &mut Found) -> Option<Ratio> {
     let help = "write for example `per: room, at_least: 0.02`, with an input `room` beside it";
     let per = fields.require("per", help, found);
@@ -243,7 +243,7 @@ fn signal_name<'n>(node: &'n Node, what: &str, found: &mut Found) -> Option<&'n 
 /// The signals that combine two others.
 const PAIRS: [&str; 3] = ["difference", "ratio", "product"];
 
-/// `motor_margin`, `{min: motor_margin}`, `{motor: 3, of: motor_margin}` or `{difference: [yaw_des_deg, yaw_deg]}`.
+/// Reads `motor_margin`, `{min: motor_margin}`, `{motor: 3, of: motor_margin}` or `{difference: [yaw_des_deg, yaw_deg]}`.
 fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)> {
     if !matches!(node.value, Value::Mapping(_)) {
         let name = signal_name(node, &format!("the signal of {what}"), found)?;
@@ -322,7 +322,7 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
     Some((motors, signal))
 }
 
-/// `[yaw_des_deg, yaw_deg]`.
+/// Reads `[yaw_des_deg, yaw_deg]`.
 fn pair(key: &str, node: &Node, found: &mut Found) -> Option<[String; 2]> {
     let [a, b] = node.items(&format!("`{key}`"), found)? else {
         let (what, example) = match key {

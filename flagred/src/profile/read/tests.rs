@@ -9,7 +9,7 @@ const START: &str =
     "flagred: 1\nname: test\nrules: test\ninputs:\n  margin: {mean: motor_margin}\n";
 
 #[test]
-fn what_a_profile_leaves_out_has_defaults() {
+fn missing_settings_of_a_profile_have_defaults() {
     let profile = START.parse::<Profile>().unwrap();
     assert_eq!(profile.output, "risk");
     assert_eq!(profile.inputs[0].source.window_s, WINDOW_S);
@@ -251,7 +251,7 @@ reliability:
 }
 
 #[test]
-fn all_mistakes_are_told_at_once_with_their_places() {
+fn all_mistakes_are_reported_at_once_with_their_positions() {
     let text = "flagred: 1
 name: wrong
 rules: flagred-paper
@@ -274,7 +274,7 @@ verdict: {warn: {risk: 50, until: {risk: 60}}, fail: {risk: 150}, clear_after_s:
 }
 
 #[test]
-fn mistakes_in_statistics_without_noise_and_in_notices_are_told() {
+fn mistakes_in_statistics_without_noise_and_in_notices_are_reported() {
     let text = "flagred: 1
 name: wrong
 rules: flagred
@@ -295,7 +295,7 @@ verdict:
 }
 
 #[test]
-fn mistakes_in_signals_are_told() {
+fn mistakes_in_signals_are_reported() {
     let text = "flagred: 1
 name: wrong
 rules: flagred
@@ -336,7 +336,7 @@ other_risks:
 }
 
 #[test]
-fn mistakes_in_ratios_are_told() {
+fn mistakes_in_ratios_are_reported() {
     let text = "flagred: 1
 name: wrong
 rules: flagred
@@ -355,7 +355,7 @@ inputs:
 }
 
 #[test]
-fn mistakes_in_words_and_reliability_are_told() {
+fn mistakes_in_words_and_reliability_are_reported() {
     let text = "flagred: 1
 name: wrong
 rules: flagred
@@ -378,7 +378,7 @@ reliability:
 }
 
 #[test]
-fn what_is_no_profile_says_so() {
+fn a_file_that_is_not_a_profile_is_refused() {
     for (text, expected) in [
         ("", "the file is empty"),
         ("[1, 2]", "expected a mapping"),

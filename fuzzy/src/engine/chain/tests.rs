@@ -39,7 +39,7 @@ rules:
 ";
 
 #[test]
-fn two_stages_by_hand() {
+fn two_stages_have_values_computed_by_hand() {
     let engine = engine(FAN);
     let outcomes = engine.evaluate(&[3.0]).unwrap();
     // comfort = 0.7 * 7.5 + 0.3 * 2.5 = 6, whose degree in `good` is (6 - 5) / 2.5 = 0.4
@@ -99,7 +99,7 @@ rules:
 }
 
 #[test]
-fn what_reads_an_unknown_output_is_unknown() {
+fn an_output_that_reads_an_unknown_output_is_unknown() {
     let engine = three("undefined", "{value: 0.5}");
     assert!(values(&engine, &[2.0]).iter().all(Option::is_some));
     // `b` and `c` have default values, and `c` has a rule about `x`, but the outputs they read are undefined.
@@ -117,7 +117,7 @@ fn what_reads_an_unknown_output_is_unknown() {
 }
 
 #[test]
-fn a_default_value_is_handed_over() {
+fn a_default_value_is_passed_to_the_next_stage() {
     let engine = three("{value: 1}", "undefined");
     let outcomes = engine.evaluate(&[5.0]).unwrap();
     assert_eq!(outcomes[0].state, State::Default(1.0));
@@ -125,14 +125,14 @@ fn a_default_value_is_handed_over() {
 }
 
 #[test]
-fn no_rule_of_a_read_output_can_be_an_error() {
+fn no_rule_firing_for_an_intermediate_output_can_be_an_error() {
     let error = three("error", "undefined").evaluate(&[5.0]).unwrap_err();
     let output = "a".into();
     assert_eq!(error, EvaluateError::NoRuleFired { output });
 }
 
 #[test]
-fn an_input_that_is_no_number_makes_everything_unknown() {
+fn an_input_that_is_not_a_number_makes_all_outputs_unknown() {
     let unknown = Outcome {
         state: State::InputNotFinite,
         ..Outcome::UNDEFINED
@@ -152,7 +152,7 @@ fn messages(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_circle_is_refused_with_its_path() {
+fn a_cycle_is_refused_with_its_path() {
     let text = FAN.replace(
         "IF heat IS high THEN comfort",
         "IF fan IS fast THEN comfort",

@@ -1,6 +1,6 @@
-"""Fleets: from a folder of logs, here or on object storage, to a dataset of Parquet files, on one machine or on a cluster.
+"""Fleets: from folders of logs, local or on object storage, to a dataset of Parquet files, on one machine or on a cluster.
 
-``python -m flagred.fleet assess LOGS --out DATASET`` does the same as :func:`assess`. docs/fleet.md has the tables.
+``python -m flagred.fleet assess LOGS --out DATASET`` does the same as :func:`assess`. docs/fleet.md describes the tables.
 """
 
 import sys
@@ -20,7 +20,7 @@ except ModuleNotFoundError as _error:
     if (_error.name or "").partition(".")[0] not in ("bokeh", "dask", "distributed", "duckdb", "pyarrow"):
         raise
     _missing = f"flagred.fleet needs `{_error.name}`: pip install 'flagred[fleet]'"
-    # While Python looks for the module of `-m`, this stands for its path.
+    # While Python searches the module of `-m`, this is a placeholder for its path.
     if sys.argv[:1] == ["-m"] and "flagred.fleet" in sys.orig_argv:
         print(f"error: {_missing}", file=sys.stderr)
         sys.exit(2)

@@ -24,7 +24,7 @@ MOST_REPORTS = 1000
 
 
 class Progress:
-    """One line on a terminal: logs, bytes, rate, time left, failures; in a file a line each half minute."""
+    """One line on a terminal: logs, bytes, rate, time left, failures; in a file, a line every half minute."""
 
     def __init__(self) -> None:
         self._counts = Counts(0, 0, 0, 0, 0)
@@ -34,14 +34,14 @@ class Progress:
     def planned(self, counts: Counts) -> None:
         self._counts = counts
         for error in counts.damaged:
-            print(f"warning: {error}; it is made again", file=sys.stderr)
+            print(f"warning: {error}; it is written again", file=sys.stderr)
         same = counts.listed - counts.new - counts.changed
         print(
             f"{counts.listed} logs, {_size(counts.listed_bytes)}: {counts.new} new, {counts.changed} changed, {same} done",
             file=sys.stderr,
         )
         if counts.passed_over:
-            print(f"{counts.passed_over} passed over: names that are not UTF-8, or not of files", file=sys.stderr)
+            print(f"{counts.passed_over} skipped: names that are not UTF-8, or not of files", file=sys.stderr)
 
     def started(self, dashboard: str) -> None:
         print(f"dashboard: {dashboard}", file=sys.stderr)
@@ -92,25 +92,25 @@ def parser() -> argparse.ArgumentParser:
     """The arguments of the command line."""
     parser = argparse.ArgumentParser(prog="python -m flagred.fleet", description="Assess fleets of flight logs.")
     commands = parser.add_subparsers(dest="command", required=True)
-    one = commands.add_parser("assess", help="assess the logs that a dataset does not have yet")
+    one = commands.add_parser("assess", help="assess the logs that a dataset lacks")
     one.add_argument("sources", nargs="+", metavar="SOURCE", help="a folder of logs, or s3://, gs://, az://")
     one.add_argument("--out", required=True, metavar="DATASET", help="the dataset: a folder, or s3://, gs://, az://")
-    one.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://HOST:8786; without it all cores here")
-    one.add_argument("--workers", type=int, metavar="N", help="processes on this machine (one a core)")
+    one.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://HOST:8786; by default all local cores")
+    one.add_argument("--workers", type=int, metavar="N", help="processes on this machine (one per core)")
     one.add_argument("--profile", default="flagred", metavar="NAME|FILE", help="profile: a shipped one or a file (flagred)")
-    one.add_argument("--step-s", type=float, default=1.0, metavar="S", help="how far apart the steps are, in seconds (1)")
+    one.add_argument("--step-s", type=float, default=1.0, metavar="S", help="interval of the steps, in seconds (1)")
     one.add_argument("--recursive", action="store_true", help="read the folders below too")
     one.add_argument("--include", action="append", metavar="PATTERN", help="names of logs, such as '*.BIN' (all formats)")
-    one.add_argument("--compare-content", action="store_true", help="read every log: one with the content of before is the same")
-    one.add_argument("--dry-run", action="store_true", help="count what is to do, and write nothing")
+    one.add_argument("--compare-content", action="store_true", help="read every log, and skip those with unchanged content")
+    one.add_argument("--dry-run", action="store_true", help="count the logs to assess, and write nothing")
     one = commands.add_parser("report", help="write a page about a dataset")
     one.add_argument("dataset", metavar="DATASET")
     one.add_argument("-o", "--out", required=True, metavar="FILE", help="the page, such as fleet.html")
-    one.add_argument("--alert", nargs="?", type=float, const=0.0, metavar="PCT", help="exit with 1 if the risk rose for sure, by more than so many percentage points (0)")
+    one.add_argument("--alert", nargs="?", type=float, const=0.0, metavar="PCT", help="exit with 1 if the risk rose significantly, by more than this many percentage points (0)")
     one.add_argument("--alert-json", metavar="FILE", help="write changes and alerts as JSON; - for standard output")
     one.add_argument("--alert-command", metavar="COMMAND", help="a command to run for new alerts, with the JSON on its standard input")
     one.add_argument("--names", metavar="FILE", help="a CSV file of vehicles: vehicle (or serial, id), name, site, pilot")
-    one.add_argument("--only", action="append", type=_filter, metavar="KEY=VALUE", help="keep these vehicles: vehicle=, site= or pilot=")
+    one.add_argument("--only", action="append", type=_filter, metavar="KEY=VALUE", help="select vehicles: vehicle=, site= or pilot=")
     one.add_argument("--parts", metavar="FILE", help="a CSV file of changed parts: vehicle, day, part")
     one.add_argument("--reports", type=_worst, default=0, metavar="worst:N", help="write the reports of the N worst flights")
     one = commands.add_parser("compact", help="join the small files of a dataset")
@@ -119,7 +119,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs a command. Returns its exit code: 0, 1 for an alert, 2 if it failed, 3 if a file of the dataset is damaged."""
+    """Runs a command. Returns its exit code: 0, 1 for an alert, 2 for a failure, 3 if a file of the dataset is damaged."""
     given = parser().parse_args(arguments)
     try:
         return COMMANDS[given.command](given)
@@ -129,7 +129,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"  help: {error.help}", file=sys.stderr)
         return 3 if isinstance(error, DamagedError) else 2
     except KeyboardInterrupt:
-        print("\nstopped: the same command goes on from here", file=sys.stderr)
+        print("\nstopped: run the same command again to continue", file=sys.stderr)
         return 2
 
 
@@ -150,7 +150,7 @@ def _assess(given: argparse.Namespace) -> int:
     )
     if done.assessed:
         progress.end()
-    print(f"{done.assessed} logs read, {done.unchanged} of them as before, {done.not_assessed} not assessed")
+    print(f"{done.assessed} logs read, {done.unchanged} of them unchanged, {done.not_assessed} not assessed")
     return 0
 
 
@@ -196,7 +196,7 @@ def _filter(text: str) -> tuple[str, str]:
 
 
 def _compact(given: argparse.Namespace) -> int:
-    print(f"{compact(given.dataset)} files less")
+    print(f"{compact(given.dataset)} fewer files")
     return 0
 
 

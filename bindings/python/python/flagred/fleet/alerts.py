@@ -1,4 +1,4 @@
-"""Alerts: changes in words, as a JSON document, and passed to a command that sends them."""
+"""Alerts: descriptions of changes, as text, as a JSON document, and passed to a command that sends them."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ OF = {"risk_mean_pct": "mean risk", "risk_max_pct": "highest risk of a flight", 
 
 
 def alerts(changes: Sequence[Change], least_pct: float) -> list[Change]:
-    """The changes for the worse whose whole interval is above a limit, in per cent."""
+    """The changes for the worse whose whole interval is above a limit, in percent."""
     return [change for change in changes if change.low_pct > least_pct]
 
 
 def key(change: Change) -> str:
-    """Identifies a change in the next run, which may date it a little otherwise."""
+    """Identifies a change in the next run, which may date it slightly differently."""
     who = "fleet" if change.is_fleet else change.vehicles[0]
     return f"{who}: {change.kind} {change.cause or ('of a week' if change.is_fleet else '')}".strip()
 
 
 def sentence(change: Change) -> str:
-    """The change in words."""
+    """The description of the change."""
     day = _day(change.since_s)
     rises = "rose" if change.change_pct > 0 else "fell"
     by = f"{abs(change.change_pct):.1f} percentage points ({_range(change)})"
@@ -58,7 +58,7 @@ def sentence(change: Change) -> str:
 
 
 def advice(change: Change) -> str:
-    """What to do about it."""
+    """What to do about the change."""
     if change.change_pct <= 0:
         return "Nothing to do."
     if change.kind == "slope":
@@ -90,7 +90,7 @@ def to_json(change: Change, is_new: bool) -> dict[str, Any]:
 
 
 def run_command(command: str, document: dict[str, Any]) -> None:
-    """Runs a command of the shell with the document on its standard input.
+    """Runs a shell command with the document on its standard input.
 
     Raises
     ------

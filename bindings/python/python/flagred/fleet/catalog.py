@@ -1,7 +1,7 @@
-"""What a dataset holds beside what the sources list: what is missing, changed, twice there or gone.
+"""The differences between a dataset and the listed sources: missing, changed, duplicate and deleted logs.
 
-The catalog is a database in a temporary file, so that a fleet of millions takes little memory. The dataset is the truth: every
-run makes its catalog anew from the ``flights`` files.
+The catalog is a database in a temporary file, so that a fleet of millions uses little memory. The dataset is
+authoritative: every run creates its catalog anew from the ``flights`` files.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ READERS = 4
 
 @dataclass(frozen=True)
 class Counts:
-    """How many logs are listed, and what is to do."""
+    """The number of listed logs, and of logs to process."""
 
     listed: int
     listed_bytes: int
@@ -45,13 +45,13 @@ class Counts:
     changed: int
     todo_bytes: int
     passed_over: int = 0
-    """Names of logs that are not those of files."""
+    """Names with the pattern of logs that are not files."""
     damaged: tuple[DamagedError, ...] = ()
-    """Files of the dataset that are damaged, and that the run makes again."""
+    """Damaged files of the dataset, which the run replaces."""
 
 
 class Catalog:
-    """The dataset and the listing, side by side."""
+    """The dataset and the listing, for comparison."""
 
     def __init__(self, settings: str, compare_content: bool = False) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="flagred-fleet-")
@@ -68,13 +68,13 @@ class Catalog:
         self._folder.cleanup()
 
     def take_in(self, source: Place, logs: Iterable[Log]) -> None:
-        """Takes in the logs of a source."""
+        """Adds the logs of a source."""
         rows = ((source.shown(log.path), source.uri, log.path, log.bytes, log.modified_us, log.identity) for log in logs)
         with self._transaction():
             self._db.executemany("INSERT OR IGNORE INTO listed VALUES(?,?,?,?,?,?)", rows)
 
     def load(self, out: Place) -> None:
-        """Takes in the flights of the dataset; called again, what changed since."""
+        """Adds the flights of the dataset; later calls add the changes since then."""
         now = {info.path: f"{info.size}-{info.mtime_ns}" for info in out.files("flights", ".parquet")}
         known = dict(self._db.execute("SELECT name, stamp FROM file"))
         changed = [path for path, stamp in now.items() if known.get(path) != stamp]
@@ -91,10 +91,10 @@ class Catalog:
                         self._torn[path] = torn
 
     def damaged(self, out: Place) -> dict[str, DamagedError]:
-        """The files of ``flights`` that were taken in and whose steps or findings are torn or missing.
+        """The loaded files of ``flights`` whose steps or findings are damaged or missing.
 
-        A flight with a risk has steps. Flights whose log has another row do not count: they may be half removed, since that begins with
-        steps and findings.
+        A flight with a risk has steps. Flights whose log has another row are ignored: they may be partly removed, since
+        removal begins with steps and findings.
         """
         query = """
         SELECT DISTINCT n.name, a.kind FROM absent a JOIN file n ON n.id = a.file JOIN flight f USING(file)
@@ -105,19 +105,19 @@ class Catalog:
         return missing | self._torn
 
     def unlisted(self, path: str) -> list[str]:
-        """The logs of a file of ``flights`` that are not listed."""
+        """The logs in a file of ``flights`` that are not listed."""
         query = "SELECT log FROM flight WHERE file = (SELECT id FROM file WHERE name = ?) AND log NOT IN (SELECT log FROM listed)"
         return [log for (log,) in self._db.execute(query, (path,))]
 
     def forget(self, path: str) -> None:
-        """Lets go of the flights of a file."""
+        """Removes the flights of a file from the catalog."""
         self._torn.pop(path, None)
         self._db.execute("DELETE FROM absent WHERE file = (SELECT id FROM file WHERE name = ?)", (path,))
         self._db.execute("DELETE FROM flight WHERE file = (SELECT id FROM file WHERE name = ?)", (path,))
         self._db.execute("DELETE FROM file WHERE name = ?", (path,))
 
     def counts(self) -> Counts:
-        """How much is listed and to do."""
+        """Counts the listed logs and those to process."""
         listed, size = self._one("SELECT count(*), coalesce(sum(bytes), 0) FROM listed")
         todo = f"SELECT l.bytes, EXISTS(SELECT 1 FROM flight f WHERE f.log = l.log) AS known FROM listed l WHERE {TODO}"
         new, changed, todo_bytes = self._one(
@@ -126,16 +126,17 @@ class Catalog:
         return Counts(listed, size, new, changed, todo_bytes)
 
     def todo(self) -> Iterator[tuple[str, Log]]:
-        """The logs to assess with their sources, in their order."""
+        """The logs to assess with their sources, in order."""
         hash = "SELECT max(f.sha256) FROM flight f WHERE f.log = l.log AND f.settings = :settings AND f.status <> 'unavailable'"
         query = f"SELECT source, path, bytes, modified_us, ({hash}) FROM listed l WHERE {TODO} ORDER BY source, l.log"
         for source, path, size, modified_us, sha256 in self._db.execute(query, self._settings):
             yield source, Log(path, size, modified_us, sha256 if self._settings["compare"] else None)
 
     def doubled(self) -> Iterator[tuple[str, list[str]]]:
-        """The flights that another row replaces, by the file that they are to leave.
+        """The flights that another row replaces, by the file to remove them from.
 
-        The row of the log as it is listed stays, then that of these settings, of a log that could be read, of the latest change.
+        The row of the listed version of the log takes precedence, then a row with these settings, of a readable log, of
+        the latest change.
         """
         query = """
         WITH doubled AS (SELECT log FROM flight GROUP BY log HAVING count(*) > 1),
@@ -148,7 +149,7 @@ class Catalog:
         yield from self._by_file(query)
 
     def misjudged(self, wanted: Callable[[str], bool]) -> Iterator[tuple[str, list[str]]]:
-        """The flights whose mark as deleted is wrong, by file, of the logs that the listing would have."""
+        """The flights whose mark as deleted is wrong, by file, for logs that the listing would include."""
         self._db.create_function("wanted", 1, wanted, deterministic=True)
         query = """
         SELECT n.name, f.flight_id FROM flight f JOIN file n ON n.id = f.file LEFT JOIN listed l USING(log)
@@ -191,8 +192,8 @@ class _Transaction:
 
 
 def _rows(out: Place, path: str) -> tuple[list[tuple[Any, ...]], list[str], DamagedError | None]:
-    """The columns of a file's flights for the catalog, the tables that have no file of this name, and the error of one that is torn.
-    Compaction bounds how many flights there are in a file."""
+    """The columns of a file's flights for the catalog, the tables without a file of this name, and the error of a damaged one.
+    Compaction bounds the number of flights in a file."""
     with parquet(out, path) as file:
         version = (file.schema_arrow.metadata or {}).get(b"flagred.fleet", b"none").decode()
         if version != VERSION:

@@ -1,7 +1,7 @@
-"""Changes of the risk: of the fleet by a firmware, a part or a week, and of single vehicles, which jump once or grow riskier.
+"""Changes of the risk: of the whole fleet by a firmware, a part or a week, and of single vehicles, as a step or a trend.
 
-Each vehicle is compared with itself. P values are those of permutation tests that shuffle the days of each vehicle, adjusted for
-all tests of the fleet by the maximum statistic of Westfall and Young.
+Each vehicle is compared with itself. P values are those of permutation tests that shuffle the days of each vehicle,
+adjusted for all tests of the fleet by the maximum statistic of Westfall and Young.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from .permutation import Sum, p_values, shuffled, student
 __all__ = ["LEAST_DAYS", "LEVEL", "Change", "find_changes"]
 
 LEVEL = 0.01
-"""The probability that a fleet without any change has a change found."""
+"""The probability that a change is found in a fleet without changes."""
 FAMILIES = 3
 """Marks, weeks and vehicles are three families of tests; each gets a third of ``LEVEL``."""
 SIDE = 4
-"""The fewest days of a vehicle before and after a change."""
+"""The minimum number of days of a vehicle before and after a change."""
 LEAST_DAYS = 2 * SIDE
-"""The fewest days of a vehicle that is compared with itself."""
+"""The minimum number of days of a vehicle that is compared with itself."""
 AGREEMENT = 2 / 3
-"""The least share of vehicles that must change in the same direction for a change of the fleet."""
+"""The minimum share of vehicles that must change in the same direction for a change of the fleet."""
 MOST_WEEKS = 104
-"""The latest weeks in which a change of the whole fleet is sought."""
+"""The latest weeks that are searched for a change of the whole fleet."""
 CLEAR = 6.0
-"""The difference of the Bayesian information criterion from which on a step is told from a slope: odds of 20 to 1."""
+"""The minimum difference of the Bayesian information criterion to distinguish a step from a slope: odds of 20 to 1."""
 SHUFFLES, FEWER_SHUFFLES, MANY_DAYS = 999, 399, 50_000
 SEED = 20_260_105
 MEAN, HIGHEST, WARNED = range(len(MEASURES))
@@ -39,50 +39,51 @@ MEAN, HIGHEST, WARNED = range(len(MEASURES))
 
 @dataclass(frozen=True)
 class Change:
-    """A change of the risk that chance does not explain. Differences are between flights at equal wind and time in the air."""
+    """A change of the risk that is statistically significant. Differences are between flights at equal wind and time in the
+    air."""
 
     kind: Literal["step", "slope"]
     """A step at a time, or a steady slope."""
     is_clear: bool
     """Whether the other kind explains the days much worse."""
     cause: str | None
-    """The firmware or part that was changed then; None where nothing is known."""
+    """The firmware or part that was changed then; None if it is unknown."""
     is_fleet: bool
     """Whether it was tested on the fleet as a whole."""
     vehicles: tuple[str, ...]
-    """The vehicles that it was found in."""
+    """The vehicles in which it was found."""
     since_s: float
     """The first flight after a step, or the first of a slope, in seconds since 1970."""
     measure: str
-    """The measure that shows it best: ``risk_mean_pct``, ``risk_max_pct`` or ``warned_pct``."""
+    """The measure with the clearest change: ``risk_mean_pct``, ``risk_max_pct`` or ``warned_pct``."""
     change_pct: float
-    """By how many per cent (points) that measure changed: after a step, or in all weeks of a slope."""
+    """The change of this measure in percent (points): after a step, or over all weeks of a slope."""
     low_pct: float
     """The lower end of its 95 % interval."""
     high_pct: float
     slope_pct_week: float | None
-    """The slope, in per cent a week."""
+    """The slope, in percent per week."""
     p: float
-    """The probability of such a change in a fleet without changes, with all tests of the fleet counted."""
+    """The probability of such a change in a fleet without changes, adjusted for all tests of the fleet."""
     flights: tuple[int, int]
-    """How many flights there are before and after; of a slope 0 and all."""
+    """The numbers of flights before and after; for a slope 0 and all."""
     warned_pct: tuple[float, float]
-    """The share of flights that warned, before and after; of a slope in its first and last third."""
+    """The share of flights that warned, before and after; for a slope, in its first and last third."""
     others: tuple[float, float, float] | None
-    """How the vehicles without the cause changed at the same time, with the interval; None where too few flew."""
+    """The change of the vehicles without the cause at the same time, with the interval; None if too few flew."""
 
 
 def find_changes(connection: Any, parts: Mapping[str, Sequence[tuple[float, str]]] | None = None, level: float = LEVEL) -> list[Change]:
-    """The changes of a fleet: those of the whole fleet first, then those of vehicles, the largest rise first.
+    """Finds the changes of a fleet: those of the whole fleet first, then those of vehicles, the largest rise first.
 
     Parameters
     ----------
     connection
-        The connection that :func:`open_dataset` gave.
+        The connection returned by :func:`open_dataset`.
     parts
-        Parts that were changed: by vehicle the time in seconds since 1970 and what was changed.
+        Changed parts: for each vehicle, the times in seconds since 1970 and the parts.
     level
-        The probability that a fleet without any change has a change found.
+        The probability that a change is found in a fleet without changes.
     """
     fleet, _ = histories(connection)
     fleet = [history for history in fleet if len(history) >= LEAST_DAYS]
@@ -102,7 +103,7 @@ def find_changes(connection: Any, parts: Mapping[str, Sequence[tuple[float, str]
 
 @dataclass(frozen=True)
 class _Split:
-    """Some days of a vehicle, of which the first ``before`` are before a change."""
+    """Some days of a vehicle, of which the first ``before`` precede a change."""
 
     history: History
     begin: int
@@ -123,13 +124,13 @@ class _Split:
 
 
 Splits = dict[tuple[float, str | None], list[_Split]]
-"""By a change (its first flight after it, for weeks alone, and its name), how each vehicle is cut."""
+"""For each change (its first flight, only for weeks, and its name), the split of each vehicle."""
 
 
 def _by_mark(fleet: Sequence[History], parts: dict[str, list[tuple[float, str]]]) -> Splits:
-    """Firmware and parts of at least two vehicles, each with its days from the previous change to the next.
+    """Firmware and parts of at least two vehicles, each with the days from the previous change to the next.
 
-    The change of a single vehicle is left to the models of its risk, which distinguish a step from wear.
+    A change of a single vehicle is found by the models of its risk, which distinguish a step from wear.
     """
     splits: Splits = defaultdict(list)
     for history in fleet:
@@ -142,12 +143,12 @@ def _by_mark(fleet: Sequence[History], parts: dict[str, list[tuple[float, str]]]
 
 
 def _by_week(fleet: Sequence[History]) -> Splits:
-    """Each week, in which at least three vehicles have days on both sides."""
+    """Each week in which at least three vehicles have days on both sides."""
     if not fleet:
         return {}
     last = max(history.start_s[-1] for history in fleet)
     week_s = 7 * 86_400
-    # 1970 began on a Thursday.
+    # 1 January 1970 was a Thursday.
     monday = np.floor((last - 4 * 86_400) / week_s) * week_s + 4 * 86_400
     splits: Splits = {}
     for number in range(min(MOST_WEEKS, int((monday - min(history.start_s[0] for history in fleet)) // week_s) + 1)):
@@ -162,7 +163,7 @@ def _by_week(fleet: Sequence[History]) -> Splits:
 def _of_fleet(
     splits: Splits, fleet: Sequence[History], shuffles: int, chance: np.random.Generator, level: float
 ) -> list[tuple[Change, list[_Split]]]:
-    """The changes that are significant, with the days that show them; of weeks only the one that shows it best."""
+    """The significant changes with their days; of weeks, only the one with the clearest change."""
     if not splits:
         return []
     sums = {key: Sum(shuffles + 1, len(of)) for key, of in splits.items()}
@@ -211,7 +212,7 @@ def _step(splits: Sequence[_Split], key: tuple[float, str | None], measure: int,
 
 
 def _counts(spans: Sequence[tuple[History, int, int, int]]) -> tuple[tuple[int, int], tuple[float, float]]:
-    """Flights before and after, and the share of them that warned."""
+    """The numbers of flights before and after, and the shares of them that warned."""
     flights, shares = [], []
     for late in (0, 1):
         parts = [(of, slice(span[late], span[late + 1])) for of, *span in spans]
@@ -222,12 +223,12 @@ def _counts(spans: Sequence[tuple[History, int, int, int]]) -> tuple[tuple[int, 
 
 
 def _pooled(splits: Sequence[_Split], measure: int) -> tuple[float, float, float]:
-    """The mean difference of vehicles, after less before, with its 95 % interval: random effects, after DerSimonian and Laird."""
+    """The mean difference of vehicles, after minus before, with its 95 % interval: random effects, after DerSimonian and Laird."""
     pairs = [(split.values[: split.before, measure], split.values[split.before :, measure]) for split in splits]
     d = np.array([after.mean() - before.mean() for before, after in pairs])
     left = sum(((side - side.mean()) ** 2).sum() for pair in pairs for side in pair)
     freedom = sum(len(before) + len(after) - 2 for before, after in pairs)
-    # One variance of days for all vehicles: one that never warned has none of its own.
+    # One variance of days for all vehicles, because a vehicle that never warned has none.
     v = max(left / freedom, 1e-9) * np.array([1 / len(before) + 1 / len(after) for before, after in pairs])
     w = 1 / v
     spread = float((w * (d - (w * d).sum() / w.sum()) ** 2).sum())
@@ -239,7 +240,7 @@ def _pooled(splits: Sequence[_Split], measure: int) -> tuple[float, float, float
 
 
 def _without(fleet: Sequence[History], explained: Sequence[Sequence[_Split]]) -> list[History]:
-    """The fleet without the steps that were found, each as large as it is on the mean of its vehicles."""
+    """The fleet without the found steps, each with the mean size over its vehicles."""
     values = {history.vehicle: history.values.copy() for history in fleet}
     for splits in explained:
         rise = np.array([_pooled(splits, measure)[0] for measure in range(len(MEASURES))])
@@ -251,7 +252,7 @@ def _without(fleet: Sequence[History], explained: Sequence[Sequence[_Split]]) ->
 def _of_vehicles(
     fleet: Sequence[History], parts: dict[str, list[tuple[float, str]]], shuffles: int, chance: np.random.Generator, level: float
 ) -> list[Change]:
-    """The vehicles whose risk jumped or has a slope, each once: by the model that explains its days best."""
+    """The vehicles whose risk has a step or a slope, each once: by the model that explains its days best."""
     if not fleet:
         return []
     scores = np.stack([_vehicle_scores(history, shuffles, chance) for history in fleet])
@@ -264,8 +265,8 @@ def _of_vehicles(
 
 
 def _vehicle_scores(history: History, shuffles: int, chance: np.random.Generator) -> Reals:
-    """The best of all steps and the slope, by shuffling and measure, as standard normal scores. Only of means and highest risks:
-    a few warned flights of one vehicle are too coarse."""
+    """The best of all steps and the slope, by shuffling and measure, as standard normal scores. Only for means and highest
+    risks: a few flights of one vehicle that warned are too coarse."""
     values = history.values[:, :WARNED]
     n = len(values)
     total = shuffled(values, shuffles, chance)
@@ -273,11 +274,11 @@ def _vehicle_scores(history: History, shuffles: int, chance: np.random.Generator
     squares = np.maximum(((values - values.mean(axis=0)) ** 2).sum(axis=0), 1e-12)
     steps = (total[:, before - 1] ** 2 * (n / (before * (n - before)))[:, None]).max(axis=1)
     weeks = history.weeks - history.weeks.mean()
-    # Sums of products with the times, by parts.
+    # Sums of products with the times, for each split.
     slopes = np.einsum("rnm,n->rm", total[:, :-1], weeks[:-1] - weeks[1:]) ** 2 / (weeks**2).sum()
     explained = np.minimum(np.maximum(steps, slopes) / squares, 0.999999)
     freedom = n - 2
-    # From Student's t to a normal score, after Wallace.
+    # Converts Student's t to a normal score, after Wallace.
     scores: Reals = (8 * freedom + 1) / (8 * freedom + 3) * np.sqrt(-freedom * np.log1p(-explained))
     return scores
 
@@ -296,7 +297,7 @@ def _of_vehicle(history: History, measure: int, p: float, of: Sequence[tuple[int
 
     rows = range(SIDE, n - SIDE + 1)
     best = min(rows, key=squares)
-    # The time of a step is a parameter, but not that of a known change.
+    # The time of a step is a parameter, unlike the time of a known change.
     steps = [(criterion(squares(best), 3), best, None)] + [(criterion(squares(row), 2), row, name) for row, name in of if row in rows]
     quality, row, cause = min(steps, key=lambda step: step[0])
     of_vehicle = (history.vehicle,)

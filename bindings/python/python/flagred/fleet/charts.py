@@ -1,4 +1,4 @@
-"""Charts of the fleet's pages: values over days, in the frame that the report of a flight has."""
+"""Charts of the fleet's pages: values over days, in the style of a flight's report."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Point(NamedTuple):
     low: float
     high: float
     kind: str
-    """A class of the style sheet, which gives the colour."""
+    """A class of the style sheet, which defines the colour."""
     words: str
-    """What is shown under the pointer."""
+    """The text under the pointer."""
 
 
 class Mark(NamedTuple):
@@ -33,7 +33,7 @@ class Mark(NamedTuple):
 
 
 def chart(caption: str, points: Sequence[Point], marks: Sequence[Mark] = (), line: Sequence[tuple[float, float]] = (), large: bool = True) -> str:
-    """Points over days, each with its interval as a bar; marks, whose names only a large chart has room for; a line."""
+    """Draws points over days, each with its interval as a bar; marks, with names only in a large chart; and a line."""
     if not points:
         return ""
     first, last = min(point.at_s for point in points), max(point.at_s for point in points)

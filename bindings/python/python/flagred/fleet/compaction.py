@@ -1,4 +1,4 @@
-"""Many small files of a month made into few."""
+"""Joins many small files of a month into few."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from .takeover import check, take_over
 __all__ = ["compact"]
 
 MOST_BYTES = 64 << 20
-"""How large the steps of a file may become."""
+"""The maximum size of the steps in a file."""
 
 
 def compact(dataset: str) -> int:
-    """Joins the small files of each month. Gives how many files there are less.
+    """Joins the small files of each month. Returns by how many the number of files decreased.
 
-    Interrupted anywhere, it loses nothing: the flights that are then in two files lose one row in the next run.
+    An interruption loses nothing: the next run removes one row of flights that are then in two files.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def compact(dataset: str) -> int:
 
 
 def _parts(out: Place) -> Iterator[list[str]]:
-    """Files of ``flights`` of one month that go together into one."""
+    """Files of ``flights`` of one month that can be joined."""
     sizes = {info.path: info.size for info in out.files("steps", ".parquet")}
     sizes = {beside(out, path, "flights", "steps"): size for path, size in sizes.items()}
     paths = sorted(info.path for info in out.files("flights", ".parquet"))
@@ -68,7 +68,7 @@ def _parts(out: Place) -> Iterator[list[str]]:
 def _join(out: Place, part: list[str]) -> None:
     if len(part) < 2:
         return
-    # Names of joined files come first, and of two rows of a flight that in the first file stays.
+    # Names of joined files come first; of two rows of a flight, the one in the first file is kept.
     name = "0-" + hashlib.sha256("\n".join(part).encode()).hexdigest()[:20]
     joined = f"{part[0].rpartition('/')[0]}/{name}.parquet"
     for kind in KINDS:

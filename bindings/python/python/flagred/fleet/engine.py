@@ -1,4 +1,4 @@
-"""Dask as the engine: all cores here, or a cluster by the address of its scheduler. The one place that knows Dask."""
+"""Dask as the engine: all local cores, or a cluster with the address of its scheduler. Only this module uses Dask."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ from .takeover import Superseded
 __all__ = ["cluster", "cores", "run"]
 
 MOST_WORKER_BYTES = 2 << 30
-"""The memory of a worker here; one that takes more is ended, and its log found."""
+"""The memory limit of a local worker; one that exceeds it is killed, and its log is found."""
 TRIES = 2
-"""How often a shard may end its worker here before it is taken apart."""
+"""How often a shard may kill its local worker before it is split."""
 RETRIES = 2
-"""How often a shard is tried again whose files could not be written."""
+"""How often writing the files of a shard is tried again."""
 LONGEST_ALONE_S = 600.0
 """How long a cluster may be without workers."""
 LONGEST_RESTART_S = 30.0
-"""How long a worker here may take to start again. Dask starts none that ends while it starts."""
+"""How long a local worker may take to restart. Dask does not restart a worker that ends while it starts."""
 POLL_S = 0.05
 
 
 @contextmanager
 def cluster(scheduler: str | None, workers: int | None) -> Iterator[Client]:
-    """A client of a cluster that runs, or of one that is started here and ends with it."""
-    # Of a cluster here: how many workers a task may end, and that one that ended some time ago and starts again is not closed.
+    """A client of a running cluster, or of a local one that starts and ends with it."""
+    # For a local cluster: how many workers a task may kill, and no time-out for workers that ended and restart.
     settings = {"distributed.scheduler.allowed-failures": TRIES - 1, "distributed.deploy.lost-worker-timeout": "1d"}
     with dask.config.set(settings):
         if scheduler is not None:
@@ -65,21 +65,22 @@ def cluster(scheduler: str | None, workers: int | None) -> Iterator[Client]:
 
 
 def cores(client: Client) -> int:
-    """How many shards the cluster works on at a time; a cluster without workers counts as this machine."""
+    """The number of shards that the cluster processes at a time; a cluster without workers counts as this machine."""
     here = client.cluster
     return len(here.worker_spec) if isinstance(here, LocalCluster) else sum(client.nthreads().values()) or CPU_COUNT
 
 
 def run(client: Client, shards: Iterator[Shard], job: Job, wait: Callable[[int], None]) -> Iterator[Outcome]:
-    """What became of each shard, as it becomes known. Only some are under way at a time, however many there are.
+    """Yields the outcome of each shard when it is known. Only some shards are submitted at a time.
 
-    A shard that ends its worker again and again is halved when all others are done, and so on with the half that does, until one
-    log is left: that is written down as crashed. One shard is then under way alone, so that no other is blamed.
+    A shard that repeatedly kills its worker is split in halves after all others are done, and so is the half that still
+    does, until one log is left, which is recorded as crashed. Only one shard is then submitted at a time, so that no
+    other is blamed.
 
     Parameters
     ----------
     wait
-        Is called while nothing new is known, with the number of workers.
+        Called while there is no new outcome, with the number of workers.
 
     Raises
     ------
@@ -98,7 +99,7 @@ def run(client: Client, shards: Iterator[Shard], job: Job, wait: Callable[[int],
         if isinstance(result, Outcome):
             yield result
         elif shard.crashed:
-            raise FleetError(f"a log that is not even read ends its worker: {result}") from result
+            raise FleetError(f"a worker ended on a log that it does not read: {result}") from result
         elif len(shard.logs) == 1:
             suspects.appendleft(replace(shard, crashed=True))
         else:
@@ -108,7 +109,7 @@ def run(client: Client, shards: Iterator[Shard], job: Job, wait: Callable[[int],
 def _under_way(
     client: Client, shards: Iterator[Shard], job: Job, wait: Callable[[int], None]
 ) -> Iterator[tuple[Shard, Outcome | BaseException]]:
-    """Each shard with its outcome, or with what stopped it."""
+    """Yields each shard with its outcome, or with the error that stopped it."""
     waiting: dict[Future, Shard] = {}
     done = as_completed(loop=client.loop)
 
@@ -131,7 +132,7 @@ def _under_way(
             continue
         for future in finished:
             if future.status in ("pending", "lost"):
-                # Its worker ended before the outcome was fetched: it is made again.
+                # Its worker ended before the outcome was fetched: the shard is submitted again.
                 done.add(future)
             else:
                 yield waiting.pop(future), _result(future)
@@ -139,7 +140,7 @@ def _under_way(
 
 
 class _Attendance:
-    """How many workers there are. Those that are missing here are replaced; a cluster without any is given up."""
+    """The number of workers. Missing local workers are replaced; a cluster without any is given up."""
 
     def __init__(self, client: Client) -> None:
         self._client = client
@@ -155,7 +156,7 @@ class _Attendance:
             self._complete_s = now_s
         if now_s - self._complete_s > LONGEST_RESTART_S:
             self._complete_s = now_s
-            # One that starts is left alone: its end would be blamed on the log that it reads by then.
+            # A starting worker is not closed: its end would be blamed on the log that it reads by then.
             for name, watcher in list(here.workers.items()):
                 if not watcher.is_alive():
                     del here.workers[name]
@@ -167,11 +168,12 @@ class _Attendance:
 
 
 IN_VAIN = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM)
-"""Errors of writing that the same write meets again: a full disk, an exhausted quota, a lack of permission."""
+"""Errors of writing that would occur again: a full disk, an exhausted quota, a lack of permission."""
 
 
 def _attempt(shard: Shard, job: Job) -> Outcome | OSError:
-    """The outcome of a shard, or the error for which trying it again would read all its logs in vain: Dask retries what raises."""
+    """The outcome of a shard, or an error that a repetition would not avoid. Dask would repeat a task that raises, and read
+    all logs again."""
     try:
         return process(shard, job)
     except OSError as error:
@@ -193,10 +195,10 @@ def _result(future: Future) -> Outcome | BaseException:
     except Superseded:
         raise
     except OSError as error:
-        raise FleetError(f"the dataset cannot be written: {error}", "run the same command again when it can be") from error
-    except Exception as error:  # KilledWorker, or a fault of ours that one log brings out: the log is found.
+        raise FleetError(f"the dataset cannot be written: {error}", "make it writable, then run the same command again") from error
+    except Exception as error:  # KilledWorker, or a bug that one log triggers: the log is found.
         if not isinstance(error, KilledWorker):
-            logging.getLogger(__name__).warning("a shard failed and is taken apart: %r", error)
+            logging.getLogger(__name__).warning("a shard failed and is split: %r", error)
         return error
 
 

@@ -1,4 +1,4 @@
-"""What stops a job over a fleet."""
+"""Errors that stop a job over a fleet."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["DamagedError", "FleetError"]
 
 
 class FleetError(FlagredError):
-    """A job over a fleet cannot go on; ``help`` says what to do."""
+    """A job over a fleet cannot continue; ``help`` describes what to do."""
 
     def __init__(self, message: str, help: str | None = None) -> None:
         super().__init__(message)
@@ -23,13 +23,13 @@ class DamagedError(FleetError):
 
     @classmethod
     def of(cls, file: str, error: object) -> DamagedError:
-        """The error of a file that is damaged, by its path as a person writes it."""
+        """The error of a damaged file, by its path in readable form."""
         reason = str(error).partition("\n")[0]
         return cls(f"`{file}` is damaged: {reason}", _HELP)
 
     @classmethod
     def missing(cls, file: str) -> DamagedError:
-        """The error of a file that should be there, by its path as a person writes it."""
+        """The error of a missing file, by its path in readable form."""
         return cls(f"`{file}` is missing, but the file of the same name in `flights` refers to rows in it", _HELP)
 
 

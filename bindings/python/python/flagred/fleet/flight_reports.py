@@ -1,4 +1,4 @@
-"""The reports of the worst flights, made from their logs."""
+"""Reports of the worst flights, from their logs."""
 
 from __future__ import annotations
 
@@ -16,17 +16,18 @@ __all__ = ["write_flight_reports"]
 
 
 def write_flight_reports(files: Path, worst: Sequence[dict[str, Any]], dataset: str) -> tuple[dict[str, str], list[str]]:
-    """Writes the report of each flight, unless it is there already. Returns their files by flight, and the flights without one and why.
+    """Writes the report of each flight, unless it exists already. Returns their files by flight, and the reasons of missing
+    reports.
 
-    A log that is gone, or a profile that is a file of its own, leaves a flight without a report. Rows have no options of the storage: those
-    of the dataset are used.
+    If a log was deleted, or a profile is a separate file, the flight has no report. Rows do not contain storage options:
+    those of the dataset are used.
     """
     address, mark, options = dataset.partition("?")
     scheme = address.partition("://")[0] + "://"
     written: dict[str, str] = {}
     missing: list[str] = []
     for row in worst:
-        # Other settings or another version make another report.
+        # Other settings or another version require a new report.
         made_by = hashlib.sha256(f"{row['settings']} {row['flagred']}".encode()).hexdigest()[:8]
         name = f"flights/{row['flight_id']}-{made_by}.html"
         path = files / name

@@ -1,4 +1,4 @@
-"""The flights of each vehicle over time, as the search for changes reads them: compared at equal wind and time in the air."""
+"""The flights of each vehicle over time, for the search for changes: compared at equal wind and time in the air."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MEASURES = ("risk_mean_pct", "risk_max_pct", "warned_pct")
 """The columns of ``History.values``: mean and highest risk of a flight, and the share of flights with WARN or FAIL."""
 DAY_S = 86_400
 LEAST_DIFFERENCES = 60
-"""The fewest pairs of successive flights of a fleet that the influence of wind and time in the air is estimated from."""
+"""The minimum number of pairs of successive flights of a fleet to estimate the influence of wind and time in the air."""
 
 Reals = NDArray[np.float64]
 QUERY = """
@@ -27,17 +27,18 @@ ORDER BY vehicle, start_utc, flight_id
 
 @dataclass(frozen=True)
 class History:
-    """The days of a vehicle. Flights of one day and one firmware are one row: they share weather, site, task and often the pilot."""
+    """The days of a vehicle. Flights of one day with one firmware are one row: they share weather, site, task and often the
+    pilot."""
 
     vehicle: str
     start_s: Reals
-    """When the first flight of each row began, in seconds since 1970."""
+    """The start of the first flight of each row, in seconds since 1970."""
     values: Reals
-    """The ``MEASURES``, a row a day: means of its flights, adjusted to the mean wind and time in the air of the fleet."""
+    """The ``MEASURES``, one row per day: means of its flights, adjusted to the mean wind and time in the air of the fleet."""
     flights: NDArray[np.int64]
-    """How many flights each row stands for."""
+    """The number of flights in each row."""
     warned: NDArray[np.float64]
-    """How many of them warned."""
+    """The number of them that warned."""
     firmware: NDArray[np.object_]
 
     def __len__(self) -> int:
@@ -50,7 +51,8 @@ class History:
 
 
 def histories(connection: Any) -> tuple[list[History], bool]:
-    """The history of each vehicle, and whether it is adjusted: a small fleet has too few flights to estimate the influence of the wind."""
+    """The history of each vehicle, and whether it is adjusted: a small fleet has too few flights to estimate the influence
+    of the wind."""
     table = connection.sql(QUERY).to_arrow_table()
     if not len(table):
         return [], False
@@ -60,7 +62,8 @@ def histories(connection: Any) -> tuple[list[History], bool]:
     values = np.column_stack([columns[name] for name in MEASURES])
     influences = _influences(columns["wind_m_s"], columns["in_air_s"])
     same = vehicle[1:] == vehicle[:-1]
-    # Differences of successive flights of a vehicle: levels, trends and rare jumps of its risk do not count as influence of the wind.
+    # Differences of successive flights of a vehicle: levels, trends and rare steps of its risk do not count as influence of the
+    # wind.
     across, up = np.diff(influences, axis=0)[same], np.diff(values, axis=0)[same]
     is_adjusted = len(across) >= LEAST_DIFFERENCES
     if is_adjusted:

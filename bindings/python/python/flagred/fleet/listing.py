@@ -1,4 +1,4 @@
-"""Logs in folders of this machine: each file once, however many names and links lead to it."""
+"""Logs in local folders: each file once, regardless of the number of its names and links."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ __all__ = ["Listing"]
 
 
 class Listing:
-    """Lists the folders of a run, one after another.
+    """Lists the folders of a run in sequence.
 
-    Links to folders are not followed. A link to a file counts where that file is not listed by its own name.
+    Links to folders are not followed. A link to a file counts if the file is not listed by its own name.
 
     Parameters
     ----------
     recursive
-        Whether the folders below are listed too.
+        Whether to list the folders below too.
     wanted
         Whether a path has the name of a log.
     is_listed
-        Whether a path is that of a log in one of the folders of the run, if it exists.
+        Whether a path, if it exists, is a log in one of the folders of the run.
     """
 
     def __init__(self, recursive: bool, wanted: Callable[[str], bool], is_listed: Callable[[str], bool]) -> None:
@@ -33,10 +33,10 @@ class Listing:
         self._is_listed = is_listed
         self._linked: set[tuple[int, int]] = set()
         self.passed_over = 0
-        """Names of logs that are not logs: not UTF-8, or of a FIFO, a device, a socket or a link that leads nowhere."""
+        """Names of logs that cannot be read: not UTF-8, or of a FIFO, a device, a socket or a broken link."""
 
     def logs(self, root: str) -> Iterator[Log]:
-        """The logs in a folder, or the log of this path.
+        """The logs in a folder, or the log with this path.
 
         Raises
         ------
@@ -76,7 +76,7 @@ class Listing:
             try:
                 found = os.stat(entry.path)
             except FileNotFoundError:
-                # A link that leads nowhere; a file that is gone by now is none of this run.
+                # A broken link is counted; a file that was deleted meanwhile is ignored.
                 self.passed_over += entry.is_symlink()
                 continue
             if stat.S_ISDIR(found.st_mode):
@@ -103,7 +103,7 @@ class Listing:
 
 
 def _is_utf8(name: str) -> bool:
-    """Whether a name is text: other bytes are surrogates in it."""
+    """Whether a name is valid UTF-8: other bytes are surrogates in it."""
     try:
         name.encode()
     except UnicodeEncodeError:

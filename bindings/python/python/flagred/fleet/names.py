@@ -1,4 +1,4 @@
-"""Names, sites and pilots of vehicles, and parts that were changed, from CSV files."""
+"""Names, sites and pilots of vehicles, and changed parts, from CSV files."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from .errors import FleetError
 __all__ = ["EMPTY", "read_names", "read_parts", "view"]
 
 KEYS = ("vehicle", "serial", "id", "vehicle_id")
-"""Headings of the column that identifies a vehicle: as the dataset names it, or its ``vehicle_id``."""
+"""Headings of the column that identifies a vehicle: by its name in the dataset, or by its ``vehicle_id``."""
 COLUMNS = ("name", "site", "pilot")
 EMPTY = pa.schema([(name, pa.string()) for name in ("vehicle", *COLUMNS)]).empty_table()
 
 
 def read_names(path: str | os.PathLike[str]) -> pa.Table:
-    """The names of a CSV file: a column `vehicle` (or `serial`, `id`), and `name`, `site`, `pilot` as far as they are there.
+    """The names in a CSV file: a column `vehicle` (or `serial`, `id`), and optionally `name`, `site`, `pilot`.
 
     Raises
     ------
     FleetError
-        The file has no column that identifies vehicles, or names one vehicle or two alike.
+        The file has no column that identifies vehicles, names a vehicle twice, or gives two vehicles the same name.
     """
     rows: dict[str, dict[str, str | None]] = {}
     owners: dict[str, str] = {}
@@ -43,12 +43,13 @@ def read_names(path: str | os.PathLike[str]) -> pa.Table:
 
 
 def read_parts(path: str | os.PathLike[str], names: pa.Table) -> dict[str, list[tuple[float, str]]]:
-    """The parts of a CSV file with the columns `vehicle`, `day` and `part`: by vehicle when each was changed, in seconds since 1970.
+    """The parts in a CSV file with the columns `vehicle`, `day` and `part`: for each vehicle the changes, in seconds since
+    1970.
 
     Raises
     ------
     FleetError
-        A column is missing, or a day is not written as 2026-03-31.
+        A column is missing, or a day is not in the form 2026-03-31.
     """
     of = dict(zip(names["vehicle"].to_pylist(), names["name"].to_pylist()))
     parts: dict[str, list[tuple[float, str]]] = defaultdict(list)
@@ -62,7 +63,7 @@ def read_parts(path: str | os.PathLike[str], names: pa.Table) -> dict[str, list[
 
 
 def _rows(path: str | os.PathLike[str], required: tuple[str, ...]) -> Iterator[tuple[int, dict[str, str]]]:
-    """The lines of a CSV file with a vehicle, by lowercase headings; commas or semicolons separate."""
+    """The lines of a CSV file with a vehicle, by lowercase headings; the separators are commas or semicolons."""
     try:
         with open(path, encoding="utf-8-sig", newline="") as file:
             text = file.read()
@@ -87,7 +88,8 @@ def _at(path: str | os.PathLike[str], line: int) -> str:
 
 
 def view(connection: Any, names: str | os.PathLike[str] | None, only: Mapping[str, str]) -> None:
-    """Makes the views ``flights``, ``findings`` and ``steps`` of the stored tables, with names and for some vehicles alone."""
+    """Creates the views ``flights``, ``findings`` and ``steps`` of the stored tables, with names and only for the selected
+    vehicles."""
     for column in only:
         if column not in ("vehicle", "site", "pilot"):
             raise FleetError(f"there is no filter `{column}`", "filters are `vehicle`, `site` and `pilot`")

@@ -1,4 +1,4 @@
-"""What is new since the last report: flights, vehicles and alerts."""
+"""New flights, vehicles and alerts since the last report."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ SEEN, LAST = "seen.parquet", "last.json"
 
 @dataclass(frozen=True)
 class News:
-    """What the last report did not have. Nothing is new in a first report."""
+    """The differences from the last report. In a first report, nothing is new."""
 
     last_utc: str | None
-    """When the last report was written; None where there was none, or its files are damaged."""
+    """The time of the last report; None if there is none, or its files are damaged."""
     flights: int
     warned: int
     vehicles: list[str]
@@ -39,7 +39,7 @@ class News:
 
 
 def known_before(files: Path, connection: Any, alerts: Sequence[str]) -> News:
-    """Compares a dataset with what the last report into the same folder remembered."""
+    """Compares a dataset with the data of the last report in the same folder."""
     try:
         last = json.loads((files / LAST).read_text(encoding="utf-8"))
         seen = pq.read_table(files / SEEN)
@@ -58,7 +58,7 @@ def known_before(files: Path, connection: Any, alerts: Sequence[str]) -> News:
 
 
 def remember(files: Path, connection: Any, alerts: Sequence[str]) -> None:
-    """Writes down what a report had, for the next one."""
+    """Saves the data of a report for the next one."""
     files.mkdir(parents=True, exist_ok=True)
     seen = connection.sql("SELECT flight_id, vehicle FROM flights WHERE status = 'assessed'").to_arrow_table()
     unfinished = files / f".{SEEN}.unfinished"

@@ -1,4 +1,5 @@
-"""Permutation tests of many hypotheses at once: the days of each vehicle are shuffled, and the highest score of all counts."""
+"""Permutation tests of many hypotheses at once: the days of each vehicle are shuffled, and the highest score of all is
+compared."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ class Sum:
     """The statistic of a change over its vehicles, for the data and each shuffling."""
 
     def __init__(self, rows: int, vehicles: int) -> None:
-        # One or two of several vehicles that changed much on their own are not a change of all.
+        # If only one or two of several vehicles changed much, this is not a change of all.
         self._most = 3.0 if vehicles == 2 else 2.5
         self._rise = np.zeros((rows, len(MEASURES)))
         self._vehicles = np.zeros(len(MEASURES))
@@ -21,7 +22,7 @@ class Sum:
         self._signs: list[Reals] = []
 
     def add(self, before: Reals, values: Reals, rows: int) -> None:
-        """Adds a vehicle by its values, of which so many rows are before the change, and the sums of its centred values in these."""
+        """Adds a vehicle: its values, the number of rows before the change, and the sums of its centred values in these rows."""
         variance = rows * (len(values) - rows) / len(values) * values.var(axis=0, ddof=1)
         varies = variance > 1e-12
         rise = np.divide(-before, np.sqrt(variance), out=np.zeros_like(before), where=varies)
@@ -31,12 +32,12 @@ class Sum:
         self._signs.append(np.sign(rise[0]))
 
     def scores(self) -> Reals:
-        """The mean rise of the vehicles in its standard errors, without its sign."""
+        """The mean rise of the vehicles divided by its standard error, as an absolute value."""
         scores: Reals = np.abs(self._rise) / np.sqrt(np.maximum(self._vehicles, 1))
         return scores
 
     def agreement(self, measure: int) -> float:
-        """The share of vehicles whose risk changed in the direction of the whole."""
+        """The share of vehicles whose risk changed in the same direction as the mean."""
         signs = np.array(self._signs)[:, measure]
         return float((signs[signs != 0] == np.sign(self._rise[0, measure])).mean())
 
@@ -47,7 +48,7 @@ class Sum:
 
 
 def shuffled(values: Reals, shuffles: int, chance: np.random.Generator) -> Reals:
-    """Running sums of the centred values: as they are, and then shuffled so many times."""
+    """Running sums of the centred values: in their order, and then shuffled this many times."""
     order = np.tile(np.arange(len(values)), (shuffles + 1, 1))
     order[1:] = chance.permuted(order[1:], axis=1)
     sums: Reals = np.cumsum((values - values.mean(axis=0))[order], axis=1)
@@ -55,8 +56,8 @@ def shuffled(values: Reals, shuffles: int, chance: np.random.Generator) -> Reals
 
 
 def p_values(scores: Reals) -> Reals:
-    """P values of the data for all tests together, after Westfall and Young: how often the highest score of all tests is as high by
-    chance. Scores are by test, shuffling (the first is the data) and measure."""
+    """P values for all tests together, after Westfall and Young: how often the highest score of all tests is as high by chance.
+    Scores are indexed by test, shuffling (the first is the data) and measure."""
     highest = scores[:, 1:].max(axis=(0, 2))
     p: Reals = (1 + (highest[:, None, None] >= scores[:, 0]).sum(axis=0)) / (1 + len(highest))
     return p

@@ -1,4 +1,4 @@
-"""One shard: logs in, files of the dataset out. Any engine can call it; it knows none."""
+"""Processing of one shard: logs in, files of the dataset out. It does not depend on an engine."""
 
 from __future__ import annotations
 
@@ -20,37 +20,37 @@ from .takeover import still_ours
 __all__ = ["Outcome", "process", "write"]
 
 LEAST_LOG_BYTES = 4096
-"""About the least that the rows of a log take on the disk of the dataset."""
+"""The approximate minimum size of the rows of a log on the disk of the dataset."""
 TRIES_S = (0.5, 2.0, 8.0)
-"""How long to wait before an object is asked for again."""
+"""The delays before an object is requested again."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a shard."""
+    """The outcome of a shard."""
 
     logs: int
     bytes: int
     not_assessed: int
-    """Logs that could not be read or assessed; each has a row that says why."""
+    """Logs that could not be read or assessed; the row of each contains the reason."""
     unchanged: int
-    """Logs whose content is that of before."""
+    """Logs with unchanged content."""
 
 
 def process(shard: Shard, job: Job) -> Outcome:
-    """Assesses the logs of a shard and writes their rows: steps, findings and, last of all, flights, which are the commit.
+    """Assesses the logs of a shard and writes their rows: steps, findings and last the flights, which commit them.
 
-    Called again, it writes the same files.
+    A repeated call writes the same files.
 
     Raises
     ------
     Superseded
-        Another run writes to the dataset by now.
+        Another run writes to the dataset now.
     OSError
         The dataset cannot be written.
     """
     source, out = open_place(shard.source), open_place(job.out)
-    # A full disk is noticed before the logs are read.
+    # Detects a full disk before the logs are read.
     out.require_space(LEAST_LOG_BYTES * len(shard.logs))
     rows: dict[str | None, Rows] = {}
     unchanged = 0
@@ -69,7 +69,7 @@ def process(shard: Shard, job: Job) -> Outcome:
 
 
 def _read(source: Place, log: Log, crashed: bool, job: Job, rows: dict[str | None, Rows]) -> bool:
-    """Adds the rows of a log; false where it is the one of before, or gone by now."""
+    """Adds the rows of a log; false if it is unchanged or was deleted meanwhile."""
     row = told(source.shown(log.path), log, job)
 
     def failed(status: str, error: object) -> bool:
@@ -95,17 +95,17 @@ def _read(source: Place, log: Log, crashed: bool, job: Job, rows: dict[str | Non
     except FileNotFoundError:
         return False
     except LogError as error:
-        # Without the name of the log and what to do: causes are counted.
+        # Without the name of the log and the help, because causes are counted.
         return failed("unreadable", re.sub("^`[^`]*` ", "", str(error).partition("\n")[0]))
     except OSError as error:
         return failed("unavailable", error)
-    except Exception as error:  # One log never ends the job: whatever went wrong stands in its row.
+    except Exception as error:  # One log never ends the job: any error is recorded in its row.
         return failed("failed", f"{type(error).__name__}: {error}")
     return True
 
 
 def _fetch(source: Place, path: str) -> tuple[bytes, str | None]:
-    """A file's content and tag; a storage that is busy is asked again."""
+    """The content and tag of a file; requests to a busy storage are repeated."""
     for wait_s in TRIES_S:
         try:
             return source.read(path)

@@ -25,7 +25,7 @@ __all__ = ["QUESTIONS", "ask", "open_dataset"]
 
 @lru_cache(maxsize=1)
 def _parts() -> tuple[str, dict[str, str]]:
-    """What comes before the questions, and each by its name."""
+    """The common beginning of the questions, and each question by its name."""
     text = files(__package__).joinpath("questions.sql").read_text(encoding="utf-8")
     head, *parts = re.split(r"^-- name: ", text, flags=re.MULTILINE)
     return head, {name: sql for name, _, sql in (part.partition("\n") for part in parts)}
@@ -36,24 +36,25 @@ QUESTIONS: tuple[str, ...] = tuple(_parts()[1])
 
 
 def open_dataset(dataset: str, names: str | os.PathLike[str] | None = None, only: Mapping[str, str] | None = None) -> Any:
-    """A DuckDB connection with the views ``flights``, ``findings`` and ``steps`` of a dataset, here or on object storage.
+    """Opens a DuckDB connection with the views ``flights``, ``findings`` and ``steps`` of a dataset, local or on object
+    storage.
 
     Parameters
     ----------
     dataset
         The dataset: a folder, or an address on object storage.
     names
-        A CSV file with names, sites and pilots of vehicles: docs/fleet.md. ``vehicle`` is then the name, and ``flights`` has the
-        columns ``site`` and ``pilot``.
+        A CSV file with names, sites and pilots of vehicles: docs/fleet.md. ``vehicle`` is then the name, and ``flights``
+        has the columns ``site`` and ``pilot``.
     only
-        Keeps the flights of these vehicles, such as ``{"site": "North"}``: by ``vehicle``, ``site`` or ``pilot``.
+        The vehicles to select, such as ``{"site": "North"}``: by ``vehicle``, ``site`` or ``pilot``.
 
     Raises
     ------
     FleetError
-        There is no dataset, a file of it is damaged, or the names or the filter fit none of its vehicles.
+        There is no dataset, a file of it is damaged, or the names or the filter match none of its vehicles.
     """
-    import duckdb  # Who only assesses does without it and its memory.
+    import duckdb  # Not needed, and not loaded into memory, for assessing only.
 
     uri = absolute(dataset)
     place = open_place(uri)
@@ -65,7 +66,7 @@ def open_dataset(dataset: str, names: str | os.PathLike[str] | None = None, only
         view(connection, names, only or {})
         connection.execute(_parts()[0])
         _require_findings(connection, place)
-        # Questions name a damaged file.
+        # Errors of questions name a damaged file.
         connection.execute("SET VARIABLE flagred_dataset = ?", [uri])
     return connection
 
@@ -104,14 +105,14 @@ def _require_findings(connection: Any, place: Place) -> None:
 
 
 def _open(place: Place, path: str) -> None:
-    """Raises :class:`DamagedError` where a file is cut off."""
+    """Raises :class:`DamagedError` if a file is truncated."""
     with parquet(place, path):
         pass
 
 
 @contextmanager
 def _reading(place: Place | None) -> Iterator[None]:
-    """Raises errors of DuckDB as those of a dataset, with the name of a file that is damaged."""
+    """Converts errors of DuckDB to errors of a dataset, with the name of the damaged file."""
     import duckdb
 
     try:
@@ -120,7 +121,7 @@ def _reading(place: Place | None) -> Iterator[None]:
         named = re.search(r"['\"]([^'\"]*\.parquet)['\"]", str(error))
         if named:
             raise DamagedError.of(named[1], error) from error
-        # DuckDB does not name the file of a page that does not decode.
+        # DuckDB does not name the file of a page that cannot be decoded.
         if place:
             for info in (info for kind in KINDS for info in place.files(kind, ".parquet")):
                 with parquet(place, info.path) as file:
@@ -134,7 +135,7 @@ def ask(dataset: str | Any, question: str) -> pa.Table:
     Parameters
     ----------
     dataset
-        The dataset, or a connection that :func:`open_dataset` gave.
+        The dataset, or a connection returned by :func:`open_dataset`.
     question
         The name of the question.
     """

@@ -1,6 +1,6 @@
-"""A dataset put right after a run: one row a log, marks of deleted logs, nothing left over from what was interrupted.
+"""Repair of a dataset after a run: one row per log, marks of deleted logs, nothing left over from interruptions.
 
-Each step can be interrupted anywhere: the next run sees what is left to do.
+Each step can be interrupted anywhere: the next run completes it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ __all__ = ["redo", "repair"]
 
 
 def redo(out: Place, catalog: Catalog, dry_run: bool) -> tuple[DamagedError, ...]:
-    """Takes files whose steps or findings are torn or missing out of the dataset, so that their logs are read again. Gives their errors.
+    """Removes files with damaged or missing steps or findings from the dataset, so that their logs are read again. Returns
+    their errors.
 
     Raises
     ------
@@ -43,7 +44,7 @@ def redo(out: Place, catalog: Catalog, dry_run: bool) -> tuple[DamagedError, ...
 
 
 def repair(out: Place, catalog: Catalog, wanted: Callable[[str], bool]) -> None:
-    """Drops rows that others replace, marks logs that are gone, and sweeps what belongs to no flight.
+    """Drops replaced rows, marks deleted logs, and deletes files that do not belong to a flight.
 
     Raises
     ------
@@ -62,8 +63,8 @@ def repair(out: Place, catalog: Catalog, wanted: Callable[[str], bool]) -> None:
 
 
 def drop(out: Place, flights_path: str, flights: list[str]) -> None:
-    """Takes flights out of a file, and out of those of the same name in the other tables; out of ``flights`` last, so that what is
-    interrupted is seen again. A file that is left without rows goes, then out of ``flights`` first."""
+    """Removes flights from a file, and from the files with the same name in the other tables; from ``flights`` last, so that
+    the next run completes an interrupted removal. A file without remaining rows is deleted, from ``flights`` first."""
     gone = pa.array(flights)
     is_empty = read(out, flights_path).num_rows == len(flights)
     for kind in KINDS[::-1] if is_empty else KINDS:
@@ -83,7 +84,7 @@ def drop(out: Place, flights_path: str, flights: list[str]) -> None:
 
 
 def mark(out: Place, path: str, flights: list[str]) -> None:
-    """Turns the mark as deleted of some flights of a file."""
+    """Toggles the deletion mark of some flights of a file."""
     table = read(out, path)
     deleted = pc.xor(table["deleted"], pc.is_in(table["flight_id"], pa.array(flights)))
     at = table.schema.get_field_index("deleted")
@@ -91,7 +92,7 @@ def mark(out: Place, path: str, flights: list[str]) -> None:
 
 
 def sweep(out: Place, flights: set[str]) -> None:
-    """Deletes steps and findings that were written without their flights, and files that were not finished."""
+    """Deletes steps and findings without flights, and incomplete files."""
     for kind in KINDS[:-1]:
         for info in list(out.files(kind, ".parquet")):
             if beside(out, info.path, KINDS[-1], kind) not in flights:
@@ -103,6 +104,6 @@ def sweep(out: Place, flights: set[str]) -> None:
 
 
 def read(out: Place, path: str) -> pa.Table:
-    """The table of a file."""
+    """Reads the table of a file."""
     with parquet(out, path) as file:
         return file.read()

@@ -1,4 +1,5 @@
-"""The report of a fleet: a page that says first what to act on, with a page for each vehicle and a report for each of the worst flights."""
+"""The report of a fleet: a page that begins with what to act on, a page for each vehicle, and a report for each of the worst
+flights."""
 
 from __future__ import annotations
 
@@ -29,12 +30,12 @@ SHOWN_FLIGHTS, SHOWN_NEW, SHOWN_VEHICLES = 10, 5, 500
 
 @dataclass(frozen=True)
 class Report:
-    """What a report found."""
+    """The results of a report."""
 
     changes: list[Change]
     """All changes: those of the fleet first, the largest rise first."""
     alerts: list[Change]
-    """The rises above the limit, which an operator must act on."""
+    """The rises above the limit, which require action by an operator."""
     document: dict[str, Any]
     """The same for programs: docs/fleet.md."""
     missing_reports: list[str]
@@ -52,7 +53,7 @@ def write_report(
     worst: int = 0,
     alert_command: str | None = None,
 ) -> Report:
-    """Writes the report of a dataset as an HTML page, and what it links to into the folder ``NAME.files`` beside it.
+    """Writes the report of a dataset as an HTML page, and the linked files into the folder ``NAME.files`` beside it.
 
     Parameters
     ----------
@@ -61,21 +62,21 @@ def write_report(
     out
         The page.
     least_pct
-        The least rise that is an alert, in percentage points: of the risk or of the share of flights that warn. The whole 95 %
+        The minimum rise for an alert, in percentage points: of the risk or of the share of flights that warn. The whole 95 %
         interval must be above it.
     names, only
-        Names of vehicles, and the vehicles to keep, as :func:`open_dataset` takes them.
+        Names of vehicles, and the vehicles to select, as for :func:`open_dataset`.
     parts
-        A CSV file of parts that were changed: `vehicle`, `day`, `part`.
+        A CSV file of changed parts: `vehicle`, `day`, `part`.
     worst
-        For how many of the worst flights the report of the flight is written. Their logs are read again.
+        The number of worst flights with a report of the flight. Their logs are read again.
     alert_command
-        A command of the shell that is run if there is an alert that the last report did not have. It reads the document as JSON.
+        A shell command to run if there is an alert that the last report did not have. It receives the document as JSON.
 
     Raises
     ------
     FleetError
-        There is no dataset, a file is damaged or cannot be understood, or the command failed.
+        There is no dataset, a file is damaged or invalid, or the command failed.
     """
     page = Path(out)
     files = page.with_name(f"{page.stem}.files")
@@ -191,7 +192,7 @@ def _to_act_on(found: Sequence[Change], news: News, at: Mapping[str, str]) -> st
 
 
 def _compared(vehicles: Sequence[Row]) -> str:
-    """How many vehicles have enough flights to find a change; whether the others changed is unknown."""
+    """The number of vehicles with enough flights to find a change; changes of the others are unknown."""
     count = sum(row["days"] >= LEAST_DAYS for row in vehicles)
     if count == len(vehicles) > 0:
         return ""

@@ -132,7 +132,7 @@ def _motors(flight: Flight) -> dict[str, Any]:
 
 
 LAST_US = 253_402_300_800_000_000
-"""The year 10000: a clock that tells more is damaged."""
+"""The year 10000: a later time indicates a damaged clock."""
 
 
 def _start_us(assessment: Assessment) -> int | None:

@@ -1,4 +1,4 @@
-"""A run: what is missing in a dataset, assessed and written."""
+"""A run: assesses and writes the logs that are missing in a dataset."""
 
 from __future__ import annotations
 
@@ -24,33 +24,33 @@ __all__ = ["Assessed", "Plan", "Watcher", "assess", "plan"]
 
 @dataclass(frozen=True)
 class Assessed:
-    """What a run did."""
+    """The results of a run."""
 
     listed: int
     """Logs at the sources."""
     assessed: int
     """Logs that were read in this run."""
     bytes: int
-    """Their size."""
+    """The size of these logs."""
     not_assessed: int
-    """Those of them that have no assessment; their rows say why."""
+    """Read logs without an assessment; their rows contain the reasons."""
     unchanged: int
-    """Those of them whose content is that of before."""
+    """Read logs with unchanged content."""
     passed_over: int
-    """Names at the sources that are those of logs, but of no readable file: not UTF-8, a FIFO, a device, a broken link."""
+    """Names of logs at the sources that are not readable files: not UTF-8, a FIFO, a device, a broken link."""
 
 
 class Watcher(Protocol):
-    """Who is told how a run goes on."""
+    """Receives the progress of a run."""
 
     def planned(self, counts: Counts) -> None:
-        """The sources are listed."""
+        """Called after the sources are listed."""
 
     def started(self, dashboard: str) -> None:
-        """The engine runs; its dashboard is at this address."""
+        """Called when the engine runs; its dashboard is at this address."""
 
     def went_on(self, done: Assessed, workers: int | None) -> None:
-        """A shard is done, or some time went by; how many workers there are, where it is known."""
+        """Called when a shard is done or some time has passed, with the number of workers if it is known."""
 
 
 class _Nobody:
@@ -73,9 +73,9 @@ def assess(
     dry_run: bool = False,
     watcher: Watcher | None = None,
 ) -> Assessed:
-    """Assesses the logs of folders that a dataset does not have yet, or that changed since.
+    """Assesses the logs of folders that a dataset lacks, or that changed since.
 
-    Whatever ends it, the next call does what is missing: each log has one row.
+    After any interruption, the next call completes the dataset: each log has one row.
 
     Parameters
     ----------
@@ -84,29 +84,29 @@ def assess(
     out
         The dataset: a folder or such an address.
     profile
-        The profile, or its name, or its file.
+        The profile, its name, or its file.
     step_s
-        How far apart the steps of the risk over time are, in seconds.
+        The interval of the steps of the risk over time, in seconds.
     recursive
-        Whether the folders below are read too.
+        Whether to read the folders below too.
     include
-        The names of logs, as patterns.
+        Patterns of the names of logs.
     compare_content
-        Whether every log is read and hashed: one that has the content of before counts as the same, whatever its time.
+        Whether to read and hash every log: a log with unchanged content counts as the same, whatever its modification time.
     scheduler
-        The address of a Dask scheduler; without it all cores of this machine work.
+        The address of a Dask scheduler; by default, all cores of this machine are used.
     workers
-        How many processes work on this machine; one a core where it is None.
+        The number of processes on this machine; by default one per core.
     dry_run
-        Whether nothing is assessed and written: only counted.
+        Only count logs, without assessing or writing.
     watcher
-        Who is told how it goes on.
+        Receives the progress.
 
     Raises
     ------
     FleetError
-        A source cannot be listed, or the engine or the dataset was lost, or a file of the dataset is damaged whose logs cannot all
-        be read again.
+        A source cannot be listed, the engine or the dataset was lost, or the logs of a damaged file of the dataset cannot
+        all be read again.
     RuleSetError
         The profile or its rule set has errors.
     """
@@ -134,7 +134,7 @@ def _work(planned: Plan, done: Assessed, told: Watcher, scheduler: str | None, w
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to do: :func:`process` of each shard with the job, by whatever engine, in whatever order."""
+    """The work to do: :func:`process` of each shard with the job, by any engine, in any order."""
 
     counts: Counts
     job: Job
@@ -142,11 +142,11 @@ class Plan:
 
     @property
     def shards(self) -> Iterator[Shard]:
-        """The logs that are missing or changed, in shards for as many cores as this machine has. They are made one by one."""
+        """The missing or changed logs, in shards for the cores of this machine. They are generated lazily."""
         return self.shards_for(os.cpu_count() or 1)
 
     def shards_for(self, cores: int) -> Iterator[Shard]:
-        """The same for so many cores: a small fleet is cut finer, so that all of them work."""
+        """The same for this many cores: a small fleet is divided more finely, so that all of them are used."""
         counts = self.counts
         return shards(self._todo(), *largest(counts.new + counts.changed, counts.todo_bytes, cores))
 
@@ -163,13 +163,14 @@ def plan(
     compare_content: bool = False,
     dry_run: bool = False,
 ) -> Iterator[Plan]:
-    """What :func:`assess` does before and after its engine, for another engine: see docs/fleet.md.
+    """Prepares and completes :func:`assess` for another engine: see docs/fleet.md.
 
-    The dataset is taken over from runs before. When the plan is left without an error the dataset is put right: one row a log.
+    Takes over the dataset from earlier runs. When the context ends without an error, the dataset is repaired: one row per
+    log.
     Parameters and errors are those of :func:`assess`.
     """
     if not step_s > 0:
-        raise FleetError(f"a step of {step_s} s is none", "write a number of seconds above 0")
+        raise FleetError(f"a step of {step_s} s is not possible", "choose a number of seconds above 0")
     profile = profile if isinstance(profile, Profile) else Profile(profile)
     include = tuple(include)
     places = [open_place(absolute(source)) for source in sources]
@@ -186,7 +187,7 @@ def plan(
         except DamagedError as error:
             damaged = (error,)
         if not dry_run:
-            # Before the dataset is read, so that nothing is committed unseen.
+            # Before the dataset is read, so that nothing is committed unnoticed.
             job = job.of_run(take_over(dataset))
         catalog.load(dataset)
         damaged += redo(dataset, catalog, dry_run)
@@ -208,7 +209,7 @@ def _sum(done: Assessed, outcome: Outcome) -> Assessed:
 
 
 def _listed(places: Sequence[Place], recursive: bool, include: Iterable[str]) -> Callable[[str], bool]:
-    """Whether a log would be listed if it were there."""
+    """Returns a function that tells whether a log would be listed if it existed."""
     wanted = matcher(include)
     roots = [place.shown(place.root) for place in places]
 

@@ -7,22 +7,22 @@ import pyarrow as pa
 __all__ = ["FINDINGS", "FLIGHTS", "KINDS", "MEANINGS", "MONTH_UNKNOWN", "STEPS", "VERSION"]
 
 VERSION = "3"
-"""The version of the tables; it grows when a column changes its meaning or goes."""
+"""The version of the tables; it increases when a column is removed or changes its meaning."""
 
 KINDS = ("steps", "findings", "flights")
-"""The tables in the order in which they are written: a flight counts when its row in ``flights`` is there."""
+"""The tables in the order of writing: a flight is complete when its row in ``flights`` exists."""
 
 MONTH_UNKNOWN = "unknown"
-"""The month in the name of the folder of logs without a start time. Hive's name for null stops pandas, pyarrow and Dask."""
+"""The month in the name of the folder of logs without a start time. With Hive's name for null, pandas, pyarrow and Dask fail."""
 
 MEANINGS: dict[str, str] = {}
-"""What the columns mean. A name means the same in all tables."""
+"""The meanings of the columns. A name means the same in all tables."""
 
 _TEXT, _REAL, _SMALL = pa.string(), pa.float64(), pa.float32()
 
 
 def _schema(*columns: tuple[str, pa.DataType, str, str]) -> pa.Schema:
-    """Columns by name, type, unit and meaning. Where the name ends in ``!`` no value is null."""
+    """Columns by name, type, unit and meaning. A name that ends in ``!`` has no null values."""
     fields = []
     for name, kind, unit, meaning in columns:
         nullable, name = not name.endswith("!"), name.removesuffix("!")

@@ -1,4 +1,4 @@
-"""The tables of the fleet's page that need no more than the answer to a question."""
+"""The tables of the fleet's page that only show the answer to a question."""
 
 from __future__ import annotations
 

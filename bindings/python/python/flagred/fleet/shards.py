@@ -1,4 +1,4 @@
-"""Shards: the logs that are read and written together, and the job that they belong to."""
+"""Shards: groups of logs that are read and written together, and the job that they belong to."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from .storage import Log
 __all__ = ["Job", "Shard", "largest", "shards"]
 
 MOST_BYTES = 128 << 20
-"""The most bytes of a shard, unless it is one log."""
+"""The maximum size of a shard, unless it is one log."""
 MOST_LOGS = 1000
-"""The most logs of a shard, where they are small."""
+"""The maximum number of logs of a shard, if they are small."""
 PER_CORE = 4
-"""How many shards each core gets at least, if there are as many logs: the cores then finish at about the same time."""
+"""The minimum number of shards per core, if there are as many logs: the cores then finish at about the same time."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """What all shards of a run have in common. It goes to the workers."""
+    """The common settings of all shards of a run, which are sent to the workers."""
 
     run: str
-    """The id of the run: a worker of a run that another one has replaced writes no more."""
+    """The id of the run: workers of a replaced run stop writing."""
     out: str
     """The dataset."""
     profile: Profile
     settings: str
-    """What the answers depend on: hash of the profile and its rules, and the step."""
+    """The settings that determine the results: the hash of the profile and its rules, and the step."""
     step_s: float
     compare_content: bool
-    """Whether contents are hashed, and a log of the same content is the same log whatever its time."""
+    """Whether contents are hashed, so that a log with unchanged content is the same log whatever its modification time."""
 
     @staticmethod
     def of(out: str, profile: Profile, step_s: float, compare_content: bool) -> Job:
@@ -40,7 +40,7 @@ class Job:
         return Job("", out, profile, f"{hash} every {step_s:g} s", step_s, compare_content)
 
     def of_run(self, run: str) -> Job:
-        """The same job of a run."""
+        """The same job for a run."""
         return replace(self, run=run)
 
 
@@ -49,14 +49,14 @@ class Shard:
     """Logs of one source that are read and written together."""
 
     source: str
-    """The place of the logs."""
+    """The folder of the logs."""
     logs: tuple[Log, ...]
     crashed: bool = False
-    """Its one log ended every worker that read it: it is written down and not read again."""
+    """Whether its only log killed every worker that read it: it is recorded and not read again."""
 
     @property
     def id(self) -> str:
-        """A name of its logs: the same logs are written to the same files, however often."""
+        """An identifier of its logs: the same logs are always written to the same files."""
         text = "\n".join(f"{log.path} {log.identity}" for log in self.logs)
         return hashlib.sha256(text.encode()).hexdigest()[:20]
 
@@ -66,19 +66,19 @@ class Shard:
         return sum(log.bytes for log in self.logs)
 
     def halves(self) -> tuple[Shard, Shard]:
-        """The shard in two, to find the log that ends its worker."""
+        """The two halves of the shard, to find the log that kills its worker."""
         middle = len(self.logs) // 2
         return replace(self, logs=self.logs[:middle]), replace(self, logs=self.logs[middle:])
 
 
 def largest(logs: int, bytes: int, cores: int) -> tuple[int, int]:
-    """The most bytes and the most logs of a shard, so that a small fleet employs all cores, too."""
+    """The maximum bytes and logs of a shard, chosen so that a small fleet uses all cores too."""
     parts = PER_CORE * max(1, cores)
     return min(MOST_BYTES, -(-bytes // parts)), max(1, min(MOST_LOGS, -(-logs // parts)))
 
 
 def shards(logs: Iterable[tuple[str, Log]], most_bytes: int, most_logs: int = MOST_LOGS) -> Iterator[Shard]:
-    """Logs with their sources, in their order, cut into shards. A log that is larger than a shard is one alone."""
+    """Divides logs with their sources, in order, into shards. A log larger than the limit is a shard of its own."""
     part: list[Log] = []
     size = 0
     of = ""

@@ -1,4 +1,4 @@
-"""Where logs and datasets are: folders and object storage, all by pyarrow's file systems."""
+"""Locations of logs and datasets: folders and object storage, through pyarrow's file systems."""
 
 from __future__ import annotations
 
@@ -24,44 +24,44 @@ from .errors import DamagedError, FleetError
 __all__ = ["LOGS", "Log", "Place", "absolute", "beside", "matcher", "open_place", "parquet"]
 
 LOGS = ("*.bin", "*.log", "*.ulg", "*.tlog", "*.csv", "*.bin.gz", "*.log.gz", "*.ulg.gz", "*.tlog.gz", "*.csv.gz")
-"""The names of logs, in whatever case, where nothing else is asked for."""
+"""The default patterns of names of logs, case-insensitive."""
 
 
 @dataclass(frozen=True)
 class Log:
-    """A log as its folder lists it."""
+    """A log in the listing of its folder."""
 
     path: str
     """Its path in the file system."""
     bytes: int
     modified_us: int
-    """When it was changed, in microseconds since 1970."""
+    """Its modification time, in microseconds since 1970."""
     sha256: str | None = None
-    """The hash of its content when it was read last, where contents are compared."""
+    """The hash of its content at the last reading, if contents are compared."""
 
     @property
     def identity(self) -> str:
-        """What changes when the log does."""
+        """An identifier that changes with the log."""
         return f"{self.bytes}-{self.modified_us}"
 
 
 @dataclass(frozen=True)
 class Place:
-    """A folder, here or on object storage."""
+    """A folder, local or on object storage."""
 
     uri: str
     fs: pafs.FileSystem
     root: str
     """The path of the folder in its file system."""
     prefix: str
-    """What stands before a path where it is shown, such as ``s3://``."""
+    """The prefix of displayed paths, such as ``s3://``."""
 
     @property
     def is_local(self) -> bool:
         return isinstance(self.fs, pafs.LocalFileSystem)
 
     def shown(self, path: str) -> str:
-        """A path as a person writes it, without keys and options of the storage."""
+        """A path in readable form, without keys and options of the storage."""
         return self.prefix + path
 
     def file(self, *parts: str) -> str:
@@ -69,7 +69,8 @@ class Place:
         return posixpath.join(self.root, *parts)
 
     def logs(self, recursive: bool, include: Iterable[str]) -> Iterator[Log]:
-        """The logs in it, as the storage lists them; for folders here see :class:`Listing`. The folders directly in it are listed one after the other, to bound the memory."""
+        """The logs in it, as the storage lists them; for local folders see :class:`Listing`. Its subfolders are listed one
+        at a time, to bound the memory."""
         found = self.fs.get_file_info(self.root)
         if found.type == pafs.FileType.File:
             yield _log(found)
@@ -78,7 +79,7 @@ class Place:
             help = "the folder, or the keys before the logs, must exist"
             raise FleetError(f"there is no `{self.shown(self.root)}`", help)
         wanted = matcher(include)
-        # The answer is let go of piece by piece.
+        # Releases the answer piece by piece.
         folders = []
         for info in self.fs.get_file_info(pafs.FileSelector(self.root)):
             if info.type == pafs.FileType.Directory:
@@ -91,12 +92,12 @@ class Place:
                     yield _log(info)
 
     def files(self, folder: str, suffix: str) -> Iterator[pafs.FileInfo]:
-        """The files in a folder and below whose names end so; none where there is no such folder."""
+        """The files with this suffix in a folder and below; none if the folder does not exist."""
         selector = pafs.FileSelector(self.file(folder), allow_not_found=True, recursive=True)
         return (info for info in self.fs.get_file_info(selector) if info.is_file and info.path.endswith(suffix))
 
     def read(self, path: str) -> tuple[bytes, str | None]:
-        """The content of a file, and its ETag where the storage has one."""
+        """The content of a file, and its ETag if the storage has one."""
         with self.fs.open_input_file(path) as file:
             metadata = {} if self.is_local else file.metadata() or {}
             content: bytes = file.read()
@@ -104,7 +105,7 @@ class Place:
         return content, None if tag is None else tag.decode().strip('"')
 
     def write(self, path: str, content: pa.Buffer | bytes) -> None:
-        """Writes a file that appears at once and whole: objects do, and a local file gets its name when it is on the disk."""
+        """Writes a file atomically: objects appear complete, and a local file is renamed when it is on the disk."""
         if not self.is_local:
             with self.fs.open_output_stream(path) as stream:
                 stream.write(content)
@@ -124,7 +125,7 @@ class Place:
             os.close(entry)
 
     def require_space(self, bytes: int) -> None:
-        """Raises :class:`OSError` (``ENOSPC``) where the disk of a local folder has not so many bytes left."""
+        """Raises :class:`OSError` (``ENOSPC``) if the disk of a local folder does not have this many bytes left."""
         if not self.is_local:
             return
         os.makedirs(self.root, exist_ok=True)
@@ -132,7 +133,7 @@ class Place:
             raise OSError(errno.ENOSPC, f"only {free} bytes are left on the disk", self.root)
 
     def delete(self, path: str) -> None:
-        """Deletes a file; one that is gone is no error."""
+        """Deletes a file; a missing file is not an error."""
         try:
             self.fs.delete_file(path)
         except FileNotFoundError:
@@ -146,7 +147,7 @@ def parquet(place: Place, path: str) -> Iterator[pq.ParquetFile]:
     Raises
     ------
     DamagedError
-        The file is cut off, is not Parquet, or a page of it is damaged.
+        The file is truncated, is not Parquet, or a page of it is damaged.
     """
     try:
         with place.fs.open_input_file(path) as source, pq.ParquetFile(source, page_checksum_verification=True) as file:
@@ -154,7 +155,7 @@ def parquet(place: Place, path: str) -> Iterator[pq.ParquetFile]:
     except pa.ArrowException as error:
         raise DamagedError.of(place.shown(path), error) from error
     except OSError as error:
-        # Arrow raises it without a number for pages that do not decode or do not have their checksum.
+        # Arrow raises it without a number for pages that cannot be decoded or have a wrong checksum.
         if error.errno is not None or not place.is_local:
             raise
         raise DamagedError.of(place.shown(path), error) from error
@@ -166,7 +167,7 @@ def beside(place: Place, path: str, kind: str, of: str = "flights") -> str:
 
 
 UNFINISHED = ".unfinished"
-"""How the name of a local file ends that is being written."""
+"""The suffix of the name of a local file during writing."""
 
 
 def _log(info: pafs.FileInfo) -> Log:
@@ -174,13 +175,13 @@ def _log(info: pafs.FileInfo) -> Log:
 
 
 def absolute(uri: str) -> str:
-    """The place as a worker understands it, whose working folder is another one."""
+    """The address of a location for workers, whose working folders differ."""
     return uri if "://" in uri else str(Path(uri).resolve())
 
 
 @lru_cache(maxsize=64)
 def open_place(uri: str) -> Place:
-    """The place that a path or an address names: ``s3://``, ``gs://``, ``az://``, ``abfs://``, ``file://`` or a path.
+    """Opens a path or an address: ``s3://``, ``gs://``, ``az://``, ``abfs://``, ``file://`` or a path.
 
     Raises
     ------
@@ -203,14 +204,14 @@ def open_place(uri: str) -> Place:
 
 
 def _azure(uri: str) -> tuple[pafs.FileSystem, str]:
-    """``az://container/path`` of the account that the usual variables of the environment name."""
+    """``az://container/path`` of the account in the usual environment variables."""
     account = os.environ["AZURE_STORAGE_ACCOUNT"]
     fs = pafs.AzureFileSystem(account_name=account, account_key=os.environ.get("AZURE_STORAGE_KEY"))
     return fs, uri.removeprefix("az://")
 
 
 def matcher(include: Iterable[str]) -> Callable[[str], bool]:
-    """Whether a path ends in a name that one of the patterns fits, in whatever case."""
+    """Returns a function that tests whether the name of a path matches one of the patterns, case-insensitively."""
     patterns = "|".join(fnmatch.translate(pattern) for pattern in include)
     compiled = re.compile(patterns, re.IGNORECASE)
     return lambda path: compiled.match(posixpath.basename(path)) is not None

@@ -13,7 +13,7 @@ __all__ = ["STYLE", "Cell", "Column", "Row", "date", "day", "figures", "known", 
 Row = dict[str, Any]
 Cell = Callable[[Row], str]
 Column = tuple[str, str, Cell]
-"""Title, class and what stands in a row."""
+"""Title, class, and a function that returns the cell of a row."""
 
 STYLE = """<style>a{color:inherit}small{color:var(--soft);font-size:.85em;white-space:nowrap}td.n small{display:block}td.log{min-width:12rem}
 td.words{min-width:16rem}td.words small,.advice{display:block;color:var(--soft);white-space:normal}
@@ -33,7 +33,7 @@ table.cards td.words::before,table.cards td.log::before{content:none}table.cards
 
 
 def table(rows: Iterable[Row], columns: Sequence[Column], none: str, id: str = "") -> str:
-    """A table, or a sentence where there are no rows."""
+    """A table, or a sentence if there are no rows."""
     body = "".join(
         "<tr>" + "".join(f"<td class='{kind}' data-title='{escape(title, quote=True)}'>{cell(row)}</td>" for title, kind, cell in columns) + "</tr>"
         for row in rows
@@ -50,12 +50,12 @@ def figures(values: Mapping[str, str]) -> str:
 
 
 def section(title: str, body: str) -> str:
-    """A part of a page that is folded until it is wanted."""
+    """A part of a page that is folded at first."""
     return f"<details><summary>{escape(title)}</summary>{body}</details>"
 
 
 def known(value: float | None, digits: int) -> str:
-    # Without a minus before zeros alone.
+    # No minus sign before zeros only.
     return "NA" if value is None else f"{round(value, digits) + 0.0:,.{digits}f}"
 
 
@@ -83,12 +83,12 @@ def day(title: str, name: str) -> Column:
 
 
 def link(shown: str, address: str | None) -> str:
-    """Text that is a link if there is something behind it."""
+    """Text, as a link if there is an address."""
     return escape(shown) if address is None else f"<a href='{escape(address, quote=True)}'>{escape(shown)}</a>"
 
 
 def log_link(path: str) -> str:
-    """A log, as a link where a browser could open it."""
+    """A log, as a link if a browser can open it."""
     return link(path, Path(path).as_uri() if path.startswith("/") else None)
 
 

@@ -1,4 +1,4 @@
-"""One run writes to a dataset at a time: the latest."""
+"""Only one run writes to a dataset at a time: the latest."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .storage import Place
 __all__ = ["Superseded", "check", "still_ours", "take_over"]
 
 RUN = "run.json"
-"""The file of a dataset that tells which run writes to it."""
+"""The file of a dataset that names the run that writes to it."""
 
 
 class Superseded(FleetError):
@@ -20,15 +20,15 @@ class Superseded(FleetError):
 
 
 def take_over(out: Place) -> str:
-    """Makes a new run the one that writes to the dataset, and gives its id. Workers of a run before, which may have lost their
-    driver and work on, commit nothing more."""
+    """Makes a new run the one that writes to the dataset, and returns its id. Workers of an earlier run, which may have lost
+    their driver and continue, commit nothing more."""
     run = uuid.uuid4().hex
     out.write(out.file(RUN), json.dumps({"run": run, "flagred": __version__}).encode())
     return run
 
 
 def check(out: Place) -> None:
-    """Raises :class:`DamagedError` where the file of the run that writes is there and damaged."""
+    """Raises :class:`DamagedError` if the file that names the run exists and is damaged."""
     try:
         _run(out)
     except FileNotFoundError:
@@ -46,6 +46,6 @@ def _run(out: Place) -> str:
 
 
 def still_ours(out: Place, run: str) -> None:
-    """Raises :class:`Superseded` where a later run took over."""
+    """Raises :class:`Superseded` if a later run took over."""
     if _run(out) != run:
         raise Superseded(f"another run writes to `{out.shown(out.root)}`", "let one run end before the next begins")

@@ -1,4 +1,4 @@
-"""A page for each vehicle: its risk over time, what changed, its motors, and the flights that warned."""
+"""A page for each vehicle: its risk over time, its changes, its motors, and the flights that warned."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from .tables import STYLE, Column, Row, date, day, figures, known, link, log_lin
 __all__ = ["write_vehicle_pages"]
 
 MOST_FLIGHTS = 400
-"""The latest flights of a vehicle that its page shows."""
+"""The number of latest flights on the page of a vehicle."""
 LEAST_FLIGHTS = 8
-"""The fewest flights that a drift is estimated from."""
+"""The minimum number of flights to estimate a drift."""
 WEEK_S = 604_800
 
 QUERY = f"""
@@ -73,7 +73,7 @@ def write_vehicle_pages(
 
 
 def _file(vehicle: str) -> str:
-    """The name of the vehicle with letters that any file system takes; the hash tells apart what looks alike."""
+    """The name of the vehicle in letters that any file system accepts; a hash distinguishes similar names."""
     return f"{re.sub('[^A-Za-z0-9_-]+', '-', vehicle)[:40]}-{hashlib.sha256(vehicle.encode()).hexdigest()[:8]}.html"
 
 
@@ -143,7 +143,8 @@ def _over_time(rows: Sequence[Row], parts: Sequence[tuple[float, str]]) -> str:
 
 
 def _motors(rows: Sequence[Row], vehicles: int) -> str:
-    """The motors; one is named if no motor of so many vehicles would drift as much by chance, with a probability of 1 - ``LEVEL``."""
+    """The motors; one is named if such a drift occurs by chance in this many vehicles with a probability of at most 1 -
+    ``LEVEL``."""
     counts = [len(row["motor_margins"] or ()) for row in rows]
     motors = max(counts)
     of = [row for row, count in zip(rows, counts) if count == motors]
@@ -175,7 +176,7 @@ def _motors(rows: Sequence[Row], vehicles: int) -> str:
 
 
 def _slope(x: Any, y: Any) -> tuple[float, float, float] | None:
-    """The slope with its 95 % interval; None for few flights."""
+    """The slope with its 95 % interval; None for too few flights."""
     is_known = np.isfinite(x)
     x, y = x[is_known] - x[is_known].mean() if is_known.any() else x[is_known], y[is_known]
     if len(x) < LEAST_FLIGHTS or not (x**2).sum() > 0:

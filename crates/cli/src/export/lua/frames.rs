@@ -1,4 +1,4 @@
-//! ArduPilot's frames, as text that the script reads once.
+//! ArduPilot's frames, as text that the script parses once.
 
 use std::collections::BTreeMap;
 
@@ -41,6 +41,6 @@ fn line(frame: &Frame) -> String {
 }
 
 fn short(factor: f64) -> String {
-    // 0 and not -0.
+    // Adding 0 turns -0 into 0.
     ((factor + 0.0) as f32).to_string()
 }

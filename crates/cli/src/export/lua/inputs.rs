@@ -1,4 +1,4 @@
-//! The inputs of a rule set: which windows the script keeps, and how the values of the inputs are read from them.
+//! The inputs of a rule set: the windows that the script keeps, and the code that computes the inputs from them.
 
 use flagred::{
     board::Plan,
@@ -8,7 +8,7 @@ use flagred::{
 
 use super::{Refused, comment, limits::Size, number, observed::Script, template::Filling};
 
-/// The signals that a script can read, by the names of logs.
+/// The signals that a script can read, by their names in logs.
 const SIGNALS: [(&str, &str); 4] = [
     ("battery_v", "battery:voltage(0)"),
     ("battery_a", "battery:current_amps(0)"),
@@ -16,11 +16,11 @@ const SIGNALS: [(&str, &str); 4] = [
     ("battery_remaining_pct", "battery:capacity_remaining_pct(0)"),
 ];
 
-/// Between two calls of the script, and the length of a bin of commands.
+/// Seconds between two calls of the script, and the length of a bin of commands.
 const CALL_S: f64 = 0.03;
 const BIN_S: f64 = 0.1;
 
-/// What brings its values at the same times, so that a window of it has one weight.
+/// The origin of a window's values. Values of one source arrive at the same times, so a window of it has one weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Source {
     Motors,
@@ -31,7 +31,7 @@ enum Source {
     Ratio(usize, usize, f64),
 }
 
-/// A window of the script: channels that bring values at the same times share it.
+/// A window of the script. Channels whose values arrive at the same times share it.
 struct Window {
     window_s: f64,
     in_bins: bool,
@@ -40,7 +40,7 @@ struct Window {
     inputs: Vec<usize>,
 }
 
-/// Writes the inputs into the places of the script.
+/// Fills in the template's parts for the inputs.
 pub(super) fn fill(
     estimator: &Estimator,
     plan: &Plan<'_>,
@@ -105,7 +105,7 @@ pub(super) fn fill(
         ));
         script.observe.push(match (in_bins, window.source) {
             (true, _) => format!("  take_bin(windows[{i}])"),
-            // A noise is known once in a bin, and stands for all of it.
+            // Noise is computed once per bin, and applies to the whole bin.
             (_, Source::Noise) => {
                 format!("  take_sample(windows[{i}], max(held_s, 0.1))")
             }
@@ -161,7 +161,7 @@ pub(super) fn fill(
         if let Some(ratio) = of.ratio {
             let made = quotient(&value, &ratio);
             script.read.push(match of.if_missing {
-                // What is assumed is assumed of the ratio.
+                // The assumed value is that of the ratio.
                 Some(_) => format!("  if has_come[{}] then\n  {made}\n  end", input + 1),
                 None => made,
             });
@@ -175,13 +175,13 @@ pub(super) fn fill(
     Ok(())
 }
 
-/// Makes a value a ratio.
+/// Divides a value by the denominator of its ratio.
 fn quotient(value: &str, ratio: &Ratio) -> String {
     let (per, least) = (format!("value[{}]", ratio.per + 1), number(ratio.at_least));
     format!("  {value} = {value} and {per} and {value} / max({per}, {least})")
 }
 
-/// The kind of a row, and how its value is read.
+/// The kind of a row, and the expression that reads its value.
 fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
     let read = format!("read_row(window, inputs[{input}], total, out)");
     match statistic {
@@ -202,7 +202,7 @@ fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
     }
 }
 
-/// Refuses what a script has no time for, to go through all slots of a window at every call, and what it does not have.
+/// Refuses statistics that would visit all slots of a window at every call, which takes too long, and statistics that the script lacks.
 fn carried(channel: &Channel, statistic: Statistic) -> Result<(), Refused> {
     let what = match statistic {
         Statistic::Rate => "the statistic `rate`",
@@ -216,7 +216,7 @@ fn carried(channel: &Channel, statistic: Statistic) -> Result<(), Refused> {
     ))
 }
 
-/// How the script reads each signal of a profile.
+/// Returns the expression that reads each signal of a profile.
 fn signals(names: &[&str]) -> Result<Vec<&'static str>, Refused> {
     let read = |name: &&str| {
         let known = SIGNALS.iter().find(|(known, _)| known == name);
@@ -270,13 +270,13 @@ impl Window {
     }
 }
 
-/// The most slots in use at once: one for each call or bin, and at most as many as the monitor has.
+/// Maximum number of slots in use at once: one for each call or bin, and at most as many as the monitor has.
 fn capacity(window_s: f64, step_s: f64) -> u32 {
     const MOST: f64 = 130.0;
     ((window_s / step_s).floor() + 4.0).min(MOST) as u32
 }
 
-/// The slots of the window of the elevated risk.
+/// The number of slots in the window of the elevated risk.
 pub(super) fn elevated_capacity(plan: &Plan<'_>) -> u32 {
     capacity(plan.settings.elevated_risk.window_s, CALL_S)
 }

@@ -1,36 +1,36 @@
-//! Limits of ArduPilot that a large profile would exceed: refused before a script is written, since the vehicle would find out
-//! last. What is constant in the script is held to them by the tests.
+//! Limits of ArduPilot that a large profile would exceed. They are checked before a script is written, so that it does not fail on the
+//! vehicle. The tests check the constant parts of the script against them.
 
 use super::Refused;
 
-/// Local variables of a function. ArduPilot's Lua allows 100.
+/// Maximum number of local variables of a function. ArduPilot's Lua allows 100.
 const LOCALS: usize = 90;
-/// Conditions of a rule: a call may take a register for each, and a function has 250.
+/// Maximum number of conditions of a rule: a call may take a register for each, and a function has 250.
 const CONDITIONS: usize = 100;
-/// `SCR_VM_I_COUNT` is 10,000 by default.
+/// Maximum number of instructions of a call. `SCR_VM_I_COUNT` is 10,000 by default.
 const INSTRUCTIONS: usize = 9_900;
-/// `SCR_HEAP_SIZE` is 204,800 by default on boards with much memory. With pointers of 64 bits, as in the simulator, ArduPilot
-/// itself takes 25,000 of it, and loading a script takes 11,000 more than it keeps.
+/// Maximum memory of a script. `SCR_HEAP_SIZE` is 204,800 by default on boards with much memory. With 64-bit pointers, as in the
+/// simulator, ArduPilot itself takes 25,000 of it, and loading a script temporarily takes 11,000 more.
 const HEAP_BYTES: usize = 166_000;
 
-/// How large the parts of a script are that depend on the profile.
+/// The sizes of the parts of a script that depend on the profile.
 #[derive(Debug, Default)]
 pub(super) struct Size {
-    /// Local variables of the function that takes in a sample.
+    /// Local variables of the function that processes a sample.
     pub(super) locals: usize,
-    /// The most conditions of a rule.
+    /// The largest number of conditions in a rule.
     pub(super) conditions: usize,
     pub(super) windows: usize,
     /// Statistics of windows.
     pub(super) rows: usize,
-    /// Numbers that windows keep.
+    /// Numbers that windows store.
     pub(super) numbers: usize,
     pub(super) rules: usize,
     /// Terms of inputs.
     pub(super) terms: usize,
-    /// Values at knots.
+    /// Values at the knots of filled gaps.
     pub(super) filled: usize,
-    /// Characters of code that stays, without comments and the spaces around.
+    /// Characters of code that stays in memory, without comments and indentation.
     pub(super) code: usize,
 }
 
@@ -43,12 +43,12 @@ impl Size {
         self.code += code.map(|code| code.len() + 1).sum::<usize>();
     }
 
-    /// The most instructions of a call, about.
+    /// Estimates the most instructions of a call.
     fn instructions(&self) -> usize {
         2_600 + 330 * self.windows + 250 * self.rows + 28 * self.rules + 25 * self.terms
     }
 
-    /// The bytes that the script keeps where pointers have 64 bits, about.
+    /// Estimates the bytes that the script keeps with 64-bit pointers.
     fn bytes(&self) -> usize {
         let (code, number, window, row) = (3.2, 16, 1_600, 420);
         (self.code as f64 * code) as usize
@@ -57,7 +57,7 @@ impl Size {
             + row * self.rows
     }
 
-    /// Refuses what exceeds a limit.
+    /// Returns an error if a limit is exceeded.
     pub(super) fn check(&self) -> Result<(), Refused> {
         let Size {
             locals, conditions, ..

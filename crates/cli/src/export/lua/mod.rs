@@ -1,8 +1,8 @@
 //! A profile and its rule set as a script for ArduPilot.
 //!
-//! `script/` has the parts of the script, with places for what the profile says. `loader.lua` is what ArduPilot compiles; the
-//! other parts are a comment behind it, which the loader compiles one by one. Numbers are rounded to the 32 bits that the
-//! autopilot's Lua has.
+//! `script/` contains the parts of the script, as templates that are filled in from the profile. ArduPilot compiles `loader.lua`; the
+//! other parts follow it as comments, which the loader compiles one by one. Numbers are rounded to 32 bits, the precision of the
+//! autopilot's Lua.
 
 mod frames;
 mod inputs;
@@ -16,11 +16,11 @@ use flagred::{board::Plan, estimator::Estimator, follower::Settings, verdict::Le
 use limits::Size;
 use template::Filling;
 
-/// The number of the table of script parameters; no script that comes with ArduPilot has it.
+/// The key of the script's parameter table. No script that ships with ArduPilot uses it.
 const PARAMETER_TABLE: u8 = 157;
 
-/// The parts in the order in which they are compiled. What runs only once comes first and is gone before the rest comes; what
-/// takes least to compile comes last, when most memory is taken.
+/// The parts in the order of compilation. Parts that run only once come first and are freed before the others are compiled; the
+/// parts that need the least memory to compile come last, when the most memory is in use.
 const PARTS: [(&str, &str); 15] = [
     ("motors", include_str!("script/motors.lua")),
     ("setup", include_str!("script/setup.lua")),
@@ -39,31 +39,31 @@ const PARTS: [(&str, &str); 15] = [
     ("texts", include_str!("script/texts.lua")),
 ];
 
-/// What the script itself fixes.
+/// Constants of the script that do not depend on the profile.
 const SCRIPT: [(&str, &str); 13] = [
-    // Between two calls, and between two values for the ground station.
+    // Times between two calls, and between two values for the ground station.
     ("CALL_MS", "30"),
     ("SEND_US", "500000"),
-    // Commands are averaged over a bin before their noise is taken out.
+    // Commands are averaged over a bin before their noise is computed.
     ("BIN_US", "100000"),
-    // Of a window.
+    // Maximum number of slots of a window.
     ("SLOTS", "128"),
-    // Longer times are this long.
+    // Longer times are shortened to this.
     ("LONG_US", "1000000000"),
-    // Half of the heap that must be left for what calls take for a moment.
+    // Half of the heap that must stay free for temporary memory of calls.
     ("RESERVE_BYTES", "3000"),
     // Severities of MAVLink.
     ("CRITICAL", "2"),
     ("ERROR", "3"),
     ("WARNING", "4"),
     ("INFO", "6"),
-    // Levels.
+    // The levels.
     ("GOOD", "0"),
     ("WARN", "2"),
     ("FAIL", "3"),
 ];
 
-/// Why a profile cannot be a script, and what can.
+/// Why a profile cannot be exported as a script, with advice.
 pub(super) struct Refused {
     pub(super) message: String,
     pub(super) help: &'static str,
@@ -75,7 +75,7 @@ impl Refused {
     }
 }
 
-/// The file.
+/// Returns the script.
 pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Refused> {
     if !plan.rules.stages.is_empty() {
         return Err(Refused::new(
@@ -139,8 +139,8 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Ref
     Ok(file)
 }
 
-/// The parts with each line as a comment of its own: ArduPilot can compile the file also where it is cut off. Before each part
-/// and at the end there is a line with a form feed.
+/// Returns the parts with every line as a comment, so that ArduPilot can compile the file even if it is truncated. A line with a form
+/// feed precedes each part and follows the last one.
 fn commented(parts: &[&str]) -> String {
     const BREAK: &str = "-- \x0c\n";
     let mut text = format!("\n{BREAK}");
@@ -155,7 +155,7 @@ fn commented(parts: &[&str]) -> String {
     text
 }
 
-/// The settings of the profile and what the script itself fixes, by the names that they have in its parts.
+/// Adds the settings of the profile and the script's own constants, under the names that the parts use.
 fn constants(plan: &Plan<'_>, filling: &mut Filling) {
     let Settings {
         sampling,
@@ -216,13 +216,13 @@ fn constants(plan: &Plan<'_>, filling: &mut Filling) {
     set("PARAMETER_TABLE", PARAMETER_TABLE.to_string());
 }
 
-/// A time in whole microseconds; over a quarter of an hour is as good as for ever.
+/// Converts a time to whole microseconds. Times above a quarter of an hour are treated as unlimited.
 fn microseconds(seconds: f64) -> String {
     const LONGEST_US: f64 = 900e6;
     format!("{:.0}", (seconds * 1e6).min(LONGEST_US))
 }
 
-/// The shortest decimal that reads back as the same 32-bit number.
+/// Returns the shortest decimal that reads back as the same 32-bit number.
 fn number(number: f64) -> String {
     let rounded = number as f32;
     if rounded.is_nan() {
@@ -234,12 +234,12 @@ fn number(number: f64) -> String {
     }
 }
 
-/// A text of a rule set as a string. The escapes of its debug form are Lua's.
+/// Returns a text of a rule set as a string literal. The escapes of Rust's debug form are valid in Lua.
 fn quoted(text: &str) -> String {
     format!("{:?}", fuzzy::drawing::visible(text))
 }
 
-/// A text of a rule set in a comment.
+/// Returns a text of a rule set for use in a comment.
 fn comment(text: &str) -> String {
     fuzzy::drawing::visible(text).into_owned()
 }

@@ -1,4 +1,4 @@
-//! The values of a sample: which of them the script computes, each once, and what goes into the windows.
+//! The values of a sample: which of them the script computes, each once, and which of them enter the windows.
 
 use std::fmt::Write;
 
@@ -9,31 +9,31 @@ use flagred::{
 
 use super::{frames, number, template::Filling};
 
-/// Of commands, in 32 bits.
+/// Rounding error of commands in 32 bits.
 const ROUNDING: f64 = 1e-6;
 
-/// What is divided by less is not finite in 32 bits, or nearly so: unknown.
+/// Smaller divisors give results that are infinite in 32 bits, or nearly so; these are reported as unknown.
 const LEAST_DIVISOR: f64 = 1e-6;
 
 const AXES: [&str; 4] = ["roll", "pitch", "yaw", "thrust"];
 
-/// The lines of the script so far.
+/// The lines of the script written so far.
 #[derive(Default)]
 pub(super) struct Script {
     /// The values of a sample, each computed once: name and expression.
     values: Vec<(String, String)>,
     pub(super) observe: Vec<String>,
     pub(super) read: Vec<String>,
-    /// The functions over lists of motors that are used.
+    /// The functions over lists of motors in use.
     functions: Vec<&'static str>,
     lists: Vec<&'static str>,
-    /// The efforts that are used, by their index.
+    /// The indices of the efforts in use.
     efforts: Vec<usize>,
     noise: bool,
 }
 
 impl Script {
-    /// The value of a sample for a channel, and where one sample has a spread in itself, that spread.
+    /// Returns the value of a sample for a channel, and the spread within a sample, if it has one.
     pub(super) fn value(
         &mut self,
         channel: &Channel,
@@ -94,7 +94,7 @@ impl Script {
             Observed::HighSide => "high_side",
             _ => "command",
         };
-        // The room above the highest motor needs no list of its own.
+        // The distance of the highest motor to the upper limit does not need a list.
         if (channel.observed, channel.motors) == (Observed::HighSide, Motors::Min) {
             self.uses("highest_of");
             let room = "sum and 1 - highest_of(command) or nil".to_owned();
@@ -121,7 +121,7 @@ impl Script {
             return (counted(&value, channel.threshold, squared), None);
         }
         match (channel.threshold, statistic) {
-            // Outputs are whole microseconds: a value on the limit is on neither side, whatever its rounding.
+            // Outputs are whole microseconds. A value equal to the limit counts on neither side, despite its rounding error.
             (Some(Threshold::Below(limit)), _) => (
                 self.of_list("share_of_below", list, Some(limit - ROUNDING)),
                 None,
@@ -142,15 +142,15 @@ impl Script {
         }
     }
 
-    /// A signal of the autopilot; nil where it is unknown.
+    /// Returns the variable of an autopilot signal; nil if unknown.
     fn signal(&mut self, signal: usize, signals: &[&'static str]) -> String {
         let read = signals.get(signal).copied().unwrap_or("nil");
         self.computed(format!("signal_{}", signal + 1), read.to_owned())
     }
 
-    /// A value that all motors have together; nil where the commands are unknown.
+    /// Returns a value computed over all motors; nil if the commands are unknown.
     fn of_list(&mut self, function: &'static str, list: &str, limit: Option<f64>) -> String {
-        // The sum of the commands is known.
+        // The sum of the commands is available already.
         if (function, list) == ("mean_of", "command") {
             return self.computed("mean_command".into(), "sum and sum / motors or nil".into());
         }
@@ -180,7 +180,7 @@ impl Script {
         name
     }
 
-    /// The local variables of the function that takes in a sample: three of its own and the values.
+    /// The number of local variables of the function that processes a sample: three of its own and the values.
     pub(super) fn locals(&self) -> usize {
         3 + self.values.len()
     }
@@ -250,7 +250,7 @@ impl Script {
     }
 }
 
-/// The value itself, its square, or for a share whether it is beyond the threshold.
+/// Returns the value, its square, or for a share whether it is beyond the threshold.
 fn counted(value: &str, threshold: Option<Threshold>, squared: bool) -> String {
     let beyond = |sign: &str, limit: f64| {
         format!(

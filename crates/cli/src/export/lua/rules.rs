@@ -17,7 +17,7 @@ use fuzzy::{
 
 use super::{Refused, comment, limits::Size, number, quoted, template::Filling};
 
-/// Writes the rules into the places of the script.
+/// Fills in the template's parts for the rules.
 pub(super) fn fill(
     estimator: &Estimator,
     plan: &Plan<'_>,
@@ -64,7 +64,7 @@ pub(super) fn fill(
         script.operators = model.operators_of(rule);
         for consequent in terms {
             let term = &consequent.term.text;
-            // The table has rules that conclude the same update the same firing strength.
+            // In the table, rules with the same consequent update the same firing strength.
             let strength = actions.iter().find(|action| {
                 let other = model.rules.get(action.rule as usize);
                 other.is_some_and(|other| other.rule.consequents.contains(consequent))
@@ -139,7 +139,7 @@ pub(super) fn fill(
     Ok(())
 }
 
-/// The inputs in the order of the rules, within their ranges. Those that the risk does not depend on may be unknown.
+/// Clamps the inputs to their ranges, in the order of the rules. Inputs that the risk does not depend on may be unknown.
 fn point(plan: &Plan<'_>) -> Vec<String> {
     let inputs = plan.rules.table.inputs.iter().zip(plan.order).zip(1..);
     let line = |((input, from), i): ((&flagred::board::table::Input, &u32), u32)| {
@@ -170,7 +170,7 @@ fn fill_gaps(plan: &Plan<'_>, filling: &mut Filling) {
     let numbers = |numbers: &[f64]| numbers.iter().map(|x| number(*x)).collect::<Vec<String>>();
     let axis = |places: &[f64]| format!("  {{{}}},", numbers(places).join(", "));
     filling.put("knots", axes.map(axis).collect());
-    // A value is read to 0.01 %.
+    // Values are rounded to 0.01 %.
     let values: Vec<String> = knots
         .values
         .iter()
@@ -187,7 +187,7 @@ fn fill_gaps(plan: &Plan<'_>, filling: &mut Filling) {
 fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused> {
     let range = output.first as usize..output.end as usize;
     let strengths = output.end_strength - output.first_strength;
-    // A partition has one more, which stays 0: the last term has no term to its right.
+    // A partition has one more strength, which stays 0: the last term has no neighbour to its right.
     let strengths = match output.form() {
         ClosedForm::Partition => strengths.min(2 * (output.end - output.first)),
         _ => strengths,
@@ -205,7 +205,7 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused>
             };
             lines.push("-- The areas of the output's terms, and their moments about the middle of its range.".into());
             lines.push(format!("local AREAS = {{{}}}", list(|m| m.area)));
-            // What is left of rounding is 0.
+            // Rounding errors are set to 0.
             let moment = |m: &flagred::board::table::Moment| {
                 if m.moment.abs() < 1e-9 { 0.0 } else { m.moment }
             };
@@ -283,12 +283,12 @@ fn defuzzify(output: &Output) -> Vec<String> {
     lines
 }
 
-/// Conditions as expressions over the degrees of terms.
+/// Converts conditions to expressions over the degrees of terms.
 struct Script<'m> {
     model: &'m Model,
-    /// Of the rule that is written.
+    /// The operators of the current rule.
     operators: Operators,
-    /// The terms that are used: the input, and the term among its terms.
+    /// The terms in use, by the index of the input and of the term.
     used: Vec<(usize, usize)>,
     functions: Vec<&'static str>,
 }
@@ -345,7 +345,7 @@ impl Script<'_> {
                     .map(|input| &input.terms);
                 let term =
                     terms.and_then(|terms| terms.iter().position(|known| known.name == term.text));
-                // A model that compiles names inputs and terms that it has.
+                // A model that compiles contains every input and term that its rules name.
                 let place = (input.unwrap_or_default(), term.unwrap_or_default());
                 let known = self.used.iter().position(|used| *used == place);
                 let index = known.unwrap_or_else(|| {
@@ -375,7 +375,7 @@ impl Script<'_> {
                 Hedge::Any => "1.0".into(),
             };
         }
-        // The power binds more than a product, and not more than another power.
+        // A power binds more tightly than a product, but does not chain with another power.
         match hedges.len() {
             0 | 1 => degree,
             _ => format!("({degree})"),
@@ -417,7 +417,7 @@ fn operator(operator: &str, known: &'static str) -> Refused {
     }
 }
 
-/// The corners of a term as numbers of the script.
+/// Returns the corners of a term as numbers for the script.
 fn corners(variable: &Variable, term: usize) -> Result<Vec<String>, Refused> {
     let Some(term) = variable.terms.get(term) else {
         return Ok(Vec::new());
@@ -431,7 +431,7 @@ fn corners(variable: &Variable, term: usize) -> Result<Vec<String>, Refused> {
             "the script has terms made of straight lines; `piecewise` can come near to a curve",
         )
     })?;
-    // The script takes the degree behind a vertical side, but at the end of the range there is nothing behind it.
+    // At a vertical side the script uses the degree to its right, but to the right of the range there is none.
     if let [.., (left, _), (right, _)] = *corners.as_slice()
         && left == right
         && right >= variable.high
@@ -444,7 +444,7 @@ fn corners(variable: &Variable, term: usize) -> Result<Vec<String>, Refused> {
         .collect())
 }
 
-/// The area of a term of the output and its centre, within the range.
+/// Returns the area of an output's term and its centre, within the range.
 fn area_and_centre(variable: &Variable, term: &str) -> (f64, f64) {
     const STEPS: u32 = 200;
     let Some(term) = variable.terms.iter().find(|known| known.name == term) else {
@@ -464,8 +464,8 @@ fn area_and_centre(variable: &Variable, term: &str) -> (f64, f64) {
     }
 }
 
-/// What a pilot reads of the input that distinguishes a rule, as two strings of the script, and whether the input tells how near
-/// motors are to a limit: that of the proposition that the fewest rules have, as in a finding.
+/// Returns the texts for a pilot about the input that distinguishes a rule, as two Lua strings, and whether this input measures how near
+/// motors are to a limit. As in a finding, it is the input of the proposition that occurs in the fewest rules.
 fn about(estimator: &Estimator, condition: &Condition) -> (String, bool) {
     let rules = estimator.model().rules.iter();
     let all: Vec<Vec<&Proposition>> = rules

@@ -1,7 +1,7 @@
-//! The script with places to fill: `-- @put name` is replaced by lines, and what stands between `-- @if name`, `-- @else` and
-//! `-- @end` is kept where it holds.
+//! Templates of the script: `-- @put name` is replaced by lines, and the lines between `-- @if name`, `-- @else` and `-- @end` are kept
+//! only if the condition holds.
 
-/// What fills the places.
+/// The values for a template.
 #[derive(Default)]
 pub(super) struct Filling {
     holds: Vec<(&'static str, bool)>,
@@ -10,22 +10,22 @@ pub(super) struct Filling {
 }
 
 impl Filling {
-    /// Whether a part is kept.
+    /// Sets a condition.
     pub(super) fn set(&mut self, name: &'static str, holds: bool) {
         self.holds.push((name, holds));
     }
 
-    /// The lines of a place.
+    /// Sets the lines that replace `-- @put name`.
     pub(super) fn put(&mut self, name: &'static str, lines: Vec<String>) {
         self.lines.push((name, lines));
     }
 
-    /// The value that replaces a name in capitals, outside of strings and comments.
+    /// Sets the value that replaces a name in capitals outside strings and comments.
     pub(super) fn constant(&mut self, name: &'static str, value: String) {
         self.constants.push((name, value));
     }
 
-    /// The script. A name that is not known is kept as it is, and counts as not holding.
+    /// Returns the script. Unknown names in capitals are kept, and unknown conditions are false.
     pub(super) fn fill(&self, template: &str) -> String {
         let (mut out, mut kept) = (String::new(), Vec::new());
         for line in template.lines() {
@@ -57,7 +57,7 @@ impl Filling {
         out
     }
 
-    /// A line of the template with values for constants.
+    /// Appends a line of the template with constants replaced by their values.
     fn line(&self, line: &str, out: &mut String) {
         let code = line.find("--").unwrap_or(line.len());
         let (code, comment) = line.split_at(code);

@@ -1,4 +1,4 @@
-//! What a watch tells.
+//! Events of a watch.
 
 use flagred::{
     flight::{Cause, Finding, Verdict},
@@ -153,14 +153,14 @@ fn about<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result<S::Ok, S::Er
     about.serialize(serializer)
 }
 
-/// How a flight, or what was seen of it, ended.
+/// How a flight ended, or the part of it that was received.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum End {
     /// The vehicle landed.
     Landed,
-    /// It was in the air when it was last known.
+    /// The vehicle was in the air when contact was lost.
     Lost(Lost),
-    /// It is still in the air, and is heard.
+    /// The vehicle is still in the air and is received.
     Left(Left),
 }
 
@@ -184,13 +184,13 @@ pub(crate) enum Left {
     SetUpAnew,
 }
 
-/// What was seen of a flight.
+/// A flight, or the part of it that was received.
 #[derive(Debug, Clone)]
 pub(crate) struct Flown {
     /// The latest time of the vehicle's clock.
     pub(crate) t_s: Option<f64>,
     pub(crate) verdict: Verdict,
-    /// The level of what was seen; `None` where too little was.
+    /// The level of the received part; `None` if it was too short.
     pub(crate) level_seen: Option<Level>,
     pub(crate) risk_max: Option<f64>,
 }

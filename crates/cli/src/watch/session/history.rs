@@ -1,21 +1,32 @@
-//! The motor commands of a flight so far. Where motors or limits become known better, the flight is assessed again from its
+//! The motor commands of a flight so far. If motors or limits become known later, the flight is assessed again from its
 //! beginning.
 
 use flagred_flightlog::mavlink::Pulses;
 
-/// Samples that are kept: 20 minutes at 25 Hz, in 2 MB.
+/// Maximum number of stored samples: 20 minutes at 25 Hz, in 3 MB.
 pub(super) const MOST: usize = 30_000;
+
+/// A sample as it was received.
+#[derive(Debug, Clone)]
+pub(super) struct Received {
+    pub(super) t_s: f64,
+    /// Whether the vehicle reports that it is in the air.
+    pub(super) in_air: Option<bool>,
+    pub(super) pulses: Pulses,
+    /// The signals of the profile, in its order; NaN is unknown.
+    pub(super) signals: Vec<f64>,
+}
 
 /// The samples of a flight.
 #[derive(Debug)]
 pub(super) struct History {
     most: usize,
-    samples: Vec<(f64, Option<bool>, Pulses)>,
+    samples: Vec<Received>,
     is_cut: bool,
 }
 
 impl History {
-    /// An empty one for so many samples.
+    /// Creates an empty history for this many samples.
     pub(super) fn new(most: usize) -> History {
         History {
             most,
@@ -24,21 +35,21 @@ impl History {
         }
     }
 
-    /// Adds a sample, with what the vehicle reports of being in the air. Of a flight that is too long nothing is kept.
-    pub(super) fn push(&mut self, t_s: f64, in_air: Option<bool>, pulses: Pulses) {
+    /// Adds a sample. A flight that is too long is not stored at all.
+    pub(super) fn push(&mut self, received: Received) {
         self.is_cut |= self.samples.len() >= self.most;
         match self.is_cut {
             true => self.samples = Vec::new(),
-            false => self.samples.push((t_s, in_air, pulses)),
+            false => self.samples.push(received),
         }
     }
 
-    /// Whether nothing was added.
+    /// Returns whether no sample was added.
     pub(super) fn is_empty(&self) -> bool {
         self.samples.is_empty() && !self.is_cut
     }
 
-    /// Forgets the flight.
+    /// Drops the flight.
     pub(super) fn clear(&mut self) {
         if !self.is_empty() {
             *self = History::new(self.most);
@@ -46,7 +57,7 @@ impl History {
     }
 
     /// The samples since take-off; `None` where not all are kept.
-    pub(super) fn whole(&self) -> Option<&[(f64, Option<bool>, Pulses)]> {
+    pub(super) fn whole(&self) -> Option<&[Received]> {
         (!self.is_cut).then_some(&self.samples[..])
     }
 }

@@ -1,4 +1,4 @@
-//! What the watch says to the vehicle's system, and whether another watch says it already.
+//! Messages of the watch to the vehicle's system, coordinated with other watches.
 
 use std::collections::VecDeque;
 
@@ -7,40 +7,40 @@ use flagred_flightlog::mavlink::{Packet, Sender, Version, dialect::MavMessage};
 use super::{Event, Out};
 use crate::watch::voice;
 
-/// Another watch that is silent for so long is gone.
+/// Another watch is considered gone after this silence.
 const GONE_S: f64 = 5.0;
-/// A change between speaking and listening is told at most this often.
+/// Minimum seconds between two reports that the watch starts or stops sending.
 const TELL_S: f64 = 5.0;
-/// Packets kept to know them again where a link sends them back.
+/// Number of sent packets that are stored, to recognise those that a link returns.
 const ECHOES: usize = 16;
-/// PX4 sends the latest value it heard again as its own, within this time; so many values are compared.
+/// PX4 repeats the latest value that it received as its own, within this time. This many values are stored for comparison.
 const ECHO_S: f64 = 5.0;
 const VALUES: usize = 32;
-/// A text that another watch should send waits for that so long; one heard so long ago counts, too.
+/// Delay of a text that another watch should send, and the time before within which the other one may have sent it already.
 const TEXT_WAIT_S: f64 = 1.0;
 const TEXT_HEARD_S: f64 = 2.0;
-/// Texts that wait, or that were heard.
+/// Maximum number of delayed texts, and of texts received from others.
 const TEXTS: usize = 8;
 
-/// The watch's own voice.
+/// The watch as a sender.
 pub(super) struct Speech {
-    /// `None` listens only.
+    /// `None` if the watch only listens.
     sender: Option<Sender>,
-    /// Speaks although another watch does.
+    /// Sends even if another watch does.
     insists: bool,
     other: Option<Other>,
     told: Option<(f64, bool)>,
     has_told_risk: bool,
     sent: VecDeque<Vec<u8>>,
-    /// The bits of each FR_RISK that this watch or another one sent lately, with the time.
+    /// The bits of each recent FR_RISK of this watch or another one, with the time.
     values: VecDeque<(f64, u32)>,
     /// Texts that are sent unless the other watch sends them first.
     waiting: VecDeque<Waiting>,
-    /// The topics of texts that others sent lately, with the time.
+    /// The topics of recent texts of others, with the time.
     heard: VecDeque<(f64, String)>,
 }
 
-/// A text that another watch should send.
+/// A delayed text, which another watch should send.
 struct Waiting {
     due_s: f64,
     topic: Option<String>,
@@ -52,7 +52,7 @@ struct Waiting {
 struct Other {
     component: u8,
     heard_s: f64,
-    /// It told how long it has been running; where it did not, its values were heard.
+    /// Whether it has reported its running time. If not, only its values were received.
     has_age: bool,
     goes_first: bool,
 }
@@ -72,18 +72,17 @@ impl Speech {
         }
     }
 
-    /// Whether it may request anything.
+    /// Returns whether it may send requests.
     pub(super) fn asks(&self) -> bool {
         self.sender.is_some()
     }
 
-    /// Whether it says anything: no other watch does so first.
+    /// Returns whether it sends values and texts: it has a sender, and no other watch has precedence.
     pub(super) fn speaks(&self) -> bool {
         let yields = self.other.as_ref().is_some_and(|other| other.goes_first);
         self.sender.is_some() && (self.insists || !yields)
     }
 
-    /// Sends a request.
     pub(super) fn ask(
         &mut self,
         (version, system): (Version, u8),
@@ -95,7 +94,7 @@ impl Speech {
         }
     }
 
-    /// Sends something, unless another watch does so first.
+    /// Sends a message, unless another watch has precedence.
     pub(super) fn say(
         &mut self,
         now_s: f64,
@@ -113,8 +112,8 @@ impl Speech {
         self.utter(to, message, out);
     }
 
-    /// Sends a text. Where another watch goes first it waits for that one's text on the same topic, and is sent if that
-    /// does not come: a warning must reach somebody.
+    /// Sends a text. If another watch has precedence, the text is delayed, and dropped if the other one sends a text on the same
+    /// topic. So a warning is sent in any case.
     pub(super) fn warn(
         &mut self,
         now_s: f64,
@@ -155,9 +154,9 @@ impl Speech {
         self.values.push_front((now_s, value.to_bits()));
     }
 
-    /// Listens for another watch of the vehicle: the one that has been running longer speaks. A program on the autopilot
-    /// itself speaks, and so does one that tells no age and was heard before this one spoke. An autopilot that `echoes`
-    /// sends the values of others as its own.
+    /// Processes a packet of another watch of the vehicle. The watch that has been running longer has precedence. So do a program on the
+    /// autopilot itself, and a sender that reports no running time and was received before this watch sent a risk. An autopilot that
+    /// `echoes` repeats the values of others as its own.
     pub(super) fn hear(&mut self, now_s: f64, packet: &Packet<'_>, echoes: bool, out: &mut Out) {
         if self.sent.iter().any(|sent| sent == packet.bytes) {
             return;
@@ -197,7 +196,7 @@ impl Speech {
             (None, Some(known)) => known.goes_first || packet.component == 1,
             (None, None) => packet.component == 1 || !self.has_told_risk,
         };
-        // Of several others, one that goes first is enough.
+        // Among several other watches, one with precedence is enough.
         if self.other.as_ref().is_some_and(|other| {
             other.goes_first && !goes_first && other.component != packet.component
         }) {
@@ -212,9 +211,9 @@ impl Speech {
         self.tell(now_s, packet.system, out);
     }
 
-    /// Speaks again where the other watch is gone, and sends the texts that it did not send.
+    /// Resumes sending if the other watch is gone, and sends the texts that it did not send.
     pub(super) fn tick(&mut self, now_s: f64, system: u8, out: &mut Out) {
-        // They are in the order in which they are due.
+        // The texts are sorted by their time.
         while (self.waiting.front()).is_some_and(|text| now_s >= text.due_s) {
             if let Some(text) = self.waiting.pop_front() {
                 self.utter(text.to, &text.message, out);
@@ -230,7 +229,7 @@ impl Speech {
         }
     }
 
-    /// Forgets the other watch: it is that of another vehicle.
+    /// Drops all knowledge of other watches, which belongs to another vehicle.
     pub(super) fn forget(&mut self) {
         self.other = None;
         self.told = None;

@@ -15,9 +15,10 @@ mod flood;
 mod outputs;
 mod px4;
 mod rates;
+mod signals;
 mod trust;
 
-/// A session, the vehicle's side of the link, and the clock of both.
+/// A session, the vehicle's end of the link, and the clock of both.
 pub(crate) struct Bench<'e> {
     pub(crate) session: Session<'e>,
     vehicle: Sender,
@@ -40,7 +41,7 @@ pub(crate) fn quadrotor(in_air: bool) -> MavMessage {
     })
 }
 
-/// Four motor commands at a time of the vehicle's clock, which starts again every 71 minutes.
+/// Four motor commands at a time of the vehicle's clock, which wraps every 71 minutes.
 pub(crate) fn servo(t_s: f64, pulses_us: [u16; 4]) -> MavMessage {
     let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] = pulses_us;
     MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
@@ -82,7 +83,7 @@ impl<'e> Bench<'e> {
         self.hear_bytes(None, &bytes);
     }
 
-    /// Bytes of a packet from an address.
+    /// Receives the bytes of a packet from an address.
     fn hear_bytes(&mut self, source: Source, bytes: &[u8]) {
         let Next::Packet(packet) = next_packet(bytes) else {
             panic!("{bytes:?}");
@@ -92,7 +93,7 @@ impl<'e> Bench<'e> {
         self.take(out);
     }
 
-    /// A heartbeat; as many as it takes where the vehicle is not followed yet.
+    /// Sends a heartbeat, or as many as needed if the vehicle is not followed yet.
     pub(crate) fn beat(&mut self, in_air: bool) {
         let times = if self.session.view().is_none() { 3 } else { 1 };
         for _ in 0..times {
@@ -100,7 +101,7 @@ impl<'e> Bench<'e> {
         }
     }
 
-    /// Lets time pass in steps of 20 ms.
+    /// Advances the time in steps of 20 ms.
     fn wait(&mut self, seconds: f64) {
         let end_s = self.now_s + seconds;
         while self.now_s < end_s {
@@ -111,7 +112,7 @@ impl<'e> Bench<'e> {
         }
     }
 
-    /// Lets time pass with a heartbeat a second.
+    /// Advances the time with one heartbeat per second.
     fn wait_beating(&mut self, seconds: u32, in_air: bool) {
         for _ in 0..seconds {
             self.beat(in_air);
@@ -146,7 +147,7 @@ impl<'e> Bench<'e> {
         }
     }
 
-    /// Hovers at 25 Hz from a time of the vehicle's clock on.
+    /// Hovers at 25 Hz, starting at a time of the vehicle's clock.
     pub(crate) fn hover(&mut self, from_s: f64, seconds: f64, pulse: u16) {
         self.fly(from_s, seconds, |i| {
             let wiggle = (i % 5) as u16;
@@ -154,7 +155,7 @@ impl<'e> Bench<'e> {
         });
     }
 
-    /// Flies at 25 Hz from a time of the vehicle's clock on, with the pulses of each sample.
+    /// Flies at 25 Hz with the pulses of each sample, starting at a time of the vehicle's clock.
     fn fly(&mut self, from_s: f64, seconds: f64, pulses: impl Fn(u32) -> [u16; 4]) {
         for i in 0..(seconds * 25.0) as u32 {
             if i % 25 == 0 {
@@ -165,7 +166,7 @@ impl<'e> Bench<'e> {
         }
     }
 
-    /// What was said of the latest level.
+    /// The text of the latest level.
     fn said(&self) -> &str {
         let mut events = self.events.iter().rev();
         let text = events.find_map(|event| match event {
@@ -193,7 +194,7 @@ impl<'e> Bench<'e> {
 }
 
 #[test]
-fn parameters_that_never_come_are_assumed_and_those_that_come_late_are_taken() {
+fn missing_parameters_are_assumed_and_late_ones_are_used() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.wait_beating(9, false);
@@ -223,7 +224,7 @@ fn parameters_that_never_come_are_assumed_and_those_that_come_late_are_taken() {
         (f64::from(0.1_f32), f64::from(0.9_f32))
     );
     assert_eq!(last.motors[2].source, "SERVO3_FUNCTION = 35");
-    // The same once more is no news.
+    // Repeated parameters are not reported again.
     bench.all_parameters();
     bench.wait(0.1);
     assert_eq!(bench.setups().len(), 2);
@@ -253,7 +254,7 @@ fn a_given_range_is_used_until_the_vehicle_reports_its_own() {
 }
 
 #[test]
-fn damaged_parameters_are_not_believed() {
+fn damaged_parameters_are_ignored() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -270,7 +271,7 @@ fn damaged_parameters_are_not_believed() {
 }
 
 #[test]
-fn listening_only_sends_nothing() {
+fn a_watch_that_only_listens_sends_nothing() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, None);
     bench.wait_beating(9, false);
@@ -283,7 +284,7 @@ fn listening_only_sends_nothing() {
 }
 
 #[test]
-fn a_flight_at_the_limit_is_told_once_a_level() {
+fn a_flight_at_the_limit_is_reported_once_per_level() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -298,7 +299,7 @@ fn a_flight_at_the_limit_is_told_once_a_level() {
     let text = bench.said();
     assert!(text.starts_with("FLAGRED: FAIL risk "), "{text}");
     assert!(text.ends_with(" %, lower limit, motor 1"), "{text}");
-    // Sent for half a minute of the receiver's clock, four times a second.
+    // Values are sent for half a minute of the receiver's clock, four times a second.
     let values = bench.count_sent(|message| matches!(message, MavMessage::NAMED_VALUE_FLOAT(_)));
     assert!((160..=260).contains(&values), "{values}");
     let mut out = Out::default();
@@ -306,13 +307,13 @@ fn a_flight_at_the_limit_is_told_once_a_level() {
 }
 
 #[test]
-fn a_risk_without_a_motor_at_its_limit_is_told_with_its_meaning() {
+fn a_risk_without_a_motor_at_its_limit_is_reported_with_its_meaning() {
     let estimator = shipped::flagred();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
     bench.all_parameters();
     bench.hover(10.0, 10.0, 1500);
-    // Rolls for one second of two.
+    // The vehicle rolls every other second.
     bench.fly(20.0, 10.0, |i| {
         let roll = if i % 50 < 25 { 0 } else { 200 };
         let [left, right] = [1500 - roll, 1500 + roll];
@@ -337,9 +338,9 @@ fn a_risk_without_a_motor_at_its_limit_is_told_with_its_meaning() {
     assert!(text.ends_with(&format!(", {brief}")), "{text}");
 }
 
-/// Motor 3 does more from a time in flight on: the level stays until the landing, and text and finding name it.
+/// Motor 3 works harder from some time in flight on: the level remains until the landing, and text and finding name the motor.
 #[test]
-fn a_lasting_imbalance_is_told_with_its_motor_until_landing() {
+fn a_lasting_imbalance_is_reported_with_its_motor_until_landing() {
     let estimator = shipped::flagred();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -370,9 +371,9 @@ fn a_lasting_imbalance_is_told_with_its_motor_until_landing() {
     assert_eq!(bench.session.finish(&mut out), Verdict::Known(Level::Warn));
 }
 
-/// A motor is weak; the link is gone for 6 s; the vehicle lands.
+/// A motor is weak; the link is lost for 6 s; the vehicle lands.
 #[test]
-fn good_is_never_said_where_nothing_is_known() {
+fn good_is_never_reported_for_an_unknown_risk() {
     let estimator = shipped::flagred();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -386,7 +387,7 @@ fn good_is_never_said_where_nothing_is_known() {
     assert_eq!(bench.said(), "FLAGRED: risk unknown, last level WARN");
     bench.fly(76.4, 30.6, weak);
     let before = bench.count(|event| matches!(event, Event::Level { .. }));
-    // On the ground.
+    // The vehicle is on the ground.
     bench.fly(107.0, 2.0, |_| [1000; 4]);
     assert_eq!(
         bench.count(|event| matches!(event, Event::Level { .. })),
@@ -401,7 +402,7 @@ fn good_is_never_said_where_nothing_is_known() {
 }
 
 #[test]
-fn silence_takes_the_risk_away_and_is_told_once() {
+fn a_silence_makes_the_risk_unknown_and_is_reported_once() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -423,7 +424,7 @@ fn silence_takes_the_risk_away_and_is_told_once() {
         "it is not asked while it is not there"
     );
 
-    // Heartbeats alone: the link is back, the motors are not.
+    // Only heartbeats arrive: the link is back, but the motor commands are still missing.
     bench.wait_beating(4, true);
     assert_eq!(bench.count(lost(Silent::MotorCommands)), 1);
     assert!(bench.session.view().unwrap().latest.is_none());
@@ -436,9 +437,9 @@ fn silence_takes_the_risk_away_and_is_told_once() {
     );
 }
 
-/// The microseconds since boot start over after 71 minutes; that is no reboot, and nothing is forgotten.
+/// The microseconds since boot wrap after 71 minutes. That is not a reboot, and no state is lost.
 #[test]
-fn a_clock_that_starts_over_goes_on() {
+fn a_restarted_clock_is_continued() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);

@@ -1,4 +1,4 @@
-//! The vehicle that is followed: whether it is heard, what its motors are, and its flight.
+//! The vehicle that is followed: its link, its motors, and its flight.
 
 use flagred::{
     estimator::Estimator,
@@ -8,28 +8,32 @@ use flagred::{
 };
 use flagred_flightlog::{
     Gap, Vehicle,
-    mavlink::{Packet, Pulses, Requests, Setup, Telemetry, Version, parameters_known},
+    mavlink::{Packet, Requests, Setup, Telemetry, Version, parameters_known},
+};
+use fuzzy::drawing::number;
+
+use super::{
+    End, Event, Flown, Left, Lost, Out, Silent, Source,
+    history::{History, Received},
 };
 
-use super::{End, Event, Flown, Left, Lost, Out, Silent, Source, history::History};
-
-/// A link, or the motor commands on it, that are silent for this long are lost.
+/// A link, or the motor commands on it, count as lost after this silence.
 const SILENT_S: f64 = 2.0;
-/// Listening without asking, this long until what is not known is assumed.
+/// A watch that sends no requests waits this long for parameters before it assumes them.
 const LISTEN_S: f64 = 10.0;
-/// A vehicle in the air is not waited for longer than this: estimates begin with what is assumed.
+/// If a vehicle is in the air, the watch waits no longer than this before it assumes missing parameters.
 const HURRY_S: f64 = 1.0;
-/// A station that slows the motor commands down is told at most this often.
+/// Minimum seconds between two reports of a station that reduces the rate of the motor commands.
 const TELL_SLOWED_S: f64 = 60.0;
 
 /// A vehicle that is followed.
 pub(super) struct Tracked {
     pub(super) telemetry: Telemetry,
-    /// Where its packets come from.
+    /// The origin of its packets.
     pub(super) source: Source,
-    /// Motor commands came, with a clock that goes on.
+    /// Motor commands were received, and their clock advances.
     pub(super) is_proved: bool,
-    /// The connection that it was heard on is closed.
+    /// The connection on which it was received is closed.
     pub(super) is_gone: bool,
     pub(super) requests: Requests,
     pub(super) found_s: f64,
@@ -38,7 +42,7 @@ pub(super) struct Tracked {
     pub(super) set_up_tried: bool,
     /// Why its motors cannot be assessed.
     pub(super) refused: Option<Reason>,
-    /// The flight so far: a parameter that comes late may change motors or limits.
+    /// The flight so far: parameters that arrive later may change motors or limits.
     pub(super) history: History,
     slowed_told_s: Option<f64>,
     pub(super) watch: Option<Watch>,
@@ -56,14 +60,14 @@ pub(super) struct Watch {
     pub(super) commands_lost: bool,
     pub(super) risk_sent_s: Option<f64>,
     pub(super) is_flying: bool,
-    /// The notice that was open after the sample before.
+    /// The notice that was open after the previous sample.
     pub(super) noticed: Option<Measure>,
-    /// The level of the sample before; `None` where it was unknown.
+    /// The level of the previous sample; `None` if unknown.
     pub(super) level: Option<Level>,
     pub(super) latest: Option<Update>,
 }
 
-/// How things stand; what is lost is not shown as if it were known.
+/// The current state. Values that are out of date are omitted.
 pub(crate) struct View<'a> {
     pub(crate) system: u8,
     pub(crate) vehicle: &'a Vehicle,
@@ -71,7 +75,7 @@ pub(crate) struct View<'a> {
     pub(crate) is_in_air: bool,
     pub(crate) link_lost: bool,
     pub(crate) motors_lost: bool,
-    /// The share of the vehicle's packets that did not arrive.
+    /// The share of the vehicle's packets that were lost.
     pub(crate) lost_share: f64,
     pub(crate) setup: Option<&'a Setup>,
     /// Effective commands; NaN is unknown.
@@ -82,7 +86,7 @@ pub(crate) struct View<'a> {
 }
 
 impl Tracked {
-    /// Starts to follow the vehicle that a heartbeat told of.
+    /// Starts following the vehicle that a heartbeat identified.
     pub(super) fn new(telemetry: Telemetry, source: Source, now_s: f64, history: usize) -> Tracked {
         Tracked {
             telemetry,
@@ -104,7 +108,7 @@ impl Tracked {
         }
     }
 
-    /// How things stand.
+    /// The current state.
     pub(super) fn view(&self) -> View<'_> {
         let watch = self.watch.as_ref();
         let fresh = watch.filter(|watch| !self.link_lost && !watch.commands_lost);
@@ -124,12 +128,12 @@ impl Tracked {
         }
     }
 
-    /// How it is spoken to.
+    /// The protocol version and system of packets to the vehicle.
     pub(super) fn address(&self) -> (Version, u8) {
         (self.telemetry.version(), self.telemetry.system())
     }
 
-    /// Counts what the sequence numbers of the autopilot tell to be missing; a late packet was counted as such.
+    /// Counts packets that are missing according to the autopilot's sequence numbers; a late packet was counted as missing.
     pub(super) fn count(&mut self, packet: &Packet<'_>) {
         if packet.component != 1 {
             return;
@@ -148,12 +152,12 @@ impl Tracked {
         }
     }
 
-    /// The share of its packets that did not arrive.
+    /// The share of the vehicle's packets that were lost.
     pub(super) fn lost_share(&self) -> f64 {
         self.missed as f64 / (self.missed + self.received).max(1) as f64
     }
 
-    /// The rate of the motor commands where it is time to tell that somebody slows them down.
+    /// The rate of the motor commands, if a station reduced it and a report is due.
     pub(super) fn slowed_hz(&mut self, now_s: f64) -> Option<f64> {
         let rate_hz = self.requests.take_slowed_hz()?;
         let is_due = (self.slowed_told_s).is_none_or(|told_s| now_s - told_s >= TELL_SLOWED_S);
@@ -163,12 +167,11 @@ impl Tracked {
         })
     }
 
-    /// The level of the flight.
     pub(super) fn level(&self) -> Option<Level> {
         self.watch.as_ref()?.latest?.level
     }
 
-    /// Whether nothing comes from it any more.
+    /// Returns whether no packets arrive any more.
     pub(super) fn is_silent(&self) -> bool {
         self.link_lost || self.is_gone
     }
@@ -180,7 +183,7 @@ impl Tracked {
             self.sequence = None;
             self.requests.resume();
             if let Some(watch) = &mut self.watch {
-                // Their silence was the link's.
+                // The commands were missing because the link was lost.
                 watch.commands_s = now_s;
             }
             out.events.push(Event::Back {
@@ -191,8 +194,8 @@ impl Tracked {
         self.heard_s = now_s;
     }
 
-    /// Makes a monitor as soon as the motors are known, and a new one where they become known better: that one gets the flight
-    /// so far. Gives the verdict of that part where it is too long.
+    /// Creates a monitor as soon as the motors are known, and a new one if more about them becomes known; the new one assesses the
+    /// flight from its beginning. If the flight so far is too long for that, it ends, and its verdict is returned.
     pub(super) fn set_up(
         &mut self,
         now_s: f64,
@@ -208,11 +211,11 @@ impl Tracked {
         };
         let hurries =
             !done && self.watch.is_none() && !self.history.is_empty() && waited_s >= HURRY_S;
-        // What was set anew on the ground does not concern the flight that its next commands end.
+        // A setup that changed on the ground does not apply to the previous flight, which ends with its next commands.
         if self.watch.as_ref().is_some_and(|watch| watch.is_flying) && !self.telemetry.is_in_air() {
             return None;
         }
-        // Parameters that came late are not waited for, but looked at.
+        // Late parameters are not awaited, but they are used.
         let is_due = done && (self.telemetry.take_parameters_changed() || !self.set_up_tried);
         if !is_due && !hurries {
             return None;
@@ -243,8 +246,11 @@ impl Tracked {
             return None;
         }
         let geometry = setup.geometry.as_ref();
-        let craft =
-            Craft::new(found).with_geometry(geometry.map_or(&[], |geometry| &geometry.factors));
+        let signals = estimator.profile().signals();
+        let craft = Craft::new(found)
+            .with_signals(&signals)
+            .with_optional(&signals)
+            .with_geometry(geometry.map_or(&[], |geometry| &geometry.factors));
         let assessor = match Assessor::new(estimator, craft, None) {
             Ok(assessor) => assessor,
             Err(error) => {
@@ -267,15 +273,17 @@ impl Tracked {
         match before {
             Some(before) => watch.risk_sent_s = before.risk_sent_s,
             None => {
-                let first = flown.first().map(|(t_s, ..)| Event::TookOff { t_s: *t_s });
-                out.events.extend(first);
+                if let Some(first) = flown.first() {
+                    out.events.push(Event::TookOff { t_s: first.t_s });
+                    watch.note_assumed(out);
+                }
             }
         }
         self.watch = Some(watch);
         None
     }
 
-    /// Notices silence.
+    /// Reports a silent link and missing motor commands.
     pub(super) fn listen(&mut self, now_s: f64, out: &mut Out) {
         if !self.link_lost && now_s - self.heard_s >= SILENT_S {
             self.link_lost = true;
@@ -292,7 +300,7 @@ impl Tracked {
         }
     }
 
-    /// Resets what is known of the vehicle after it rebooted; gives the verdict of the flight that was lost with it.
+    /// Resets the state of the vehicle after a reboot. Returns the verdict of the flight that the reboot ended.
     pub(super) fn start_anew(&mut self, now_s: f64, out: &mut Out) -> Option<Verdict> {
         let verdict = self.end_flight(End::Lost(Lost::Reboot), out);
         out.events.push(Event::Rebooted);
@@ -305,7 +313,7 @@ impl Tracked {
         verdict
     }
 
-    /// Ends the flight that is on with the watch.
+    /// Ends the current flight because the watch ends.
     pub(super) fn finish(&mut self, out: &mut Out) -> Option<Verdict> {
         let commands_lost = self.watch.as_ref().is_some_and(|watch| watch.commands_lost);
         let end = match self.telemetry.is_in_air() {
@@ -323,7 +331,7 @@ impl Tracked {
     }
 }
 
-/// Reports motors and limits, and a given range that these make useless.
+/// Reports motors and limits, and that a given range is ignored, if it is.
 fn ready(setup: &Setup, telemetry: &Telemetry, out: &mut Out) {
     out.events.push(Event::Ready {
         setup: setup.clone(),
@@ -352,20 +360,37 @@ impl Watch {
     }
 
     /// Takes in a sample.
-    pub(super) fn push(&mut self, t_s: f64, in_air: Option<bool>, pulses: &Pulses) -> Update {
-        self.setup.effective_commands(pulses, &mut self.motors);
+    pub(super) fn push(&mut self, received: &Received) -> Update {
+        self.setup
+            .effective_commands(&received.pulses, &mut self.motors);
         self.assessor.push(&Sample {
-            t_s,
+            t_s: received.t_s,
             motors: &self.motors,
-            in_air,
-            signals: &[],
+            in_air: received.in_air,
+            signals: &received.signals,
         })
     }
 
+    /// Reports inputs whose signals have not been received, and that therefore have the value of `if_missing`.
+    pub(super) fn note_assumed(&self, out: &mut Out) {
+        let monitor = self.assessor.monitor();
+        let inputs = &monitor.estimator().profile().inputs;
+        for input in monitor.assumed().filter_map(|index| inputs.get(index)) {
+            let signals: Vec<&str> = input.source.signal.carried().collect();
+            let text = format!(
+                "`{}` is not received yet: input `{}` is assumed to be {} (`if_missing`)",
+                signals.join("` and `"),
+                input.name,
+                number(input.if_missing.unwrap_or(f64::NAN), 6)
+            );
+            out.events.push(Event::Note { text });
+        }
+    }
+
     /// Takes in a flight up to now; its findings are told anew, its levels are not.
-    fn replay(&mut self, flown: &[(f64, Option<bool>, Pulses)], out: &mut Out) {
-        for (t_s, in_air, pulses) in flown {
-            let update = self.push(*t_s, *in_air, pulses);
+    fn replay(&mut self, flown: &[Received], out: &mut Out) {
+        for received in flown {
+            let update = self.push(received);
             self.level = update.level;
             self.latest = Some(update);
             tell(self.assessor.ended(), out);
@@ -374,14 +399,14 @@ impl Watch {
         self.raised_notice();
     }
 
-    /// The notice that the latest sample raised.
+    /// The notice that the latest sample raised, if any.
     pub(super) fn raised_notice(&mut self) -> Option<Finding> {
         let open = self.assessor.open_notice();
         let before = std::mem::replace(&mut self.noticed, open.as_ref().map(|open| open.measure));
         open.filter(|open| before != Some(open.measure))
     }
 
-    /// Ends the flight that is on, if any; gives its verdict.
+    /// Ends the current flight, if any, and returns its verdict.
     pub(super) fn end_flight(&mut self, end: End, out: &mut Out) -> Option<Verdict> {
         if !std::mem::take(&mut self.is_flying) {
             return None;

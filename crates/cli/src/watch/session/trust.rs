@@ -1,4 +1,4 @@
-//! Whom the watch believes: candidates for the vehicle to follow, and what speaks in its name without being it.
+//! Which senders the watch trusts: candidates for the vehicle to follow, and other senders that use its name.
 
 use std::net::SocketAddr;
 
@@ -6,16 +6,16 @@ use flagred_flightlog::{Vehicle, VehicleKind, mavlink::Packet};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Where a packet came from; `None` on a serial port, which has one sender.
+/// The address of a packet's sender; `None` on a serial port, which has one sender.
 pub(crate) type Source = Option<SocketAddr>;
 
-/// So many consistent heartbeats make a candidate the vehicle to follow.
+/// Number of consistent heartbeats that make a candidate the vehicle to follow.
 const BEATS: u32 = 3;
-/// They come in steps of at most this.
+/// Maximum seconds between these heartbeats.
 const BEAT_WAIT_S: f64 = 5.0;
-/// So many motor commands prove a candidate while the one that is followed shows none.
+/// Number of motor commands that prove a candidate while the vehicle that is followed sends none.
 const COMMANDS: u32 = 2;
-/// Candidates at a time: at least one a system.
+/// Maximum number of candidates: at least one per system.
 const CANDIDATES: usize = 256;
 
 const SERVO_OUTPUT_RAW: u32 = 36;
@@ -45,7 +45,7 @@ pub(crate) struct Doubts {
 }
 
 impl Doubts {
-    /// Counts; whether it is the first of its kind.
+    /// Adds to a count, and returns whether this is the first doubt of its kind.
     pub(super) fn add(&mut self, doubt: Doubt, count: u64) -> bool {
         let total = match doubt {
             Doubt::SecondSender => &mut self.second_sender,
@@ -58,7 +58,7 @@ impl Doubts {
     }
 }
 
-/// What a packet of the vehicle's system that is not from its autopilot makes doubtful.
+/// The reason to doubt a packet that has the vehicle's system but may come from another sender.
 pub(super) fn doubt_of(packet: &Packet<'_>) -> Option<Doubt> {
     match (packet.component, packet.id) {
         (1, _) => Some(Doubt::SecondSender),
@@ -67,7 +67,7 @@ pub(super) fn doubt_of(packet: &Packet<'_>) -> Option<Doubt> {
     }
 }
 
-/// Whether a vehicle is a multirotor, or does not say what it is.
+/// Returns whether a vehicle is a multirotor or of unknown kind.
 pub(crate) fn may_be_multirotor(vehicle: &Vehicle) -> bool {
     matches!(vehicle.kind, VehicleKind::Multirotor | VehicleKind::Unknown)
 }
@@ -83,17 +83,17 @@ struct Candidate {
     commands: u32,
 }
 
-/// What speaks for a candidate.
+/// The evidence for a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Proof {
     None,
     /// Several consistent heartbeats.
     Beats,
-    /// And motor commands.
+    /// Several consistent heartbeats, and motor commands.
     Commands,
 }
 
-/// The senders that may be a vehicle, while none is followed or the one that is does not prove to be one.
+/// Senders that may be a vehicle, while none is followed or the followed one has not proved to be one.
 #[derive(Debug, Default)]
 pub(super) struct Candidates(Vec<Candidate>);
 
@@ -108,7 +108,7 @@ impl Candidates {
         }
     }
 
-    /// Takes in a heartbeat; gives what speaks for its sender so far.
+    /// Processes a heartbeat, and returns the evidence for its sender so far.
     pub(super) fn beat(
         &mut self,
         now_s: f64,
@@ -150,7 +150,7 @@ impl Candidates {
         self.0.iter_mut().find(is_it)
     }
 
-    /// Where there is no room, the one that goes has the fewest heartbeats, and of these the oldest.
+    /// Adds a candidate. If there are too many, the oldest of those with the fewest heartbeats is dropped.
     fn add(&mut self, candidate: Candidate) {
         if self.0.len() >= CANDIDATES {
             let least = (self.0.iter().enumerate())

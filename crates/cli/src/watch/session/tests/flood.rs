@@ -1,4 +1,4 @@
-//! Floods of packets: the vehicle is not lost, memory stays flat, and damaged bytes raise no alarm.
+//! Floods of packets: the vehicle is not lost, memory stays constant, and damaged bytes raise no alarm.
 
 use allocation_counter::measure;
 use fastrand::Rng;
@@ -9,13 +9,12 @@ use flagred_flightlog::mavlink::{
 
 use super::*;
 
-/// Packets of the flood for one of the vehicle's: 50,000 a second.
+/// Number of flood packets for each packet of the vehicle: 50,000 a second.
 const SHARE: usize = 2000;
-/// Memory may grow by this after the first packets: what is known of a flight, never what a flood says.
+/// Maximum growth of memory after the first packets: the flight may need it, the flood must not.
 const GROWTH: u64 = 256 << 10;
 
-/// A packet of somebody who is not the vehicle, and where it comes from: systems, components, addresses and contents as
-/// they fall.
+/// A packet of another sender, and its origin. System, component, address and contents are random.
 fn stranger(random: &mut Rng) -> (Source, Vec<u8>) {
     let source = match random.u8(..4) {
         // The vehicle's own address.
@@ -51,11 +50,11 @@ fn stranger(random: &mut Rng) -> (Source, Vec<u8>) {
     (source, bytes)
 }
 
-/// A link in process: bytes as they arrive, a packet at a time.
+/// A link within the process: bytes as they arrive, one packet at a time.
 struct Link<'e> {
     bench: Bench<'e>,
     stream: Stream,
-    /// Packets that the session took as the vehicle's.
+    /// The number of packets that the session attributed to the vehicle.
     taken: u64,
 }
 
@@ -69,7 +68,7 @@ impl Link<'_> {
         self.stream.end();
     }
 
-    /// So many packets, one in [`SHARE`] of them the hovering vehicle's.
+    /// Sends this many packets, one in [`SHARE`] of them from the hovering vehicle.
     fn flood(
         &mut self,
         from_s: f64,
@@ -105,7 +104,7 @@ impl Link<'_> {
     }
 }
 
-/// What may be told while the vehicle hovers and others shout.
+/// Returns whether an event is allowed while the vehicle hovers and others flood the link.
 fn is_harmless(event: &Event) -> bool {
     match event {
         Event::Doubt { .. }
@@ -114,7 +113,7 @@ fn is_harmless(event: &Event) -> bool {
         | Event::AnotherWatch { .. }
         | Event::TookOff { .. } => true,
         Event::Locked { system, .. } => *system == 1,
-        // Known, after the first seconds.
+        // After the first seconds the risk must be known.
         Event::Risk { update } => update.t_s < 15.0 || update.risk.is_ok(),
         _ => false,
     }
@@ -125,8 +124,8 @@ fn hovering(t_s: f64) -> MavMessage {
     servo(t_s, [1500 + wiggle, 1500, 1500 - wiggle, 1500])
 }
 
-/// Keeps so short a history of the vehicle's own samples that it is full before the memory is looked at: its bound is another
-/// matter, [`MOST`](super::super::history::MOST).
+/// Creates a link with such a short history that it is full before memory is measured. The bound of the history is tested separately, see
+/// [`MOST`](super::super::history::MOST).
 fn link(estimator: &Estimator) -> Link<'_> {
     let session = Session::new(estimator, Some(Sender::new(191)), false).keeping(500);
     let mut bench = Bench {
@@ -148,7 +147,7 @@ fn flood(packets: usize) {
     let estimator = estimator();
     let mut link = link(&estimator);
     let mut random = Rng::with_seed(16);
-    // Made before: the flood is to be faster than its making.
+    // The packets are generated in advance, since that would slow the flood down.
     let pool: Vec<_> = (0..20_000).map(|_| stranger(&mut random)).collect();
     let mut pick = |_| pool[random.usize(..pool.len())].clone();
     let warm_up = SHARE * 400;
@@ -162,24 +161,24 @@ fn flood(packets: usize) {
     let view = link.bench.session.view().unwrap();
     assert!(view.system == 1 && !view.link_lost && !view.motors_lost);
     assert!(view.latest.unwrap().t_s > end_s - 0.05);
-    // Its own, and nothing else.
+    // Only the vehicle's packets were attributed to it.
     assert_eq!(link.taken, 2 * packets.div_ceil(SHARE) as u64);
     assert!(link.bench.session.doubts().second_sender > 0);
 }
 
 #[test]
-fn a_million_packets_of_others_do_not_cost_the_vehicle() {
+fn a_million_packets_of_others_do_not_lose_the_vehicle() {
     flood(1_000_000);
 }
 
-/// A day's worth, 130 s here: `cargo test -p flagred-cli --lib flood -- --ignored --nocapture`.
+/// A day of packets, in 130 s: `cargo test -p flagred-cli --lib flood -- --ignored --nocapture`.
 #[test]
 #[ignore = "a day's flood takes two minutes"]
-fn a_hundred_million_packets_of_others_do_not_cost_the_vehicle() {
+fn a_hundred_million_packets_of_others_do_not_lose_the_vehicle() {
     flood(100_000_000);
 }
 
-/// Bits flipped, bytes lost, added and cut off: no panic, and no text because of bytes that are no packet.
+/// Flips bits; loses, adds and cuts bytes. Nothing panics, and bytes that are not packets cause no text.
 fn mutate(packets: usize) {
     let estimator = estimator();
     let mut link = link(&estimator);

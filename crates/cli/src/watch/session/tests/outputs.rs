@@ -1,4 +1,4 @@
-//! Motors on outputs above 16, and those of PX4.
+//! Motors on outputs above 16, and the outputs of PX4.
 
 use super::*;
 
@@ -33,7 +33,7 @@ impl Bench<'_> {
         }));
     }
 
-    /// The bytes of a number in the place of a float, as PX4 sends them.
+    /// Sends the bytes of an integer in place of a float, as PX4 does.
     fn integer(&mut self, name: &str, value: i32) {
         self.hear(&MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
             param_value: f32::from_bits(value as u32),
@@ -56,7 +56,7 @@ impl Bench<'_> {
 }
 
 #[test]
-fn motors_on_both_ports_are_complete_with_the_second_and_not_carried_on_without_the_first() {
+fn motors_on_both_ports_require_recent_values_of_both() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat_as(HEXAROTOR, MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA);
@@ -86,13 +86,13 @@ fn motors_on_both_ports_are_complete_with_the_second_and_not_carried_on_without_
     let geometry = setup.geometry.as_ref().unwrap();
     assert_eq!(geometry.frame.as_deref(), Some("HEXA/X"));
 
-    // The first time stamp alone is not believed yet.
+    // The first time stamp alone is not trusted yet.
     for t_s in [9.96, 10.0] {
         bench.pulses(t_s, 0, 1500, 0);
         bench.pulses(t_s, 1, 0, 1900);
     }
     assert_eq!(bench.motors(), [0.5, 0.5, 0.5, 0.5, 1.0, 1.0]);
-    // The first port's packet got lost.
+    // The first port's packet is lost.
     bench.pulses(10.04, 1, 0, 1100);
     let motors = bench.motors();
     assert!(motors[..4].iter().all(|command| command.is_nan()));
@@ -100,7 +100,7 @@ fn motors_on_both_ports_are_complete_with_the_second_and_not_carried_on_without_
 }
 
 #[test]
-fn a_px4_vehicle_is_asked_for_the_functions_and_limits_of_its_outputs() {
+fn functions_and_limits_of_outputs_are_requested_from_px4() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     let px4 = MavAutopilot::MAV_AUTOPILOT_PX4;

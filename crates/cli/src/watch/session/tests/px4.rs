@@ -1,11 +1,11 @@
-//! A PX4 vehicle: what it answers, what it sends again as its own, and parameters that come in the air.
+//! A PX4 vehicle: its answers, the values that it repeats as its own, and parameters that arrive in flight.
 
 use flagred_flightlog::mavlink::{Packet, dialect::NAMED_VALUE_FLOAT_DATA};
 
 use super::*;
 
 const PARAM_ERROR: u32 = 345;
-/// CRC_EXTRA of PARAM_ERROR and of EVENT, which this program does not know.
+/// CRC_EXTRA of PARAM_ERROR and of EVENT, which the message dialect of this program lacks.
 const PARAM_ERROR_EXTRA: u8 = 209;
 
 impl Bench<'_> {
@@ -30,7 +30,7 @@ impl Bench<'_> {
         }));
     }
 
-    /// Flies at 25 Hz; `each` hears the packets that were sent since the sample before.
+    /// Flies at 25 Hz; `each` receives the packets that were sent since the sample before.
     fn px4_fly(&mut self, from_s: f64, seconds: f64, pulses: [u16; 4]) {
         self.px4_fly_and(from_s, seconds, pulses, |_, _| {});
     }
@@ -71,7 +71,7 @@ impl Bench<'_> {
         }));
     }
 
-    /// Motors and geometry of a square quadrotor; limits and thrust coefficients are not told.
+    /// Sends motors and geometry of a square quadrotor, without limits and thrust coefficients.
     fn px4_motors(&mut self) {
         for motor in 1..=4 {
             self.px4_integer(&format!("PWM_MAIN_FUNC{motor}"), 100 + motor);
@@ -97,7 +97,7 @@ impl Bench<'_> {
         }
     }
 
-    /// PX4 does not have these parameters, and tells so.
+    /// Reports that PX4 does not have these parameters.
     fn px4_lacks(&mut self, names: &[String]) {
         for name in names {
             let mut payload = vec![0, 0, 1, 191];
@@ -113,7 +113,7 @@ impl Bench<'_> {
         self.count(|event| matches!(event, Event::Ready { .. }))
     }
 
-    /// How many flights have begun, and how many are over.
+    /// The numbers of flights that have begun and ended.
     fn flights(&self) -> (usize, usize) {
         let took_off = self.count(|event| matches!(event, Event::TookOff { .. }));
         (
@@ -123,7 +123,7 @@ impl Bench<'_> {
     }
 }
 
-/// A packet of MAVLink 2 of the vehicle.
+/// A MAVLink 2 packet of the vehicle.
 fn packet(id: u32, extra: u8, payload: &[u8]) -> Vec<u8> {
     let [a, b, c, _] = id.to_le_bytes();
     let mut bytes = vec![0xfd, payload.len() as u8, 0, 0, 0, 1, 1, a, b, c];
@@ -178,7 +178,7 @@ fn a_parameter_that_the_vehicle_does_not_have_is_not_waited_for() {
 }
 
 #[test]
-fn a_vehicle_found_in_the_air_gets_its_risk_while_parameters_are_still_awaited() {
+fn a_vehicle_found_in_the_air_has_a_risk_before_its_parameters_arrive() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_fly(100.0, 0.8, [1500; 4]);
@@ -190,7 +190,7 @@ fn a_vehicle_found_in_the_air_gets_its_risk_while_parameters_are_still_awaited()
     bench.px4_motors();
     bench.px4_fly(103.8, 2.0, [1500; 4]);
     assert!(bench.session.view().unwrap().latest.unwrap().risk.is_ok());
-    // The flight counts from its first packet on, and once.
+    // The flight counts from its first packet on, and only once.
     let took_off = bench.events.iter().filter_map(|event| match event {
         Event::TookOff { t_s } => Some(*t_s),
         _ => None,
@@ -199,9 +199,9 @@ fn a_vehicle_found_in_the_air_gets_its_risk_while_parameters_are_still_awaited()
     assert!(took_off.len() == 1 && took_off[0] < 100.2, "{took_off:?}");
 }
 
-/// Limits that come in the air change the commands of the whole flight: the verdict is that with the right ones.
+/// Limits that arrive in flight change the commands of the whole flight: the verdict is the one for the right limits.
 #[test]
-fn limits_that_come_in_the_air_apply_to_the_flight_from_its_beginning() {
+fn limits_that_arrive_in_the_air_apply_to_the_whole_flight() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_beat();
@@ -211,7 +211,7 @@ fn limits_that_come_in_the_air_apply_to_the_flight_from_its_beginning() {
     assert_eq!(bench.setups()[0].assumed, ["commands from 1000 to 2000 us"]);
     bench.px4_fly(100.0, 30.0, [1400; 4]);
     assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
-    // In truth 1400 us is nearly all there is.
+    // With the right limits, 1400 us is nearly the maximum.
     bench.px4_integer("PWM_MAIN_MIN1", 900);
     bench.px4_integer("PWM_MAIN_MAX1", 1402);
     bench.px4_fly(130.0, 5.0, [1400; 4]);
@@ -222,9 +222,9 @@ fn limits_that_come_in_the_air_apply_to_the_flight_from_its_beginning() {
     assert_ne!(bench.session.finish(&mut out), Verdict::Known(Level::Good));
 }
 
-/// Between two flights the range of the motors is set anew; what is set in the air counts from the landing on.
+/// The range of the motors changes between two flights. A change in flight applies after the landing.
 #[test]
-fn limits_that_are_set_anew_count_from_the_next_flight_on() {
+fn changed_limits_apply_from_the_next_flight() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_beat();
@@ -256,9 +256,9 @@ fn limits_that_are_set_anew_count_from_the_next_flight_on() {
     assert_eq!(bench.flights(), (2, 1));
 }
 
-/// PX4 refused these parameters; then a ground station loads all of them.
+/// PX4 refused these parameters; later a ground station loads all of them.
 #[test]
-fn a_refused_parameter_that_comes_in_the_air_takes_no_alarm_back() {
+fn a_refused_parameter_that_arrives_in_the_air_clears_no_alarm() {
     const FAULT: [u16; 4] = [1000, 2000, 1000, 2000];
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
@@ -294,7 +294,7 @@ impl Bench<'_> {
     }
 }
 
-/// A ground station that connects in the air loads all parameters, the thrust coefficients among them.
+/// A ground station that connects in flight loads all parameters, including the thrust coefficients.
 #[test]
 fn parameters_that_change_nothing_change_nothing() {
     let estimator = estimator();
@@ -324,9 +324,9 @@ fn parameters_that_change_nothing_change_nothing() {
     assert_eq!(bench.flights(), (1, 0), "it is one flight");
 }
 
-/// PX4 sends the last NAMED_VALUE_FLOAT that it heard again as its own, with its own time.
+/// PX4 repeats the last NAMED_VALUE_FLOAT that it received as its own, with its own time.
 #[test]
-fn a_value_that_px4_sends_again_as_its_own_is_no_other_watch() {
+fn a_value_forwarded_by_px4_is_not_taken_for_another_watch() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_beat();
@@ -337,7 +337,7 @@ fn a_value_that_px4_sends_again_as_its_own_is_no_other_watch() {
     let mut echoes = 0;
     let mut risk = None;
     bench.px4_fly_and(100.0, 30.0, [1500, 1400, 1600, 1500], |bench, before| {
-        // FR_ELEV got lost, so it is FR_RISK that comes back.
+        // FR_ELEV is lost, so FR_RISK is repeated.
         let new = bench.sent[before..]
             .iter()
             .find_map(|message| match message {
@@ -356,7 +356,7 @@ fn a_value_that_px4_sends_again_as_its_own_is_no_other_watch() {
     assert!(echoes > 30, "{echoes}");
     let other = |event: &Event| matches!(event, Event::AnotherWatch { .. });
     assert_eq!(bench.count(other), 0);
-    // A module on board that has a risk of its own is one.
+    // A module on board with a risk of its own counts as another watch.
     bench.px4_fly_and(130.0, 3.0, [1500; 4], |bench, _| {
         bench.hear(&value(voice::RISK, 0.123, 1));
     });
@@ -364,7 +364,7 @@ fn a_value_that_px4_sends_again_as_its_own_is_no_other_watch() {
 }
 
 #[test]
-fn a_warning_is_sent_where_another_one_speaks_and_does_not_warn() {
+fn a_warning_is_sent_if_another_watch_does_not_warn() {
     let estimator = estimator();
     for warns in [false, true] {
         let mut bench = Bench::new(&estimator, Some(191));
@@ -396,9 +396,9 @@ fn a_warning_is_sent_where_another_one_speaks_and_does_not_warn() {
     }
 }
 
-/// EVENT, which PX4 sends and this program does not know.
+/// EVENT, which PX4 sends and this program's dialect lacks.
 #[test]
-fn an_unknown_message_is_the_vehicles_and_tells_nothing() {
+fn an_unknown_message_of_the_vehicle_is_ignored() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.px4_beat();
@@ -415,12 +415,12 @@ fn an_unknown_message_is_the_vehicles_and_tells_nothing() {
     };
     assert!(!receive(&other));
     assert!(out.events.is_empty());
-    // A link on which nothing else arrives is lost: what cannot be verified keeps nothing alive.
+    // If nothing else arrives on a link, it is lost: messages that cannot be verified do not count.
     bench.wait(2.5);
     assert!(bench.session.view().unwrap().link_lost);
 }
 
-/// The motors fall from a hover to 3 %; gives the level texts, the latest first, and the verdict after the landing.
+/// The motors drop from a hover to 3 %. Returns the level texts, the latest first, and the verdict after the landing.
 fn cut(in_the_air: impl Fn(&mut Bench<'_>)) -> (Vec<String>, Verdict) {
     let estimator = shipped::flagred();
     let mut bench = Bench::new(&estimator, Some(191));
@@ -445,7 +445,7 @@ fn cut(in_the_air: impl Fn(&mut Bench<'_>)) -> (Vec<String>, Verdict) {
 }
 
 #[test]
-fn the_landed_state_is_believed_over_idle_motors() {
+fn the_landed_state_overrides_idle_motors() {
     let (texts, verdict) = cut(|bench| {
         bench.px4_beat();
         bench.px4_state(MavLandedState::MAV_LANDED_STATE_IN_AIR);
@@ -454,9 +454,9 @@ fn the_landed_state_is_believed_over_idle_motors() {
     assert_eq!(verdict, Verdict::Known(Level::Fail));
 }
 
-/// It is not known any more, or a pilot stops the motors on purpose, who landed and does not wait for the land detector.
+/// The landed state may be outdated; or a pilot who landed stops the motors before the land detector reports it.
 #[test]
-fn an_old_landed_state_and_stopped_motors_are_no_fall() {
+fn an_old_landed_state_and_stopped_motors_are_not_a_fall() {
     let silent = cut(|bench| bench.px4_beat());
     let killed = cut(|bench| {
         bench.hear(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {

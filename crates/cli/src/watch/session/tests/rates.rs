@@ -1,4 +1,4 @@
-//! Which rates are asked for, and who slows them down.
+//! Requested rates, and stations that reduce them.
 
 use super::*;
 
@@ -54,7 +54,7 @@ impl Bench<'_> {
 }
 
 #[test]
-fn rates_are_asked_for_until_they_come_in_the_old_way_too() {
+fn rates_are_requested_until_they_arrive_also_by_the_old_message() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.wait_beating(1, false);
@@ -63,14 +63,14 @@ fn rates_are_asked_for_until_they_come_in_the_old_way_too() {
     assert_eq!(asks(&bench), (6, 0));
     bench.wait_beating(2, false);
     assert_eq!(asks(&bench), (6, 3));
-    // They come: nothing more is asked for.
+    // The values arrive, so nothing more is requested.
     bench.all_parameters();
     bench.stream(10.0, 8.0, 25, 5);
     let (new, old) = asks(&bench);
     bench.stream(18.0, 20.0, 25, 5);
     assert_eq!(asks(&bench), (new, old));
 
-    // A vehicle that refuses is asked in the old way at once.
+    // A vehicle that refuses receives the older kind of request at once.
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
     bench.wait(1.2);
@@ -79,9 +79,9 @@ fn rates_are_asked_for_until_they_come_in_the_old_way_too() {
     assert_eq!(asks(&bench), (3, 3));
 }
 
-/// Requests are for all on a link: what comes often enough is not asked for, and nobody's attitude becomes slower.
+/// Requests apply to all receivers on a link: sufficient rates are not requested, so that no other receiver's attitude slows down.
 #[test]
-fn a_rate_that_is_high_enough_is_not_asked_for() {
+fn a_rate_that_is_high_enough_is_not_requested() {
     let estimator = estimator();
     for (motors_hz, others_hz, expected) in [(50, 50, 0), (25, 5, 0), (10, 50, 1), (50, 2, 2)] {
         let mut bench = Bench::new(&estimator, Some(191));
@@ -93,7 +93,7 @@ fn a_rate_that_is_high_enough_is_not_asked_for() {
             "{motors_hz} Hz, {others_hz} Hz"
         );
     }
-    // Two of three packets get lost: the rate on board is what counts.
+    // Two of three packets are lost: the rate on board is the one that counts.
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(true);
     for i in 0..150_u32 {
@@ -118,7 +118,7 @@ fn the_station_that_slows_the_motor_commands_is_named_once() {
     bench.beat(true);
     bench.all_parameters();
     bench.stream(10.0, 10.0, 25, 5);
-    // An answer to another station changes nothing by itself, and its refusal is not ours.
+    // An answer to another station changes nothing by itself, and its refusal is not for this watch.
     bench.hear(&accepted(1, (255, 190), MavResult::MAV_RESULT_UNSUPPORTED));
     bench.hear(&accepted(1, (255, 190), MavResult::MAV_RESULT_ACCEPTED));
     bench.stream(20.0, 5.0, 25, 5);
@@ -154,9 +154,9 @@ fn the_station_that_slows_the_motor_commands_is_named_once() {
     );
 }
 
-/// Whenever within a look it changes, the rate is that after the change.
+/// Wherever the rate changes within a measuring interval, the reported rate is the one after the change.
 #[test]
-fn the_rate_that_is_told_is_measured_after_the_fall() {
+fn the_reported_rate_is_measured_after_the_drop() {
     let estimator = estimator();
     for tenths in 0..20 {
         let mut bench = Bench::new(&estimator, Some(191));

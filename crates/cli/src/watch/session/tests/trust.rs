@@ -1,4 +1,4 @@
-//! Whom the watch believes, and what it does where another one watches too.
+//! Which senders the watch trusts, and how it behaves beside another watch.
 
 use flagred_flightlog::mavlink::dialect::NAMED_VALUE_FLOAT_DATA;
 
@@ -8,7 +8,7 @@ fn address(port: u16) -> Source {
     Some(([192, 0, 2, 1], port).into())
 }
 
-/// Somebody at an address who speaks as a component of a system.
+/// A sender at an address, as a component of a system.
 struct Peer {
     source: Source,
     system: u8,
@@ -45,7 +45,7 @@ impl Bench<'_> {
 }
 
 #[test]
-fn one_heartbeat_is_no_vehicle_and_a_stray_one_does_not_lock_the_vehicle_out() {
+fn one_stray_heartbeat_does_not_select_a_vehicle() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     let mut stray = Peer::new(1, 9, 1);
@@ -54,7 +54,7 @@ fn one_heartbeat_is_no_vehicle_and_a_stray_one_does_not_lock_the_vehicle_out() {
     bench.wait_beating(1, false);
     assert_eq!(bench.followed(), Some(1));
 
-    // One that goes on sending heartbeats, and no motor commands, gives way to the one that has them.
+    // A sender of heartbeats without motor commands is replaced by the one that sends commands.
     let mut bench = Bench::new(&estimator, Some(191));
     let mut vehicle = Peer::new(2, 1, 1);
     for i in 0..20_u32 {
@@ -80,7 +80,7 @@ fn one_heartbeat_is_no_vehicle_and_a_stray_one_does_not_lock_the_vehicle_out() {
 }
 
 #[test]
-fn heartbeats_alone_give_way_to_other_heartbeats_where_requests_are_in_vain() {
+fn another_vehicle_is_selected_if_the_first_only_sends_heartbeats() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     let (mut stray, mut vehicle) = (Peer::new(1, 9, 1), Peer::new(2, 1, 1));
@@ -95,7 +95,7 @@ fn heartbeats_alone_give_way_to_other_heartbeats_where_requests_are_in_vain() {
 }
 
 #[test]
-fn a_second_sender_is_told_once_and_not_believed_until_the_first_is_silent() {
+fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -117,7 +117,7 @@ fn a_second_sender_is_told_once_and_not_believed_until_the_first_is_silent() {
     assert_eq!(bench.count(|event| matches!(event, Event::Over { .. })), 0);
     assert_eq!(bench.count(|event| matches!(event, Event::Level { .. })), 0);
 
-    // The first is silent: the flight goes on with the second, and that is told.
+    // The first sender is silent: the flight continues with the second one, and that is reported.
     bench.wait(2.5);
     for i in 0..50 {
         liar.say(&mut bench, &quadrotor(true));
@@ -129,7 +129,7 @@ fn a_second_sender_is_told_once_and_not_believed_until_the_first_is_silent() {
     );
     assert_eq!(changed, 1);
     assert!(!bench.session.view().unwrap().link_lost);
-    // The one before is the second sender now.
+    // The first sender is now the second one.
     bench.beat(true);
     assert_eq!(bench.session.doubts().second_sender, 301);
     let mut out = Out::default();
@@ -181,7 +181,7 @@ fn another_system_is_followed_only_long_after_the_vehicle_fell_silent() {
 }
 
 #[test]
-fn parameters_of_other_components_are_not_those_of_the_autopilot() {
+fn parameters_of_other_components_are_ignored() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -205,10 +205,10 @@ fn parameters_of_other_components_are_not_those_of_the_autopilot() {
     assert_eq!(bench.session.doubts().other_component, 3);
 }
 
-/// Somebody at the vehicle's own address sends two packets for each of the vehicle's: a clock that goes back is no reboot
-/// while the clock before goes on.
+/// A sender at the vehicle's own address sends two packets for each of the vehicle's. A clock that jumps back is not a reboot
+/// while the original clock continues.
 #[test]
-fn a_clock_that_jumps_while_it_goes_on_is_no_reboot() {
+fn a_clock_that_jumps_once_is_not_a_reboot() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);
@@ -229,7 +229,7 @@ fn a_clock_that_jumps_while_it_goes_on_is_no_reboot() {
     let latest = bench.session.view().unwrap().latest.unwrap();
     assert!(latest.risk.is_ok() && latest.t_s > 113.0, "{latest:?}");
 
-    // A vehicle that reboots is silent before.
+    // A vehicle that reboots is silent before it sends again.
     bench.wait_beating(3, true);
     for i in 0..5 {
         bench.hear(&servo(1.0 + f64::from(i) * 0.04, [1000; 4]));
@@ -264,7 +264,7 @@ fn said_by(bench: &Bench<'_>) -> usize {
 }
 
 #[test]
-fn of_two_watches_the_older_speaks_and_the_younger_again_when_that_is_gone() {
+fn the_older_of_two_watches_sends_and_the_younger_takes_over() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.wait(10.0);
@@ -287,7 +287,7 @@ fn of_two_watches_the_older_speaks_and_the_younger_again_when_that_is_gone() {
     assert_eq!(bench.count(told(None, true)), 1);
     assert!(said_by(&bench) > before + 10);
 
-    // A younger one does not silence it.
+    // A younger watch does not silence it.
     elder.say(&mut bench, &watch_beat(1.0));
     let before = said_by(&bench);
     bench.hover(30.0, 4.0, 1950);
@@ -295,7 +295,7 @@ fn of_two_watches_the_older_speaks_and_the_younger_again_when_that_is_gone() {
 }
 
 #[test]
-fn a_risk_from_the_autopilot_itself_is_not_told_twice_unless_asked_for() {
+fn a_risk_sent_by_the_autopilot_is_repeated_only_on_request() {
     let estimator = estimator();
     for insists in [false, true] {
         let mut bench = Bench::new(&estimator, None);
@@ -312,9 +312,9 @@ fn a_risk_from_the_autopilot_itself_is_not_told_twice_unless_asked_for() {
     }
 }
 
-/// A link that sends everything back is no other watch.
+/// A link that returns every packet is not another watch.
 #[test]
-fn its_own_echo_is_no_other_watch() {
+fn an_echo_of_the_watch_is_not_taken_for_another_watch() {
     let estimator = estimator();
     let mut bench = Bench::new(&estimator, Some(191));
     bench.beat(false);

@@ -1,10 +1,11 @@
 //! Maps MAVLink messages to signals (<https://mavlink.io/en/messages/common.html>; fields are ordered by their width).
 
+use super::decoder::Payload;
 use crate::angle::Angle;
 use crate::field::{Kind, NumericField};
 
 /// How a signal is computed from the payload of a message.
-pub(super) enum From {
+pub(crate) enum From {
     /// A number multiplied by a factor; the second number means "unknown".
     Number(NumericField, f64, Option<f64>),
     /// The length of the vector of these fields.
@@ -14,10 +15,10 @@ pub(super) enum From {
 }
 
 /// The signals of one message: computation, name, unit.
-pub(super) struct Spec {
-    pub(super) id: u32,
-    pub(super) message: &'static str,
-    pub(super) signals: &'static [(From, &'static str, &'static str)],
+pub(crate) struct Spec {
+    pub(crate) id: u32,
+    pub(crate) message: &'static str,
+    pub(crate) signals: &'static [(From, &'static str, &'static str)],
 }
 
 const fn at(offset: usize, kind: Kind) -> NumericField {
@@ -42,7 +43,7 @@ const RADIO: &[(From, &str, &str)] = &[
 ];
 
 /// If two messages contain the same signal, the first is preferred.
-pub(super) const SPECS: &[Spec] = &[
+pub(crate) const SPECS: &[Spec] = &[
     Spec {
         id: 30,
         message: "ATTITUDE",
@@ -221,9 +222,18 @@ pub(super) const SPECS: &[Spec] = &[
     },
 ];
 
+const BATTERY_STATUS: u32 = 147;
+
+/// The position in [`SPECS`] of the message with this id. Only the first battery has signals.
+pub(crate) fn spec_of(id: u32, payload: &Payload) -> Option<usize> {
+    let is_other_battery = id == BATTERY_STATUS && payload[32] != 0;
+    let index = SPECS.iter().position(|spec| spec.id == id);
+    index.filter(|_| !is_other_battery)
+}
+
 impl From {
     /// The value of the signal in a payload that is filled up with zeros.
-    pub(super) fn value(&self, payload: &[u8]) -> Option<f64> {
+    pub(crate) fn value(&self, payload: &[u8]) -> Option<f64> {
         match self {
             Self::Number(field, factor, unknown) => {
                 let number = field.number(payload)?;
