@@ -73,7 +73,7 @@ fn phases(timeline: &Timeline) -> Markup {
     html! {
         @for phase in &timeline.phases {
             @let (from, to) = ends(&phase.stretch);
-            span.phase style={ "left:" (percent(from)) ";width:" (percent(to - from)) } { (phase.name) }
+            span.phase.narrow[to - from < 0.03] style={ "left:" (percent(from)) ";width:" (percent(to - from)) } { (phase.name) }
         }
     }
 }
