@@ -12,7 +12,7 @@ use crate::{
     charts,
     clock::Clock,
     finding::{self, Teller},
-    parts::Subject,
+    subject::Subject,
     words,
 };
 

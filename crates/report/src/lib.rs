@@ -19,6 +19,7 @@ mod panel;
 mod parts;
 mod sources;
 pub mod steps;
+mod subject;
 pub mod table;
 mod timeline;
 mod track;

@@ -15,7 +15,10 @@ use crate::{
     words,
 };
 
-pub use crate::parts::{Part, Report, Subject};
+pub use crate::{
+    parts::{Part, Report},
+    subject::Subject,
+};
 
 const CHART_CSS: &str = include_str!("chart.css");
 const PAGE_CSS: &str = include_str!("page.css");

@@ -4,7 +4,7 @@ use flagred::loaded::Loaded;
 use fuzzy::drawing::number;
 use maud::{Markup, html};
 
-use crate::{charts, parts::Subject, words};
+use crate::{charts, subject::Subject, words};
 
 /// What was read, and the parameters folded, with a search.
 pub(crate) fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
