@@ -106,6 +106,7 @@ fn encoded(kind: u8, number: f64) -> Vec<u8> {
         b'c' => ((number * 100.0).round() as i16).to_le_bytes().into(),
         b'I' => (number as u32).to_le_bytes().into(),
         b'i' => (number as i32).to_le_bytes().into(),
+        b'L' => ((number * 1e7).round() as i32).to_le_bytes().into(),
         b'f' => (number as f32).to_le_bytes().into(),
         b'Q' => (number as u64).to_le_bytes().into(),
         other => unimplemented!("fields of type {}", char::from(other)),
@@ -193,6 +194,8 @@ pub const SERVO_OUTPUT_RAW: Message = (36, 222, 21);
 pub const ATTITUDE: Message = (30, 39, 28);
 /// NAV_CONTROLLER_OUTPUT.
 pub const NAV_CONTROLLER_OUTPUT: Message = (62, 183, 26);
+/// GLOBAL_POSITION_INT.
+pub const GLOBAL_POSITION_INT: Message = (33, 104, 28);
 /// STATUSTEXT.
 pub const STATUSTEXT: Message = (253, 83, 51);
 

@@ -77,6 +77,33 @@ fn the_curves_have_the_values_of_the_json_document() {
     assert!((48.0..50.0).contains(&start_s));
 }
 
+#[test]
+fn a_report_has_the_track_and_folded_signals() {
+    let folder = Folder::new();
+    let html = report(&[STEADY], &folder);
+    let (_, points) = html.split_once("data-points=\"").unwrap();
+    let (points, _) = points.split_once('"').unwrap();
+    let points: Vec<Vec<f64>> = points
+        .split(';')
+        .map(|point| point.split(' ').map(|x| x.parse().unwrap()).collect())
+        .collect();
+    assert!((500..=1300).contains(&points.len()), "{}", points.len());
+    assert_eq!(points[0][1..], [0.0, 0.0], "it starts at take-off");
+    assert!(html.contains(">N</text>") && html.contains(" m</text>"));
+    let flight = flagred_flightlog::open(STEADY, &Default::default()).unwrap();
+    let signals = html.matches("<details class=\"signal\">").count();
+    assert_eq!(signals, flight.signals().count());
+    for unit in ["data-unit=\"V\"", "data-unit=\"°\"", "data-unit=\"m/s\""] {
+        assert!(html.contains(unit), "no {unit}");
+    }
+    assert!(html.contains(">0:30</span>"), "minutes since take-off");
+    assert!(html.len() < 600_000, "{} bytes", html.len());
+
+    // A log without positions has no track, and no place at 0.
+    let log = folder.file("log.csv", long_log(20, 10));
+    assert!(!report(&[&log], &folder).contains("<figure class=\"track\""));
+}
+
 /// The page contains nothing that makes a browser request another file.
 #[test]
 fn a_report_needs_no_network() {

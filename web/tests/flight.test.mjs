@@ -40,7 +40,7 @@ test('every log has the documents of the command line', { timeout: 600_000 }, as
       assert.ok(content.equals(out), `${name}: the JSON is another`);
       assert.equal(badge, JSON.parse(out).verdict);
     }
-    await room.row(name).locator('.remove').click();
+    await room.remove(name);
   }
   assert.deepEqual(complaints, []);
   await context.close();
@@ -80,14 +80,14 @@ test('a cursor shows the values of all charts and the rules that fire', async ()
   await slider.focus();
   for (let i = 0; i < 5; i++) await page.keyboard.press('Shift+ArrowLeft');
   await page.waitForTimeout(300);
-  const moved = parseFloat(await page.locator('.moment summary b').textContent());
+  const moved = await room.time();
   assert.ok(moved < 175 && moved > 160, `${moved} s`);
   await check(moved);
   const area = page.locator('.report .panel .area').first();
   const box = await area.boundingBox();
   await page.mouse.move(box.x + box.width / 4, box.y + 20);
   await page.waitForTimeout(300);
-  const pointed = parseFloat(await page.locator('.moment summary b').textContent());
+  const pointed = await room.time();
   assert.ok(Math.abs(pointed - (49 + 185.1 / 4)) < 1, `${pointed} s`);
   await check(pointed);
   // The flight's point on the map is where its inputs are.
@@ -169,7 +169,7 @@ test('two fingers zoom, and keys move the cursor', async () => {
   // What was a tenth of the chart is four tenths of it.
   assert.ok(Math.abs(length - 185.15 / 4) < 3, `${length} s`);
   assert.ok(Math.abs(start + length / 2 - (49 + 185.15 / 2)) < 3, `from ${start} s`);
-  const shown = async () => parseFloat(await page.locator('.moment summary b').textContent());
+  const shown = room.time;
   await page.evaluate(() => document.activeElement?.blur());
   const before = await shown();
   await page.keyboard.press('Shift+ArrowRight');
@@ -190,7 +190,7 @@ test('other thresholds give the verdict of a profile that has them', async () =>
   await page.locator('.what-if-verdict').getByText('WARN').waitFor();
   assert.equal(await page.locator('.what-if-verdict').textContent(), 'With the profile FAIL, with these thresholds WARN.');
   await field('WARN, reached for, s').fill('300');
-  await page.locator('.logs .badge').getByText('GOOD').waitFor();
+  await room.verdict('GOOD');
   const { content } = await room.download('JSON');
   // The report holds the profile as it is now: the command line says the same with it.
   const report = (await room.download('Report (HTML)')).content.toString();
@@ -207,10 +207,10 @@ test('other thresholds give the verdict of a profile that has them', async () =>
   assert.equal(await again.room.badge(basename(GUST)), 'GOOD');
   await again.context.close();
   await page.getByRole('button', { name: 'Reset to the profile' }).click();
-  await page.locator('.logs .badge').getByText('FAIL').waitFor();
+  await room.verdict('FAIL');
   await page.getByRole('combobox', { name: 'Profile' }).selectOption('flagred-paper');
   const paper = JSON.parse((await command([GUST], '--json', '--profile', 'flagred-paper')).out);
-  await page.locator('.logs .badge').getByText(paper.verdict).waitFor();
+  await room.verdict(paper.verdict);
   assert.deepEqual(complaints, []);
   await context.close();
 });
@@ -223,14 +223,14 @@ test('a profile from a file is used, and one with errors is told and changes not
   await page.locator('.message').getByText('did you mean `window_s`?').waitFor();
   assert.equal(await room.badge(basename(GUST)), 'FAIL');
   await choose('calm.yaml', profile.replace('fail: {risk: 80', 'fail: {risk: 99'));
-  await page.locator('.logs .badge').getByText('WARN').waitFor();
+  await room.verdict('WARN');
   assert.ok(await page.locator('.message').isHidden());
   // With a rule set beside it, as the command line finds one.
   const rules = readFileSync(new URL('../../rules/flagred.yaml', import.meta.url), 'utf8').replace('unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_high', 'unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_low');
   const there = folder({ [basename(GUST)]: readFileSync(GUST), 'mine.yaml': profile.replace('rules: flagred ', 'rules: mild.yaml '), 'mild.yaml': rules });
   await page.getByLabel('Profile from a file').setInputFiles([`${there}/mild.yaml`, `${there}/mine.yaml`]);
   const { out } = await command([`${there}/${basename(GUST)}`], '--json', '--profile', 'mine.yaml');
-  await page.locator('.logs .badge').getByText(JSON.parse(out).verdict).waitFor();
+  await room.verdict(JSON.parse(out).verdict);
   await room.settled();
   assert.ok((await room.download('JSON')).content.equals(out), 'the JSON is another');
   await context.close();
@@ -356,13 +356,14 @@ test('the room opens an example by its link, on a phone too', async () => {
   ]);
   assert.equal(width, 390);
   assert.equal(Number(start), 90);
-  assert.equal(await page.locator('.moment summary b').textContent(), '100.0 s');
+  assert.equal(await page.locator('.moment .log-time').textContent(), '100.0 s of the log');
+  assert.equal(await page.locator('.moment summary b').textContent(), '0:51.0 min');
   const area = page.locator('.report .panel .area').first();
   await area.evaluate((element) => element.scrollIntoView({ block: 'center' }));
   const box = await area.boundingBox();
   await page.touchscreen.tap(box.x + box.width / 2, box.y + 20);
   await page.waitForTimeout(300);
-  assert.ok(Math.abs(parseFloat(await page.locator('.moment summary b').textContent()) - 105) < 0.5);
+  assert.ok(Math.abs(await room.time() - 105) < 0.5);
   assert.deepEqual(complaints, []);
   await context.close();
 });

@@ -46,7 +46,7 @@ if (!existsSync(flagred)) throw new Error('the command line is not built: cargo 
 
 /** The flight room of a page. */
 export function room(page) {
-  const row = (name) => page.locator('.logs li').filter({ has: page.getByText(name, { exact: true }) });
+  const row = (name) => page.locator('.logs tbody tr').filter({ has: page.getByText(name, { exact: true }) });
   return {
     row,
     async take(...paths) {
@@ -55,15 +55,24 @@ export function room(page) {
     /** The badge of a log, once it has one. */
     async badge(name) {
       const badge = row(name).locator('.badge:not(:text("…"))');
-      await badge.waitFor({ timeout: 120_000 });
+      // The table is hidden while it has one flight only.
+      await badge.waitFor({ timeout: 120_000, state: 'attached' });
       return badge.textContent();
     },
     async choose(name) {
-      await row(name).locator('.log').click();
+      if (await row(name).isVisible()) await row(name).locator('.log').click();
       await page.locator('.report h1').filter({ hasText: name }).waitFor();
     },
+    async remove(name) {
+      const isListed = await row(name).isVisible();
+      await (isListed ? row(name).locator('.remove') : page.getByRole('button', { name: 'Close' })).click();
+    },
+    /** The time at the cursor on the log's clock, in seconds. */
+    time: async () => parseFloat(await page.locator('.moment .log-time').textContent()),
+    /** Waits for the verdict of the only flight. */
+    verdict: (words) => page.locator('.logs .badge').getByText(words, { exact: true }).waitFor({ state: 'attached' }),
     async download(words) {
-      await page.locator('.menu summary').click();
+      await page.locator('.menu summary').filter({ hasText: 'Download' }).click();
       const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: words }).click()]);
       return { name: file.suggestedFilename(), content: await readFile(await file.path()) };
     },

@@ -8,7 +8,7 @@ const guarded = guard(wasm.panicMessage);
 
 /** Loads the module for data, from beside this file or from elsewhere. Calls after the first do nothing. */
 export async function startData(source?: Source): Promise<void> {
-  await wasm.default({ module_or_path: source ?? (await beside('data')) });
+  await wasm.default({ module_or_path: source ?? (await beside(new URL('./wasm/data_bg.wasm', import.meta.url))) });
 }
 
 /** The errors of a rule set on rows: computed less measured. */
@@ -62,6 +62,6 @@ export class DataTable {
   }
 
   free(): void {
-    this.#table.free();
+    guarded(() => this.#table.free());
   }
 }

@@ -24,7 +24,7 @@ const guarded = guard(wasm.panicMessage);
 
 /** Loads the module for flight logs, from the file next to this one or from `source`. Later calls do nothing. */
 export async function startFlight(source?: Source): Promise<void> {
-  await wasm.default({ module_or_path: source ?? (await beside('flight')) });
+  await wasm.default({ module_or_path: source ?? (await beside(new URL('./wasm/flight_bg.wasm', import.meta.url))) });
 }
 
 /** Available only in workers. */
@@ -60,17 +60,29 @@ export interface Stretch {
 /** The parts of a report, in their order. */
 export const PARTS = [
   'head',
+  'about',
   'risk',
+  'track',
   'map',
   'inputs',
   'rules',
   'motors',
   'attitude',
   'events',
+  'signals',
   'sources',
   'texts',
 ] as const;
 export type Part = (typeof PARTS)[number];
+
+/** A signal of a log. */
+export interface SignalLabel {
+  name: string;
+  /** Empty if it has none or it is unknown. */
+  unit: string;
+  /** The message and field that contain it. */
+  source: string;
+}
 
 /** Returns the style sheet of {@link Assessment.part} and {@link Comparison.part}. */
 export const reportStyle = (): string => guarded(() => wasm.reportStyle());
@@ -108,7 +120,10 @@ export class Profile {
     return guarded(() => this.inner.warnings);
   }
 
-  /** The signals that must be read from a log to assess it with this profile and to draw the report. */
+  /**
+   * The signals that must be read from a log to assess it with this profile. The report of a flight that was read with
+   * these has no others; that of a flight with all signals offers them all.
+   */
   get signals(): string[] {
     return guarded(() => this.inner.signals);
   }
@@ -127,7 +142,7 @@ export class Profile {
 
   /** Frees its memory. */
   free(): void {
-    this.inner.free();
+    guarded(() => this.inner.free());
   }
 }
 
@@ -183,7 +198,7 @@ export class Flight {
 
   /** Frees its memory. */
   free(): void {
-    this.inner.free();
+    guarded(() => this.inner.free());
   }
 }
 
@@ -228,6 +243,16 @@ export class Assessment {
     return guarded(() => this.inner.part(part, stretch?.start_s, stretch?.end_s));
   }
 
+  /** Returns the signals of the log that were read and have a known value. */
+  signals(): SignalLabel[] {
+    return JSON.parse(guarded(() => this.inner.signals())) as SignalLabel[];
+  }
+
+  /** Returns the charts of some signals as HTML, as {@link Assessment.part} does. */
+  signalCharts(names: string[], stretch?: Stretch): string {
+    return guarded(() => this.inner.signalCharts(names, stretch?.start_s, stretch?.end_s));
+  }
+
   /** Returns the state at a time, and the rules that fire. */
   moment(t_s: number): Moment {
     return JSON.parse(guarded(() => this.inner.moment(t_s))) as Moment;
@@ -235,7 +260,7 @@ export class Assessment {
 
   /** Frees its memory. */
   free(): void {
-    this.inner.free();
+    guarded(() => this.inner.free());
   }
 }
 
@@ -275,6 +300,6 @@ export class Comparison {
 
   /** Frees its memory. */
   free(): void {
-    this.inner.free();
+    guarded(() => this.inner.free());
   }
 }

@@ -6,15 +6,18 @@
 import type { Explanation } from './documents.js';
 import { beside, type Source } from './load.js';
 import { guard } from './panic.js';
+import { inOrder, numberOf, numbers, refusal, type Columns, type Known, type Point } from './point.js';
 import * as wasm from './wasm/rules.js';
 
 export type { Explanation } from './documents.js';
+export type { Columns, Known, Point } from './point.js';
 
 const guarded = guard(wasm.panicMessage);
+let memory: WebAssembly.Memory;
 
 /** Loads the module for rule sets, from the file next to this one or from `source`. Later calls do nothing. */
 export async function startRules(source?: Source): Promise<void> {
-  await wasm.default({ module_or_path: source ?? (await beside('rules')) });
+  ({ memory } = await wasm.default({ module_or_path: source ?? (await beside(new URL('./wasm/rules_bg.wasm', import.meta.url))) }));
 }
 
 /** A finding in a text; offsets are in UTF-16 code units, as in JavaScript strings. */
@@ -188,7 +191,7 @@ export class RuleText {
   }
 
   free(): void {
-    this.#text.free();
+    guarded(() => this.#text.free());
   }
 }
 
@@ -267,28 +270,65 @@ export interface ViewedRules {
 /** A rule set, compiled once. Call {@link RuleSet.free} when done. */
 export class RuleSet {
   readonly #set: wasm.RuleSet;
+  readonly #inputs: readonly string[];
+  readonly #outputs: readonly string[];
+  /** The point in the memory of the module that {@link RuleSet.value} reads. It is empty if that memory has moved. */
+  #point = new Float64Array();
 
   /** Compiles a rule set in YAML, FIS, FLL, FCL or FML, or the rule set of a profile; throws its errors. */
   constructor(text: string | wasm.RuleSet) {
     this.#set = typeof text === 'string' ? guarded(() => new wasm.RuleSet(text)) : text;
+    const { inputs, outputs } = this.about();
+    this.#inputs = inputs.map(({ name }) => name);
+    this.#outputs = outputs.map(({ name }) => name);
   }
 
   about(): About {
     return parsed(() => this.#set.about());
   }
 
-  /** Returns the outputs at a point, which has a value for each input. */
-  evaluate(point: number[]): Value[] {
-    return parsed(() => this.#set.evaluate(Float64Array.from(point)));
+  /** Returns the outputs at a point. */
+  evaluate(point: Point): Value[] {
+    const values = this.#numbers(point);
+    return parsed(() => this.#set.evaluate(values));
+  }
+
+  /**
+   * Returns the value of an output, by its index or name, at a point; NaN if it has none. This is the fastest way, for
+   * loops; {@link RuleSet.evaluate} also tells why there is no value.
+   */
+  value(point: Point, output: number | string = 0): number {
+    const index = typeof output === 'number' ? output : this.#outputs.indexOf(output);
+    if (this.#outputs[index] === undefined) throw refusal(`\`${output}\` is not an output of the rule set`, `the outputs are \`${this.#outputs.join('`, `')}\``);
+    const values = inOrder(point, this.#inputs);
+    if (this.#point.length === 0) {
+      const address = guarded(() => this.#set.point());
+      this.#point = new Float64Array(memory.buffer, address, this.#inputs.length);
+    }
+    for (let i = 0; i < values.length; i++) {
+      const value = values[i];
+      this.#point[i] = typeof value === 'number' ? value : numberOf(value, () => `input \`${this.#inputs[i]}\``);
+    }
+    return guarded(() => this.#set.value(index));
   }
 
   /** Evaluates many rows: takes one column for each input and returns one for each output. NaN is unknown. */
-  evaluateColumns(columns: ArrayLike<number>[]): Float64Array[] {
-    const rows = columns[0]?.length ?? 0;
-    const inputs = new Float64Array(rows * columns.length);
-    columns.forEach((column, i) => inputs.set(column, i * rows));
+  evaluateColumns(columns: Columns): Float64Array[] {
+    const given = inOrder<ArrayLike<Known>>(columns, this.#inputs);
+    const rows = given[0]?.length ?? 0;
+    const inputs = new Float64Array(rows * given.length);
+    for (let i = 0; i < given.length; i++) {
+      const column = given[i]!;
+      const name = `column \`${this.#inputs[i]}\``;
+      if (column.length !== rows) throw refusal(`${name} has ${column.length} rows, the first one ${rows}`, 'give columns of one length');
+      inputs.set(numbers(column, (row) => `row ${row + 1} of ${name}`), i * rows);
+    }
     const values = guarded(() => this.#set.evaluateColumns(inputs));
-    return this.about().outputs.map((_, i) => values.slice(i * rows, (i + 1) * rows));
+    return this.#outputs.map((_, i) => values.slice(i * rows, (i + 1) * rows));
+  }
+
+  #numbers(point: Point): Float64Array {
+    return numbers(inOrder(point, this.#inputs), (i) => `input \`${this.#inputs[i]}\``);
   }
 
   /** What each rule reads and concludes. */
@@ -297,18 +337,20 @@ export class RuleSet {
   }
 
   /** The degrees of the propositions of all rules at a point, rule by rule. NaN where a proposition reads an output. */
-  propositionDegrees(point: number[]): Float64Array {
-    return guarded(() => this.#set.propositionDegrees(Float64Array.from(point)));
+  propositionDegrees(point: Point): Float64Array {
+    const values = this.#numbers(point);
+    return guarded(() => this.#set.propositionDegrees(values));
   }
 
   /** Why the outputs at a point are what they are. */
-  explain(point: number[]): Explanation {
-    return parsed(() => this.#set.explain(Float64Array.from(point)));
+  explain(point: Point): Explanation {
+    const values = this.#numbers(point);
+    return parsed(() => this.#set.explain(values));
   }
 
   /** Returns values for the inputs that are not axes; numbers in `fixed` are kept. */
-  held(output: number, axes: number[], fixed: (number | null)[]): number[] {
-    const known = Float64Array.from(fixed, (value) => value ?? NaN);
+  held(output: number, axes: number[], fixed: Known[]): number[] {
+    const known = numbers(fixed, (i) => `value ${i + 1}`);
     return [...guarded(() => this.#set.held(output, Uint32Array.from(axes), known))];
   }
 
@@ -331,12 +373,14 @@ export class RuleSet {
   }
 
   /** Returns the picture of `flagred explain` as SVG. */
-  explanationSvg(point: number[]): string {
-    return guarded(() => this.#set.explanationSvg(Float64Array.from(point)));
+  explanationSvg(point: Point): string {
+    const values = this.#numbers(point);
+    return guarded(() => this.#set.explanationSvg(values));
   }
 
   free(): void {
-    this.#set.free();
+    this.#point = new Float64Array();
+    guarded(() => this.#set.free());
   }
 }
 
@@ -398,7 +442,7 @@ function parsed<T>(call: () => string): T {
 function viewed<T>(view: View, call: (made: wasm.View) => T): T {
   return guarded(() => {
     const axes = view.axes.flatMap(({ input, low, high }) => [input, low, high]);
-    const made = new wasm.View(view.output, Float64Array.from(axes), view.points, Float64Array.from(view.held));
+    const made = new wasm.View(view.output, Float64Array.from(axes), view.points, numbers(view.held, (i) => `held value ${i + 1}`));
     try {
       return call(made);
     } finally {

@@ -57,6 +57,7 @@ test('every outcome of the corpus has the bits on file', async () => {
     });
     assert.deepEqual(single, expected, place);
     const values = expected.map((outcome) => outcome.split(',')[0]);
+    assert.deepEqual(values.map((_, output) => known(rules.value(point, output))), values, place);
     const columns = rules.evaluateColumns(point.map((x) => [x]));
     assert.deepEqual(columns.map(([value]) => known(value)), values, place);
     assert.deepEqual(rules.explain(point).outputs.map(({ value }) => known(value)), values, place);

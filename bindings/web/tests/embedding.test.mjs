@@ -48,7 +48,9 @@ test('a worker assesses a log, and tells what it cannot read', async (t) => {
 
 test('a bundle finds its module', async (t) => {
   const loader = { '.wasm': 'file' };
-  await build({ absWorkingDir: folder, entryPoints: { out: 'bundled.js' }, bundle: true, format: 'esm', loader, outdir: folder });
+  const { metafile } = await build({ absWorkingDir: folder, entryPoints: { out: 'bundled.js' }, bundle: true, format: 'esm', loader, outdir: folder, metafile: true });
+  // A page of rules carries no flight module.
+  assert.deepEqual(Object.keys(metafile.inputs).filter((name) => name.includes('flight')), []);
   const { complaints, says } = await opened(t, 'out.js');
   await says('22.98');
   assert.deepEqual(complaints, []);

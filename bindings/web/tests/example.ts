@@ -6,8 +6,9 @@ export async function tip(text: string): Promise<number | null> {
   await start();
   const rules = new RuleSet(text);
   try {
-    const [value]: Value[] = rules.evaluate([8, 9]);
-    return value?.value ?? null;
+    const [value]: Value[] = rules.evaluate([8, null]);
+    const tip: number = rules.value({ service: 8, food: 9 }, 'tip');
+    return value?.value ?? tip;
   } finally {
     rules.free();
   }

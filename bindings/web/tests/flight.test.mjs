@@ -17,7 +17,7 @@ before(async () => {
   await start();
   bytes = readFileSync(`${flights}steady.BIN`);
   profile = Profile.named();
-  flight = Flight.fromBytes('steady.BIN', bytes, profile.signals);
+  flight = Flight.fromBytes('steady.BIN', bytes);
   assessment = flight.assess(profile);
 });
 
@@ -70,6 +70,18 @@ test('a report is drawn part by part and for a stretch of time', () => {
   assert.match(part, /data-start="100" data-length="10"/);
   assert.match(assessment.part('motors', { start_s: -5, end_s: 1e9 }), new RegExp(`data-start="${start_s.toFixed(3).replace(/0+$/, '')}`));
   assert.throws(() => assessment.part('nothing'), { message: 'a report has no part `nothing`' });
+});
+
+test('the signals of a log are listed and drawn', () => {
+  const signals = assessment.signals();
+  assert.deepEqual(signals.find(({ name }) => name === 'roll_deg'), { name: 'roll_deg', unit: '°', source: 'ATT.Roll' });
+  assert.ok(signals.length > 20 && signals.every(({ name }, i) => i === 0 || name > signals[i - 1].name));
+  const charts = assessment.signalCharts(['battery_v', 'nothing', 'roll_deg'], { start_s: 100, end_s: 110 });
+  assert.deepEqual([...charts.matchAll(/<b>(\w+)<\/b>/g)].map(([, name]) => name), ['battery_v', 'roll_deg']);
+  assert.match(charts, /data-unit="V" data-start="100" data-length="10"/);
+  const few = Flight.fromBytes('steady.BIN', bytes, profile.signals).assess(profile);
+  assert.ok(few.signals().length < signals.length && few.part('track') === assessment.part('track'));
+  assert.match(few.part('track'), /data-points="[-\d. ;]+"/);
 });
 
 test('a moment has its step and the rules that fire', () => {

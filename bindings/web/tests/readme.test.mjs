@@ -24,7 +24,8 @@ function said(code) {
 
 test('every block of the README runs as printed', async () => {
   await cp(join(repository, 'examples/flights/steady.BIN'), join(folder, 'steady.BIN'));
-  assert.equal(blocks.length, 3);
+  await cp(join(repository, 'rules/tipper.yaml'), join(folder, 'tipper.yaml'));
+  assert.equal(blocks.length, 4);
   for (const [i, code] of blocks.entries()) {
     await writeFile(join(folder, `block${i}.js`), code);
     const { stdout } = await run('node', [`block${i}.js`], { cwd: folder });

@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// The signals that a report draws in addition to those of the profile.
-pub const SIGNALS: [&str; 6] = [
+pub(crate) const SIGNALS: [&str; 6] = [
     "roll_des_deg",
     "roll_deg",
     "pitch_des_deg",
@@ -26,20 +26,24 @@ pub const SIGNALS: [&str; 6] = [
     "battery_v",
     "battery_remaining_pct",
 ];
+/// The signals of which the track is drawn.
+pub(crate) const POSITIONS: [&str; 4] = ["latitude_deg", "longitude_deg", "north_m", "east_m"];
 
-/// Options for reading a log to assess it and, if `drawn`, to draw it. Only the signals that are needed are decoded.
-pub fn options(estimator: &Estimator, drawn: bool) -> Options {
-    let drawn = drawn.then_some(SIGNALS);
-    let mut signals: Vec<String> = estimator
-        .profile()
-        .signals()
-        .into_iter()
-        .chain(drawn.into_iter().flatten())
-        .map(str::to_owned)
-        .collect();
+/// The signals that are needed to assess a log and to draw its report without the signals that readers may add.
+pub fn signals(estimator: &Estimator) -> Vec<String> {
+    let of_profile = estimator.profile().signals().into_iter();
+    let drawn = SIGNALS.into_iter().chain(POSITIONS);
+    let mut signals: Vec<String> = of_profile.chain(drawn).map(str::to_owned).collect();
     signals.sort_unstable();
+    signals.dedup();
+    signals
+}
+
+/// Options for reading a log to assess it: all its signals if they are `drawn`, else those that the profile needs.
+pub fn options(estimator: &Estimator, drawn: bool) -> Options {
     let mut options = Options::default();
-    options.signals = Some(signals);
+    let needed = || estimator.profile().signals().into_iter().map(str::to_owned);
+    options.signals = (!drawn).then(|| needed().collect());
     options
 }
 
@@ -140,6 +144,7 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment, shown: Stretch) -
     }
     Timeline {
         stretch: shown,
+        zero_s: whole.start_s,
         phases,
         alerts: findings.collect(),
         events,
@@ -170,7 +175,7 @@ fn of_steps(
 
 /// The longest time without a sample across which a curve is drawn, in seconds: five samples, at least the profile's
 /// longest gap.
-fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
+pub(crate) fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
     let longest_gap_s = estimator.profile().sampling.longest_gap_s;
     rate_hz.map_or(longest_gap_s, |rate_hz| longest_gap_s.max(5.0 / rate_hz))
 }

@@ -4,8 +4,12 @@ use std::fmt::Write as _;
 
 use fuzzy::drawing::{block, number};
 
+use crate::clock::minutes;
+
 /// The number of spans of time in a thinned curve; each keeps its first, smallest, largest and last value.
 const SPANS: usize = 500;
+/// The same for a curve among many.
+pub(crate) const FEW_SPANS: usize = 120;
 
 /// A stretch shorter than this, in seconds, is drawn with a finer resolution of time.
 const FEW_S: f64 = 2.0;
@@ -20,12 +24,12 @@ pub struct Stretch {
 }
 
 /// The candidates for the seconds between ticks; the smallest step with few enough ticks is used.
-const STEPS_S: [f64; 16] = [
-    0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0, 3600.0,
-    7200.0,
+const STEPS_S: [f64; 17] = [
+    0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 900.0, 1200.0, 1800.0,
+    3600.0, 7200.0,
 ];
 /// The maximum number of ticks along the time axis, which must fit on a phone.
-const MOST_TICKS: f64 = 7.0;
+const MOST_TICKS: f64 = 6.0;
 
 impl Stretch {
     /// The length in seconds, at least a millisecond.
@@ -43,17 +47,19 @@ impl Stretch {
         (self.start_s..=self.end_s).contains(&t_s)
     }
 
-    /// The times of ticks with their labels: multiples of a step; the last label includes the unit.
-    pub fn ticks(&self) -> Vec<(f64, String)> {
+    /// The times of ticks with their labels: round minutes and seconds since `zero_s`; the last label includes the unit.
+    pub(crate) fn ticks(&self, zero_s: f64) -> Vec<(f64, String)> {
         let fits = |step: &&f64| self.length_s() / **step <= MOST_TICKS;
         let step_s = STEPS_S.iter().find(fits).copied();
         let step_s = step_s.unwrap_or(self.length_s() / MOST_TICKS);
-        let first = (self.start_s / step_s).ceil();
+        let decimals = usize::from(step_s < 1.0);
+        let first = ((self.start_s - zero_s) / step_s).ceil();
         let times = (0..=MOST_TICKS as usize).map(|i| (first + i as f64) * step_s);
-        let within = times.filter(|t_s| self.contains(*t_s));
-        let mut ticks: Vec<(f64, String)> = within.map(|t_s| (t_s, number(t_s, 1))).collect();
+        let within = times.filter(|since_s| self.contains(zero_s + since_s));
+        let label = |since_s: f64| (zero_s + since_s, minutes(since_s, decimals));
+        let mut ticks: Vec<(f64, String)> = within.map(label).collect();
         if let Some((_, last)) = ticks.last_mut() {
-            last.push_str(" s");
+            last.push_str(" min");
         }
         ticks
     }
@@ -70,13 +76,24 @@ pub(crate) fn path(
     gap_s: f64,
     decimals: usize,
 ) -> String {
+    thinned(points, stretch, gap_s, decimals, SPANS)
+}
+
+/// As [`path`], thinned to a number of spans.
+pub(crate) fn thinned(
+    points: impl Iterator<Item = (f64, f64)>,
+    stretch: Stretch,
+    gap_s: f64,
+    decimals: usize,
+    spans: usize,
+) -> String {
     let mut pen = Pen {
         data: String::new(),
         down: false,
         // Short stretches are drawn to a tenth of a millisecond: with hundredths of a second, steps would be visible.
         decimals: [if stretch.length_s() < FEW_S { 4 } else { 2 }, decimals],
     };
-    let span_s = stretch.length_s() / SPANS as f64;
+    let span_s = stretch.length_s() / spans as f64;
     let mut span = Span::default();
     let mut last_s = f64::NEG_INFINITY;
     for (t_s, value) in points.filter(|(t_s, _)| stretch.contains(*t_s)) {
@@ -222,13 +239,24 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_few() {
-        let ticks = |start_s, end_s| -> Vec<f64> {
-            let ticks = Stretch { start_s, end_s }.ticks().into_iter();
-            ticks.map(|(t_s, _)| t_s).collect()
+        let flight = Stretch {
+            start_s: 48.0,
+            end_s: 178.0,
         };
-        assert_eq!(ticks(48.8, 178.0), [60.0, 80.0, 100.0, 120.0, 140.0, 160.0]);
+        let labels = |ticks: Vec<(f64, String)>| -> Vec<String> {
+            ticks.into_iter().map(|(_, label)| label).collect()
+        };
+        assert_eq!(
+            labels(flight.ticks(48.0)),
+            ["0:00", "0:30", "1:00", "1:30", "2:00 min"]
+        );
+        assert_eq!(flight.ticks(48.0)[1].0, 78.0);
         for end_s in [0.2, 3.0, 61.0, 600.0, 5000.0, 1e6] {
-            let ticks = ticks(0.0, end_s);
+            let ticks = Stretch {
+                start_s: 0.0,
+                end_s,
+            }
+            .ticks(0.0);
             assert!((2..=8).contains(&ticks.len()), "{end_s}: {ticks:?}");
         }
     }

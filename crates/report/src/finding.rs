@@ -8,6 +8,8 @@ use flagred::{
 use flagred_flightlog::Motor;
 use fuzzy::drawing::number;
 
+use crate::clock::Clock;
+
 /// The context for describing findings in words.
 #[derive(Clone, Copy)]
 pub struct Teller<'a> {
@@ -67,6 +69,21 @@ fn gravity(finding: &Finding) -> f64 {
     }
 }
 
+impl Line<'_> {
+    /// The time of the finding, or of the worst of several.
+    pub(crate) fn when(&self, clock: Clock) -> String {
+        let Line { worst, count } = self;
+        let worst_at = match worst.is_of_risk() {
+            true => clock.span(worst.from_s, worst.to_s),
+            false => format!("from {}", clock.at(worst.from_s)),
+        };
+        match count {
+            1 => worst_at,
+            count => format!("{count} times, worst {worst_at}"),
+        }
+    }
+}
+
 impl<'a> Teller<'a> {
     /// The words of a finding for the pilot.
     pub fn words(&self, finding: &Finding) -> Words {
@@ -76,24 +93,22 @@ impl<'a> Teller<'a> {
     /// A line for all findings with one cause: `3 times, worst 12.0 to 14.5 s: ...`. A finding that is not about the
     /// risk lasts until landing, so the line contains only its start.
     pub fn line(&self, line: &Line<'_>) -> String {
-        let Line { worst, count } = line;
-        let text = self.words(worst).text;
-        match (*count, worst.is_of_risk()) {
-            (1, true) => format!("{}: {text}", span(worst)),
-            (count, true) => format!("{count} times, worst {}: {text}", span(worst)),
-            (1, false) => format!("from {:.1} s: {text}", worst.from_s),
-            (count, false) => format!("{count} times, worst from {:.1} s: {text}", worst.from_s),
-        }
+        format!("{}: {}", line.when(Clock::Log), self.words(line.worst).text)
     }
 
     /// A line for one finding: its time and its text.
     pub fn finding(&self, finding: &Finding) -> String {
-        format!("{}: {}", span(finding), self.words(finding).text)
+        let span = Clock::Log.span(finding.from_s, finding.to_s);
+        format!("{span}: {}", self.words(finding).text)
     }
 
     /// The details of a finding: the input and the rule that raised the risk, the threshold, the times at which its
     /// levels were raised, the motor's output and margin.
     pub fn details(&self, finding: &Finding) -> String {
+        self.details_by(finding, Clock::Log)
+    }
+
+    pub(crate) fn details_by(&self, finding: &Finding, clock: Clock) -> String {
         let mut parts = Vec::new();
         if let Some(cause) = &finding.cause {
             let value = number(cause.value, 3);
@@ -101,16 +116,16 @@ impl<'a> Teller<'a> {
             parts.extend(self.description(cause).map(str::to_owned));
         }
         let mut raised = format!(
-            "{} over {} %, raised at {:.1} s",
+            "{} over {} %, raised at {}",
             finding.measure,
             number(finding.threshold_pct, 2),
-            finding.raised_s
+            clock.at(finding.raised_s)
         );
         if finding.measure == Measure::Reserve {
             raised = raised.replace("over", "under");
         }
         if let Some(failed_s) = finding.failed_s {
-            raised += &format!(", FAIL at {failed_s:.1} s");
+            raised += &format!(", FAIL at {}", clock.at(failed_s));
         }
         parts.push(raised);
         if let (Some(motor), Some(found)) = (self.motor(finding), &finding.motor) {
@@ -151,8 +166,4 @@ pub fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
         named.or_number = named.or_number.map(number_of);
     }
     finding
-}
-
-fn span(finding: &Finding) -> String {
-    format!("{:.1} to {:.1} s", finding.from_s, finding.to_s)
 }

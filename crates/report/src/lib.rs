@@ -5,21 +5,27 @@
 //! write text; none opens a file.
 
 mod charts;
+mod clock;
 mod curve;
 mod decision;
 pub mod diagnostics;
 pub mod document;
 pub mod finding;
+mod head;
 pub mod moment;
+pub mod offered;
 pub mod page;
 mod panel;
 mod parts;
+mod sources;
 pub mod steps;
+mod subject;
 pub mod table;
 mod timeline;
+mod track;
 pub mod words;
 
-pub use charts::{SIGNALS, options};
+pub use charts::{options, signals};
 pub use curve::Stretch;
 
 /// Runs the example of the README.

@@ -1,19 +1,24 @@
 //! The report of one flight, or a comparison of several, as one self-contained HTML file, and the parts of both.
 
 use flagred::{flight::Peak, loaded::Loaded};
-use fuzzy::drawing::{Escaped, Frame, Sheet, number};
+use fuzzy::drawing::{Escaped, Frame, Sheet};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::{
     charts,
+    clock::minutes,
     curve::Stretch,
+    head::{badge, findings, highest, in_the_air, percent, share, verdict_class},
     panel::panel,
-    parts::{badge, findings, in_the_air, percent, share, shown, texts, verdict_class},
+    parts::{shown, texts},
     timeline::{CSS, Timeline},
     words,
 };
 
-pub use crate::parts::{Part, Report, Subject};
+pub use crate::{
+    parts::{Part, Report},
+    subject::Subject,
+};
 
 const CHART_CSS: &str = include_str!("chart.css");
 const PAGE_CSS: &str = include_str!("page.css");
@@ -80,7 +85,7 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
     html! {
         h1 { (together(subjects)) }
         p.soft {
-            "All curves have the same time scale, " (number(longest_s, 0)) " s. "
+            "All curves have the same time scale, " (minutes(longest_s, 0)) " min since take-off. "
             code { "flagred assess LOG --html FILE" } " writes the whole report of one flight."
         }
         .scroll { table {
@@ -94,9 +99,9 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
                     tr {
                         td { (badge(&subject.assessed.verdict)) }
                         td.name { a href={ "#flight" (i) } { (subject.title()) } }
-                        td.n { (number(subject.in_air_s(), 0)) " s" }
+                        td.n { (minutes(subject.in_air_s(), 0)) " min" }
                         td.n { (percent(summary.risk_mean_pct)) }
-                        td.n { (peak(summary.risk_max)) }
+                        td.n { (peak(highest(&subject.assessed))) }
                         td.n { (peak(summary.elevated_risk_max)) }
                         @if has_motors { td.n { (share(summary.saturated_share)) } }
                         td.n { (subject.assessed.findings.len()) }
@@ -109,7 +114,7 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
                 h2 { (badge(&subject.assessed.verdict)) " " (subject.title()) }
                 p.soft { (words::vehicle(&subject.flight)) }
                 @for note in words::notes(&subject.flight, &subject.assessed) { p.soft { (note) } }
-                (findings(subject, &loaded.estimator))
+                (findings(subject, loaded))
                 @if let Some(risk) = charts::risk(&subject.assessed, &loaded.estimator, timeline.stretch) {
                     (panel(&risk, timeline, None))
                 }

@@ -1,6 +1,6 @@
 //! A panel of curves over time as HTML. It uses the available width, and its text keeps its size.
 
-use fuzzy::drawing::number;
+use fuzzy::drawing::{Scale, number};
 use maud::{Markup, PreEscaped, html};
 
 use crate::{
@@ -16,12 +16,14 @@ pub(super) fn panel(panel: &Panel, timeline: &Timeline, input: Option<usize>) ->
         Size::Small => "small",
     };
     let start = number(timeline.stretch.start_s, 3);
+    let zero = number(timeline.zero_s, 3);
+    let digits = digits(panel);
     let length = number(timeline.stretch.length_s(), 3);
     let lines = panel.lines.iter().filter(|line| !line.data.is_empty());
     let marks = panel.marks.iter().filter(|mark| !mark.name.is_empty());
     html! {
-        figure class={ "panel " (class) } data-input=[input] data-unit=(panel.unit)
-            data-start=(start) data-length=(length) {
+        figure class={ "panel " (class) } data-input=[input] data-unit=(panel.unit.as_str())
+            data-start=(start) data-length=(length) data-zero=(zero) data-digits=[digits] {
             figcaption {
                 b { (panel.title) }
                 @for line in lines {
@@ -43,10 +45,18 @@ pub(super) fn panel(panel: &Panel, timeline: &Timeline, input: Option<usize>) ->
                 }
             }
             @if panel.size != Size::Small {
-                (times(timeline.stretch))
+                (times(timeline))
             }
         }
     }
+}
+
+/// The digits of a value at the cursor, if three do not show a thousandth of the scale.
+fn digits(panel: &Panel) -> Option<usize> {
+    let Scale { low, high } = panel.scale;
+    let largest = low.abs().max(high.abs());
+    let digits = (largest / (high - low)).log10().ceil() + 3.0;
+    (digits > 4.0).then_some((digits as usize).min(12))
 }
 
 /// A share as a CSS length.
@@ -63,16 +73,17 @@ fn phases(timeline: &Timeline) -> Markup {
     html! {
         @for phase in &timeline.phases {
             @let (from, to) = ends(&phase.stretch);
-            span.phase style={ "left:" (percent(from)) ";width:" (percent(to - from)) } { (phase.name) }
+            span.phase.narrow[to - from < 0.03] style={ "left:" (percent(from)) ";width:" (percent(to - from)) } { (phase.name) }
         }
     }
 }
 
 /// The time scale.
-fn times(stretch: Stretch) -> Markup {
+fn times(timeline: &Timeline) -> Markup {
+    let stretch = timeline.stretch;
     html! {
         .times {
-            @for (t_s, label) in stretch.ticks() {
+            @for (t_s, label) in stretch.ticks(timeline.zero_s) {
                 @let share = stretch.share(t_s);
                 // Near the right edge, the label ends at its tick, because a phone has no room beyond the edge.
                 span.end[share > 0.94] style={ "left:" (percent(share)) } { (label) }

@@ -15,6 +15,8 @@ pub(crate) const CSS: &str = include_str!("timeline.css");
 pub(crate) struct Timeline {
     /// The time that is shown.
     pub(crate) stretch: Stretch,
+    /// The time at which its clock is 0:00, in seconds.
+    pub(crate) zero_s: f64,
     /// The phases behind the curves.
     pub(crate) phases: Vec<Phase>,
     /// Stretches that are marked along the upper edge, each with a class of the style sheet; the last is on top.
@@ -62,7 +64,7 @@ pub(crate) struct Panel {
     /// The title.
     pub(crate) title: String,
     /// The unit of the values.
-    pub(crate) unit: &'static str,
+    pub(crate) unit: String,
     /// The range of values that is shown.
     pub(crate) scale: Scale,
     /// The height.
@@ -86,6 +88,15 @@ pub(crate) enum Size {
     Small,
 }
 
+/// The number of decimals that show a thousandth of a range of values.
+pub(crate) fn decimals(scale: Scale) -> usize {
+    let range = scale.high - scale.low;
+    match range.is_finite() && range > 0.0 {
+        true => (3.0 - range.log10().floor()).clamp(0.0, 8.0) as usize,
+        false => 0,
+    }
+}
+
 impl Line {
     /// A curve with a class, from the data of its path.
     pub(crate) fn new(class: &'static str, name: impl Into<String>, data: String) -> Line {
@@ -98,13 +109,13 @@ impl Panel {
     /// A panel of curves with a scale and a unit, without marks and zones.
     pub(crate) fn new(
         title: impl Into<String>,
-        (scale, unit): (Scale, &'static str),
+        (scale, unit): (Scale, &str),
         size: Size,
         lines: Vec<Line>,
     ) -> Panel {
         Panel {
             title: title.into(),
-            unit,
+            unit: unit.to_owned(),
             scale,
             size,
             lines,
@@ -129,8 +140,10 @@ impl Panel {
     /// The values with ticks and their labels; the highest label includes the unit.
     pub(crate) fn labels(&self) -> Vec<(f64, String)> {
         let labels = self.ticks().into_iter();
-        let mut labels: Vec<(f64, String)> =
-            labels.map(|value| (value, number(value, 3))).collect();
+        let decimals = decimals(self.scale).max(3);
+        let mut labels: Vec<(f64, String)> = labels
+            .map(|value| (value, number(value, decimals)))
+            .collect();
         if let Some((_, highest)) = labels.last_mut().filter(|_| !self.unit.is_empty()) {
             // Writing to a String cannot fail.
             let _ = write!(highest, " {}", self.unit);
@@ -144,10 +157,11 @@ impl Panel {
     pub(crate) fn plot(&self, timeline: &Timeline, attributes: &str) -> String {
         let Scale { low, high } = self.scale;
         let (length, height) = (timeline.stretch.length_s(), high - low);
-        let (length, height) = (number(length, 3), number(height, 6));
+        let (length, height) = (number(length, 3), number(height, 8));
+        let places = decimals(self.scale).max(4);
         let mut svg = format!(
             r#"<svg class="plot" {attributes} viewBox="0 {} {length} {height}" preserveAspectRatio="none"><g transform="scale(1 -1)">"#,
-            number(-high, 6),
+            number(-high, 8),
         );
         let since_start = |t_s: f64| (t_s - timeline.stretch.start_s).max(0.0);
         let mut rectangle = |class: &str, from: f64, to: f64, bottom: f64, top: f64| {
@@ -155,9 +169,9 @@ impl Panel {
                 svg,
                 r#"<rect class="{class}" x="{}" y="{}" width="{}" height="{}"/>"#,
                 number(from, 2),
-                number(bottom, 4),
+                number(bottom, places),
                 number(to - from, 2),
-                number(top - bottom, 4),
+                number(top - bottom, places),
             );
         };
         let ends = |stretch: &Stretch| (since_start(stretch.start_s), since_start(stretch.end_s));
@@ -187,11 +201,11 @@ impl Panel {
             let _ = write!(
                 svg,
                 r#"<path class="{class}" d="M0 {}H{length}"/>"#,
-                number(value, 4)
+                number(value, places)
             );
         }
         // Browsers use single precision, and damaged logs contain larger values.
-        let drawn = |value: f64| number(value.clamp(-1e30, 1e30), 4);
+        let drawn = |value: f64| number(value.clamp(-1e30, 1e30), places);
         let (bottom, top) = (drawn(low), drawn(high));
         for (t_s, text) in &timeline.events {
             let _ = write!(
@@ -240,7 +254,7 @@ impl Panel {
             let (_, y) = frame.at(0.0, self.scale.share(value));
             text("y", left - 6.0, y + 4.0, &label);
         }
-        for (t_s, label) in timeline.stretch.ticks() {
+        for (t_s, label) in timeline.stretch.ticks(timeline.zero_s) {
             let (x, y) = frame.at(timeline.stretch.share(t_s), 0.0);
             text("x", x, y + 16.0, &label);
         }

@@ -12,6 +12,8 @@ export interface Place {
   profile: string | undefined;
   /** Changed thresholds. */
   changes: VerdictChanges;
+  /** The names of signals that are drawn. */
+  signals: string[];
   /** The time of the cursor, in seconds. */
   t_s: number | undefined;
   /** The stretch that is shown; `undefined` for the whole flight. */
@@ -29,6 +31,7 @@ export function placeIn(address: URLSearchParams): Place {
     example: address.get('example') ?? undefined,
     profile: address.get('profile') ?? undefined,
     changes: changesIn(address.get('verdict')),
+    signals: (address.get('signals') ?? '').split(',').filter(Boolean),
     t_s: number('t'),
     stretch: start_s !== undefined && end_s !== undefined && start_s < end_s ? { start_s, end_s } : undefined,
   };
@@ -44,11 +47,12 @@ function changesIn(text: string | null): VerdictChanges {
 }
 
 /** Converts a state to an address. */
-export function said({ example, profile, changes, t_s, stretch }: Place): URLSearchParams {
+export function said({ example, profile, changes, signals, t_s, stretch }: Place): URLSearchParams {
   const address = new URLSearchParams();
   if (example) address.set('example', example);
   if (profile) address.set('profile', profile);
   if (!isUnchanged(changes)) address.set('verdict', JSON.stringify(changes));
+  if (signals.length > 0) address.set('signals', signals.join(','));
   if (t_s !== undefined && Number.isFinite(t_s)) address.set('t', t_s.toFixed(2));
   if (stretch) {
     address.set('from', stretch.start_s.toFixed(2));

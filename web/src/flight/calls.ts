@@ -13,6 +13,7 @@ import {
   type Brief,
   type Moment,
   type Part,
+  type SignalLabel,
   type Stretch,
   type VerdictChanges,
   type VerdictSettings,
@@ -72,7 +73,7 @@ function flightOf(tell: Tell, { id, file }: Log, profile: Profile): Flight {
   if (known?.serves(profile)) return known;
   forgetLog(tell, id);
   let told = 0;
-  const flight = Flight.fromFile(file, profile.signals, (share) => {
+  const flight = Flight.fromFile(file, undefined, (share) => {
     if (share - told < 0.01) return;
     told = share;
     tell(share);
@@ -109,22 +110,34 @@ export function profileFacts(_tell: Tell, source: ProfileSource, changes: Verdic
   return { ...source, text, title, warnings, verdict };
 }
 
-/** Returns the assessment of a log. */
-export function assessLog(tell: Tell, log: Log, source: ProfileSource): { brief: Brief; stretch: Stretch } {
+/** Returns the assessment of a log, and its signals. */
+export function assessLog(
+  tell: Tell,
+  log: Log,
+  source: ProfileSource,
+): { brief: Brief; stretch: Stretch; signals: SignalLabel[] } {
   const assessment = assessmentOf(tell, log, source);
-  return { brief: assessment.brief(), stretch: assessment.stretch };
+  return { brief: assessment.brief(), stretch: assessment.stretch, signals: assessment.signals() };
 }
 
-/** Returns parts of the report of a log as HTML, for a stretch of time or for all of it. */
+/** The parts of the report in their order; the signals are the chosen ones, below the risk. */
+const SHOWN: readonly Part[] = PARTS.filter((part) => part !== 'signals').flatMap((part) => (part === 'risk' ? ['risk', 'signals'] : [part]));
+
+/**
+ * Returns parts of the report of a log as HTML, for a stretch of time or for all of it. The part `signals` contains the
+ * charts of the `chosen` signals.
+ */
 export function reportParts(
   tell: Tell,
   log: Log,
   source: ProfileSource,
-  parts: readonly Part[] = PARTS,
+  chosen: string[],
+  parts: readonly Part[] = SHOWN,
   stretch?: Stretch,
 ): [Part, string][] {
   const assessment = assessmentOf(tell, log, source);
-  return parts.map((part) => [part, assessment.part(part, stretch)]);
+  const draw = (part: Part) => (part === 'signals' ? assessment.signalCharts(chosen, stretch) : assessment.part(part, stretch));
+  return parts.map((part) => [part, draw(part)]);
 }
 
 /** Returns the state at a time of a flight, with an explanation. */

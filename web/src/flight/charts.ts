@@ -1,5 +1,7 @@
 /** The charts of a report: the values of their curves at a time. The curves themselves are the data. */
 
+import { h } from '../dom';
+
 export interface Chart {
   box: HTMLElement;
   area: HTMLElement;
@@ -10,9 +12,10 @@ export interface Chart {
   /** The index of the rules' input that it shows. */
   input: number | undefined;
   unit: string;
-  cursor: SVGPathElement;
-  /** The values after the cursor in its path. */
-  tail: string;
+  /** The digits of a value. */
+  digits: number;
+  /** A line over the chart. It is no part of the picture, which would be drawn again whenever it moves. */
+  cursor: HTMLElement;
   outputs: HTMLElement[];
   lines: SVGPathElement[];
   /** The points of the lines, parsed on first use. */
@@ -46,8 +49,10 @@ export function chartsIn(root: ParentNode): Chart[] {
   for (const box of root.querySelectorAll<HTMLElement>('.panel')) {
     const area = box.querySelector<HTMLElement>('.area');
     const plot = area?.querySelector('svg');
-    const cursor = plot?.querySelector<SVGPathElement>('.cursor');
-    if (!area || !plot || !cursor) continue;
+    if (!area || !plot) continue;
+    plot.querySelector('.cursor')?.remove();
+    const cursor = h('div', { class: 'cursor' });
+    area.append(cursor);
     plot.setAttribute('role', 'img');
     plot.setAttribute('aria-label', `${box.querySelector('b')?.textContent ?? ''} over time`);
     const events = [...plot.querySelectorAll('.event')].map((mark) => ({
@@ -62,8 +67,8 @@ export function chartsIn(root: ParentNode): Chart[] {
       length_s: Number(box.dataset['length']),
       input: box.dataset['input'] === undefined ? undefined : Number(box.dataset['input']),
       unit: box.dataset['unit'] ?? '',
+      digits: Number(box.dataset['digits'] ?? 3),
       cursor,
-      tail: (cursor.getAttribute('d') ?? '').replace(/^M\S+/, ''),
       outputs: [...box.querySelectorAll('output')],
       lines: [...plot.querySelectorAll<SVGPathElement>('.line')],
       curves: undefined,
@@ -122,17 +127,18 @@ export function held({ x_s, values }: Curve, x: number): number {
 }
 
 /** Formats a value as in the report. */
-export function said(value: number, unit = ''): string {
+export function said(value: number, unit = '', digits = 3): string {
   if (!Number.isFinite(value)) return 'unknown';
-  return String(Number(value.toPrecision(3))) + (unit ? ` ${unit}` : '');
+  return String(Number(value.toPrecision(digits))) + (unit ? ` ${unit}` : '');
 }
 
 /** Moves the cursor of a chart, and shows the values there. */
 export function point(chart: Chart, x_s: number): void {
-  chart.cursor.setAttribute('d', `M${Number.isFinite(x_s) ? x_s.toFixed(4) : -1}${chart.tail}`);
+  chart.cursor.style.transform = `translateX(${((100 * x_s) / chart.length_s).toFixed(3)}%)`;
   curvesOf(chart).forEach((curve, i) => {
     const output = chart.outputs[i];
-    if (output) output.textContent = said(held(curve, x_s), chart.unit);
+    const words = said(held(curve, x_s), chart.unit, chart.digits);
+    if (output && output.textContent !== words) output.textContent = words;
   });
 }
 

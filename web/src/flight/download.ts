@@ -15,18 +15,24 @@ const WORDS: Record<Kind, string> = {
 /** The endings of the file names. */
 export const ENDINGS: Record<Kind, string> = { html: '.html', csv: '.steps.csv', json: '.json', flight: '.csv' };
 
-/** Creates a menu that closes after a choice, or when the focus leaves it. */
+/** Creates a menu that closes after a choice, or when the user turns elsewhere. */
 export function downloadMenu(choose: (kind: Kind) => void): HTMLElement {
   const body = h('div', { class: 'menu-body' });
-  const menu = h('details', { class: 'menu' }, h('summary', { class: 'button' }, 'Download'), body);
+  const element = menu('Download', body);
   for (const kind of Object.keys(WORDS) as Kind[]) {
     const button = h('button', { type: 'button' }, WORDS[kind]);
     button.addEventListener('click', () => {
-      menu.open = false;
+      element.open = false;
       choose(kind);
     });
     body.append(button);
   }
+  return element;
+}
+
+/** Creates a menu that closes when the user turns elsewhere. */
+export function menu(words: string, body: HTMLElement): HTMLDetailsElement {
+  const menu = h('details', { class: 'menu' }, h('summary', { class: 'button' }, words), body);
   document.addEventListener('click', (event) => {
     if (!event.composedPath().includes(menu)) menu.open = false;
   });

@@ -30,7 +30,7 @@ export function dropZone(root: HTMLElement, actions: Actions): HTMLElement {
     event.preventDefault();
     actions.take([...(event.dataTransfer?.files ?? [])]);
   });
-  const words = [h('span', { class: 'first' }, 'Choose logs'), h('span', { class: 'more' }, '+ Add logs')];
+  const words = [h('span', { class: 'first' }, 'Choose logs'), h('span', { class: 'more' }, '+ Add', h('span', { class: 'wide' }, ' logs'))];
   return h(
     'div',
     { class: 'drop' },

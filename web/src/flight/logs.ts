@@ -1,8 +1,9 @@
-/** The list of logs: each is waiting, being read, assessed or refused. */
+/** The table of logs: each is waiting, being read, assessed or refused. */
 
-import type { Brief, Stretch } from 'flagred';
+import type { Brief, SignalLabel, Stretch } from 'flagred';
 import { fill, h } from '../dom';
 import type { Log } from './calls';
+import { minutes } from './time';
 
 export interface Entry {
   log: Log;
@@ -12,6 +13,7 @@ export interface Entry {
   /** The assessment with the profile and its changes. */
   brief?: Brief;
   stretch?: Stretch;
+  signals?: SignalLabel[];
   /** The verdict with the unchanged profile. */
   unchanged?: Brief['verdict'];
   /** The reason why there is no assessment, in the words of the command line. */
@@ -45,34 +47,74 @@ function about(entry: Entry): string {
     case 'refused':
       return 'cannot be used';
     case 'done':
-      return `${(entry.brief?.summary.in_air_s ?? 0).toFixed(0)} s in the air`;
+      return '';
   }
 }
 
-/** Creates the list; only changed entries are drawn again. */
-export function logList(actions: Actions): LogList {
-  const list = h('ul', { class: 'logs', 'aria-label': 'Flights' });
-  const rows = new Map<Entry, { element: HTMLElement; update(isCurrent: boolean): void }>();
+/** The highest risk: of judged time, or of a finding that lasted longer. */
+function highest({ summary, findings }: Brief): number | undefined {
+  const ofRisk = findings.filter(({ measure, risk_output }) => measure === 'risk' && risk_output === undefined);
+  const values = [summary.risk_max, ...ofRisk].flatMap((of) => (of ? [of.value_pct] : []));
+  return values.length > 0 ? Math.max(...values) : undefined;
+}
 
-  function row(entry: Entry): { element: HTMLElement; update(isCurrent: boolean): void } {
-    const mark = h('span', { class: 'mark' });
-    const name = h('span', { class: 'name' }, entry.log.file.name);
+const GRAVITY: Record<Brief['verdict'], number> = { NA: 0, GOOD: 1, WARN: 2, FAIL: 3 };
+
+/** The columns: heading, text, and what they are sorted by; unknown values come last. */
+const COLUMNS: [string, (entry: Entry) => string, (entry: Entry) => number | string | undefined][] = [
+  ['Verdict', () => '', ({ brief }) => brief && -GRAVITY[brief.verdict]],
+  ['Flight', () => '', ({ log }) => log.file.name],
+  ['Highest risk', ({ brief }) => percent(brief && highest(brief)), ({ brief }) => brief && -(highest(brief) ?? -1)],
+  ['In the air', ({ brief }) => (brief ? `${minutes(brief.summary.in_air_s, 0)} min` : ''), ({ brief }) => brief && -brief.summary.in_air_s],
+  ['Findings', ({ brief }) => (brief ? String(brief.findings.length) : ''), ({ brief }) => brief && -brief.findings.length],
+];
+
+const percent = (value: number | undefined) => (value === undefined ? '' : `${value.toFixed(0)} %`);
+
+interface Row {
+  element: HTMLElement;
+  update(isCurrent: boolean): void;
+}
+
+/** Creates the table; only changed entries are drawn again. It is hidden for a single flight that is shown. */
+export function logList(actions: Actions): LogList {
+  const rows = new Map<Entry, Row>();
+  let shown: { entries: readonly Entry[]; current: Entry | undefined } = { entries: [], current: undefined };
+  /** The column that is sorted by, and whether it is reversed; in the order of dropping at first. */
+  let sorted: { column: number; isReversed: boolean } | undefined;
+  const heads = COLUMNS.map(([words], column) => {
+    const button = h('button', { type: 'button' }, words);
+    button.addEventListener('click', () => {
+      sorted = { column, isReversed: sorted?.column === column && !sorted.isReversed };
+      draw();
+    });
+    return h('th', { scope: 'col', class: column > 1 ? 'n' : null }, button);
+  });
+  const body = h('tbody', {});
+  const table = h('table', {}, h('thead', {}, h('tr', {}, ...heads, h('td', {}))), body);
+  const element = h('div', { class: 'logs', role: 'region', 'aria-label': 'Flights', tabindex: 0 }, table);
+
+  function row(entry: Entry): Row {
+    const mark = h('td', { class: 'mark' });
     const facts = h('span', { class: 'soft facts' });
     const progress = h('progress', { max: 1, 'aria-label': `Reading ${entry.log.file.name}` });
-    const choose = h('button', { type: 'button', class: 'log' }, mark, h('span', { class: 'words' }, name, facts), progress);
+    const choose = h('button', { type: 'button', class: 'log' }, h('span', { class: 'name' }, entry.log.file.name));
     choose.addEventListener('click', () => actions.choose(entry));
     const remove = h('button', { type: 'button', class: 'remove' }, '×');
     remove.addEventListener('click', () => actions.remove(entry));
+    const values = COLUMNS.slice(2).map(() => h('td', { class: 'n' }));
+    const element = h('tr', {}, mark, h('td', {}, choose, facts, progress), ...values, h('td', {}, remove));
     return {
-      element: h('li', {}, choose, remove),
+      element,
       update(isCurrent) {
-        if (isCurrent && !choose.hasAttribute('aria-current')) choose.scrollIntoView({ block: 'nearest', inline: 'nearest' });
         if (isCurrent) choose.setAttribute('aria-current', 'true');
         else choose.removeAttribute('aria-current');
+        element.classList.toggle('current', isCurrent);
         const isBusy = entry.state === 'reading';
         progress.hidden = !isBusy;
         progress.value = entry.share;
-        facts.textContent = `${about(entry)} · ${size(entry.log.file.size)}`;
+        facts.textContent = entry.state === 'done' ? '' : `${about(entry)} · ${size(entry.log.file.size)}`;
+        values.forEach((cell, i) => (cell.textContent = COLUMNS[i + 2]![1](entry)));
         remove.setAttribute('aria-label', `${isBusy ? 'Cancel' : 'Remove'} ${entry.log.file.name}`);
         remove.title = isBusy ? 'Cancel' : 'Remove';
         const badged = `${entry.state} ${entry.brief?.verdict}`;
@@ -85,23 +127,46 @@ export function logList(actions: Actions): LogList {
     };
   }
 
+  function inOrder(entries: readonly Entry[]): Entry[] {
+    if (!sorted) return [...entries];
+    const { column, isReversed } = sorted;
+    const key = COLUMNS[column]![2];
+    const collator = new Intl.Collator(undefined, { numeric: true });
+    return [...entries].sort((a, b) => {
+      const [one, other] = [key(a), key(b)];
+      if (one === undefined || other === undefined) return Number(one === undefined) - Number(other === undefined);
+      const order = typeof one === 'number' && typeof other === 'number' ? one - other : collator.compare(String(one), String(other));
+      return isReversed ? -order : order;
+    });
+  }
+
+  function draw(): void {
+    const { entries, current } = shown;
+    const [only] = entries;
+    element.hidden = !only || (entries.length === 1 && only.state === 'done');
+    heads.forEach((head, column) => {
+      const isSorted = sorted?.column === column;
+      head.setAttribute('aria-sort', !isSorted ? 'none' : sorted!.isReversed ? 'descending' : 'ascending');
+    });
+    for (const [entry, { element }] of rows) {
+      if (entries.includes(entry)) continue;
+      element.remove();
+      rows.delete(entry);
+    }
+    inOrder(entries).forEach((entry, i) => {
+      let known = rows.get(entry);
+      if (!known) rows.set(entry, (known = row(entry)));
+      // Moving an element that has the focus takes it away.
+      if (body.children[i] !== known.element) body.insertBefore(known.element, body.children[i] ?? null);
+      known.update(entry === current);
+    });
+  }
+
   return {
-    element: list,
+    element,
     show(entries, current) {
-      for (const [entry, { element }] of rows) {
-        if (entries.includes(entry)) continue;
-        element.remove();
-        rows.delete(entry);
-      }
-      for (const entry of entries) {
-        let known = rows.get(entry);
-        if (!known) {
-          known = row(entry);
-          rows.set(entry, known);
-          list.append(known.element);
-        }
-        known.update(entry === current);
-      }
+      shown = { entries, current };
+      draw();
     },
   };
 }

@@ -3,10 +3,12 @@
 import type { Moment } from 'flagred';
 import { fill, h, type Child } from '../dom';
 import { said } from './charts';
+import { minutes } from './time';
 
 export interface MomentPanel {
   element: HTMLElement;
-  show(moment: Moment | undefined, events: string[]): void;
+  /** Shows a moment of a flight that began at `zero_s`, in seconds on the log's clock. */
+  show(moment: Moment, zero_s: number, events: string[]): void;
 }
 
 /** The maximum number of rules in the list; the others hardly matter. */
@@ -23,16 +25,12 @@ export function momentPanel(): MomentPanel {
   const element = h('details', { class: 'moment card', open }, head, body);
   return {
     element,
-    show(moment, events) {
-      if (!moment) {
-        fill(head, 'At the cursor');
-        fill(body);
-        return;
-      }
+    show(moment, zero_s, events) {
       const { step } = moment;
       fill(
         head,
-        h('b', {}, `${moment.t_s.toFixed(1)} s`),
+        h('b', {}, `${minutes(moment.t_s - zero_s)} min`),
+        h('span', { class: 'log-time soft' }, `${moment.t_s.toFixed(1)} s of the log`),
         moment.mode ? h('span', { class: 'mode' }, moment.mode) : null,
         h('span', { class: 'risk-now' }, `risk ${percent(step?.risk)}`),
       );

@@ -7,6 +7,7 @@ import type { Part } from 'flagred';
 import { fragment, h } from '../dom';
 import { chartsIn, curvesOf, locate, mapIn, held, point, type Chart, type DecisionMap } from './charts';
 import { gestures } from './gestures';
+import { pointTrack, trackIn, type Track } from './track';
 
 /** Handles events on the charts. */
 export interface Listener {
@@ -42,15 +43,22 @@ interface Section {
 /** Styles that the style sheet of the report lacks, because it is written for a page. */
 const STYLE = `
 :host{display:block;min-width:0}
-section{content-visibility:auto;contain-intrinsic-size:auto 20rem}
-section[data-part=head],section[data-part=risk]{content-visibility:visible}
+section{content-visibility:auto;contain-intrinsic-size:auto 20rem;min-width:0}
+section[data-part=head],section[data-part=about],section[data-part=risk],section[data-part=signals]{content-visibility:visible}
 section[data-part=head] h1{margin-top:0}
+.rest{display:grid;grid-template-columns:repeat(2,minmax(0,1fr));gap:0 1.6rem}
+section{grid-column:1/-1}
+@media(min-width:64.01rem){section[data-part=track]:not(:empty),section[data-part=track]:not(:empty)+section[data-part=map]{grid-column:auto}}
+section[data-part=track] figure,section[data-part=map] figure{margin-left:0}
+section[data-part=risk] h2{display:none}
+.cursor{position:absolute;inset:0;border-left:1px solid var(--ink);opacity:.65;pointer-events:none;will-change:transform}
 .area{cursor:crosshair;touch-action:pan-y;user-select:none;-webkit-user-select:none}
 .selection{position:absolute;top:0;bottom:0;background:var(--accent);opacity:.18;pointer-events:none}
 .preview .times,.preview .phase{visibility:hidden}
 a{color:var(--accent)}
 @media(max-width:40rem){.map .y{font-size:.65rem}}
 .nothing{color:var(--soft);font-size:.9rem}
+@media print{:host{font-size:10pt;-webkit-print-color-adjust:exact;print-color-adjust:exact}section{content-visibility:visible}.cursor{display:none}}
 `;
 
 const nextTask = () => new Promise<void>((resolve) => setTimeout(resolve));
@@ -63,13 +71,18 @@ export function report(style: string, listener: Listener): Report {
   const sheet = new CSSStyleSheet();
   sheet.replaceSync(style.replaceAll(':root', ':host') + STYLE);
   root.adoptedStyleSheets = [sheet];
-  const body = h('div', {});
+  const [top, middle, rest] = [h('div', {}), h('div', {}), h('div', { class: 'rest' })];
+  const slot = (name: string) => h('slot', { name });
+  // The verdict comes first, then the controls; the slider is at the charts.
+  const body = h('div', {}, top, slot('tools'), middle, slot('bar'), rest);
   root.append(body);
 
   const sections = new Map<string, Section>();
   let map: DecisionMap | undefined;
+  let track: Track | undefined;
   let share = 0.5;
   let drawing = 0;
+  let frame = 0;
   const selection = h('div', { class: 'selection' });
 
   const charts = function* (): Iterable<Chart> {
@@ -81,7 +94,7 @@ export function report(style: string, listener: Listener): Report {
     if (!known) {
       known = { element: h('section', { 'data-part': name }), charts: [], isEmpty: false };
       sections.set(name, known);
-      body.append(known.element);
+      (name === 'head' ? top : name === 'about' ? middle : rest).append(known.element);
     }
     return known;
   }
@@ -98,6 +111,8 @@ export function report(style: string, listener: Listener): Report {
   }
 
   function locateAll(): void {
+    const [main] = charts();
+    if (track && main) pointTrack(track, main.start_s + share * main.length_s);
     if (!map) return;
     const inputs = new Map<number, number>();
     for (const chart of charts()) {
@@ -128,6 +143,12 @@ export function report(style: string, listener: Listener): Report {
     event.preventDefault();
     listener.onFlight(Number(link.getAttribute('href')?.slice('#flight'.length)));
   });
+  // The search over folded rows.
+  root.addEventListener('input', ({ target }) => {
+    const wanted = (target as HTMLInputElement).value.toLowerCase();
+    const rows = (target as Element).closest('.searched')?.querySelectorAll('tr') ?? [];
+    for (const row of rows) row.hidden = !row.textContent!.toLowerCase().includes(wanted);
+  });
   root.addEventListener('pointerover', (event) => {
     const value = (event.target as Element).getAttribute('data-v');
     const output = value && map?.box.querySelector('output');
@@ -145,6 +166,7 @@ export function report(style: string, listener: Listener): Report {
           element.remove();
           sections.delete(name);
         }
+        if (!kept.has('map')) map = track = undefined;
       }
       for (const [name, html] of parts) {
         const made = section(name);
@@ -155,12 +177,13 @@ export function report(style: string, listener: Listener): Report {
           await nextTask();
           if (mine !== drawing) return false;
         }
-        if (isAll) made.isEmpty = !html;
+        if (isAll || name === 'signals') made.isEmpty = !html;
         else if (!html && !made.isEmpty) drawn.append(h('p', { class: 'nothing' }, 'Nothing is known in this stretch of time.'));
         // Elements that may scroll can also be scrolled by keys.
         for (const wide of drawn.querySelectorAll<HTMLElement>('pre, .scroll')) wide.tabIndex = 0;
         made.charts = chartsIn(drawn);
         if (name === 'map') map = mapIn(drawn);
+        if (name === 'track') track = trackIn(drawn);
         made.element.replaceChildren(drawn);
         await nextTask();
         if (mine !== drawing) return false;
@@ -173,8 +196,9 @@ export function report(style: string, listener: Listener): Report {
     clear() {
       drawing++;
       map = undefined;
+      track = undefined;
       sections.clear();
-      body.replaceChildren();
+      for (const part of [top, middle, rest]) part.replaceChildren();
     },
     preview(from, to) {
       body.classList.add('preview');
@@ -185,8 +209,12 @@ export function report(style: string, listener: Listener): Report {
     },
     point(to) {
       share = to;
-      for (const chart of charts()) if (chart.curves) point(chart, share * chart.length_s);
-      locateAll();
+      // A pointer moves more often than the screen is drawn.
+      frame ||= requestAnimationFrame(() => {
+        frame = 0;
+        for (const chart of charts()) if (chart.curves) point(chart, share * chart.length_s);
+        locateAll();
+      });
     },
     near(at) {
       const [main] = charts();

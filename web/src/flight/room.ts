@@ -9,15 +9,18 @@ import { placeIn, said } from './address';
 import type { ProfileFacts, ProfileSource } from './calls';
 import { ENDINGS, downloadMenu, type Kind } from './download';
 import { dropZone } from './drop';
+import { keys } from './keys';
 import { badge, logList, verdictClass, type Entry } from './logs';
 import { momentPanel } from './moment';
+import { picker } from './picker';
+import { profiles } from './profiles';
 import { report as makeReport, type Report } from './report';
 import { timeBar } from './timebar';
-import { within, zoomed } from './time';
+import { minutes, within, zoomed } from './time';
 import { isUnchanged, whatIf } from './whatif';
 
 /** The parts of a report that depend on the stretch of time. */
-const OVER_TIME: readonly Part[] = ['risk', 'inputs', 'motors', 'attitude'];
+const OVER_TIME: readonly Part[] = ['risk', 'signals', 'inputs', 'motors', 'attitude'];
 
 /** Opens the room. */
 export function open(root: HTMLElement, app: App): Room {
@@ -34,6 +37,7 @@ export function open(root: HTMLElement, app: App): Room {
   let shown = begun.stretch;
   let drawn: Stretch = whole;
   let cursor_s = begun.t_s ?? NaN;
+  let signals = begun.signals;
   let example = begun.example;
   let next = 0;
   let report: Report | undefined;
@@ -51,49 +55,35 @@ export function open(root: HTMLElement, app: App): Room {
     zoom: (from, to) => show(zoomed(view(), from, to, whole)),
     reset: () => show(undefined),
   });
-  const profiles = h('select', { 'aria-label': 'Profile' });
-  const profileFile = h('input', { type: 'file', accept: '.yaml,.yml', multiple: true, 'aria-label': 'Profile from a file', hidden: true });
+  const profile = profiles((source) => quiet(useProfile(source, {})));
   const compareButton = h('button', { type: 'button', 'aria-pressed': 'false' }, 'Compare');
+  const closeButton = h('button', { type: 'button', 'aria-label': 'Close' }, h('span', { class: 'wide' }, 'Close'), h('span', { class: 'narrow' }, '×'));
   const downloads = downloadMenu((kind) => quiet(save(kind)));
-  const tools = h(
-    'div',
-    { class: 'tools' },
-    h('label', {}, h('span', { class: 'soft' }, 'Profile '), profiles),
-    profileFile,
-    compareButton,
-    downloads,
-  );
-  const aside = h('div', { class: 'aside' }, thresholds.element, moments.element);
-  const viewer = h('div', { class: 'flight-view', hidden: true }, tools, bar.element, h('div', { class: 'columns' }, place, aside));
+  const plotted = picker((names) => {
+    signals = names;
+    quiet(redraw(false));
+  });
+  const tools = h('div', { class: 'tools', slot: 'tools' }, profile.element, plotted.element, compareButton, downloads, closeButton);
+  const aside = h('div', { class: 'aside' }, moments.element, thresholds.element);
+  const viewer = h('div', { class: 'flight-view', hidden: true }, h('div', { class: 'columns' }, place, aside));
   const drop = dropZone(root, { take, takeExample: () => quiet(takeExample('gust')) });
-  add(root, heading, status, h('div', { class: 'top' }, list.element, drop), message, viewer);
+  const top = h('div', { class: 'top' }, drop);
+  add(root, heading, status, list.element, top, message, viewer);
 
   compareButton.addEventListener('click', () => quiet(compare(!isComparing)));
-  profiles.addEventListener('change', () => {
-    if (profiles.value === '') profileFile.click();
-    else quiet(useProfile({ name: profiles.value }, {}));
+  closeButton.addEventListener('click', () => current && remove(current));
+  keys({
+    isActive: () => !root.hidden && !viewer.hidden,
+    state: () => ({ shown: view(), whole, t_s: cursor_s }),
+    move,
+    show,
   });
-  profileFile.addEventListener('change', async () => {
-    const chosen = [...(profileFile.files ?? [])];
-    profileFile.value = '';
-    if (chosen.length > 0) quiet(useProfile(await profileIn(chosen), {}));
-  });
-  document.addEventListener('keydown', (event) => {
-    const isTyping = event.composedPath().some((target) => target instanceof Element && target.matches('input, select, textarea'));
-    if (isTyping || root.hidden || viewer.hidden || event.ctrlKey || event.metaKey || event.altKey) return;
-    const share = (cursor_s - view().start_s) / lengthOf(view());
-    const act: Record<string, () => void> = {
-      ArrowLeft: () => move(event.shiftKey ? -5 : -1),
-      ArrowRight: () => move(event.shiftKey ? 5 : 1),
-      '+': () => show(zoomed(view(), share / 2, (1 + share) / 2, whole)),
-      '-': () => show(zoomed(view(), -share, 2 - share, whole)),
-      '0': () => show(undefined),
-    };
-    const wanted = act[event.key];
-    if (!wanted) return;
-    event.preventDefault();
-    wanted();
-  });
+
+  /** Shows or hides the flight. The button that adds logs is one of its controls while it is shown. */
+  function reveal(isShown: boolean): void {
+    viewer.hidden = !isShown;
+    (isShown ? tools : top).prepend(drop);
+  }
 
   /** Reports errors of some work, except cancellation. */
   function quiet(work: Promise<unknown>): void {
@@ -102,7 +92,11 @@ export function open(root: HTMLElement, app: App): Room {
     });
   }
 
-  const listLogs = (): void => list.show(entries, isComparing ? undefined : current);
+  const listLogs = (): void => {
+    list.show(entries, isComparing ? undefined : current);
+    // The table of several logs removes them.
+    closeButton.hidden = entries.length > 1;
+  };
   const source = (): ProfileSource => (isUnchanged(changes) || !facts ? base : { ...base, text: facts.text });
   const view = (): Stretch => shown ?? whole;
   const done = (): Entry[] => entries.filter((entry) => entry.state === 'done');
@@ -155,10 +149,14 @@ export function open(root: HTMLElement, app: App): Room {
       refuse(entry, error as Error);
     }
     if (!entries.includes(entry)) return;
-    compareButton.disabled = done().length < 2;
+    countLogs();
     if (isComparing) quiet(redraw(true));
     else if (!current || current.state === 'refused' || current === entry) await choose(entry);
     listLogs();
+  }
+
+  function countLogs(): void {
+    compareButton.hidden = done().length < 2;
   }
 
   function refuse(entry: Entry, error: Error): void {
@@ -173,7 +171,7 @@ export function open(root: HTMLElement, app: App): Room {
     else quiet(engine.call('forgetLog', entry.log.id));
     const wasSeen = current === entry || (isComparing && entry.state === 'done');
     if (current === entry) current = done()[0] ?? entries[0];
-    compareButton.disabled = done().length < 2;
+    countLogs();
     if (!current) clear();
     else if (isComparing && done().length > 1) quiet(redraw(true));
     else if (wasSeen) void choose(current);
@@ -183,7 +181,7 @@ export function open(root: HTMLElement, app: App): Room {
 
   function clear(): void {
     report?.clear();
-    viewer.hidden = true;
+    reveal(false);
     message.hidden = true;
     heading.classList.remove('visually-hidden');
     drop.classList.remove('small');
@@ -204,14 +202,16 @@ export function open(root: HTMLElement, app: App): Room {
     heading.classList.add('visually-hidden');
     drop.classList.add('small');
     if (entry.state === 'refused') {
-      viewer.hidden = true;
+      reveal(false);
       message.hidden = false;
       fill(message, h('b', {}, `${entry.log.file.name} cannot be used`), h('pre', {}, entry.refusal ?? ''));
       return;
     }
     message.hidden = true;
-    viewer.hidden = entry.state !== 'done';
+    reveal(entry.state === 'done');
     if (!entry.stretch) return;
+    closeButton.title = `Close ${entry.log.file.name}`;
+    plotted.show(entry.signals ?? [], signals);
     whole = entry.stretch;
     if (shown) shown = within(shown, whole);
     if (!Number.isFinite(cursor_s)) cursor_s = entry.brief?.summary.risk_max?.t_s ?? (whole.start_s + whole.end_s) / 2;
@@ -253,7 +253,7 @@ export function open(root: HTMLElement, app: App): Room {
   async function draw(report: Report, isAll: boolean): Promise<void> {
     const wanted = shown;
     compareButton.setAttribute('aria-pressed', String(isComparing));
-    aside.hidden = isComparing;
+    aside.hidden = plotted.element.hidden = isComparing;
     if (isComparing) {
       const { html, length_s } = await engine.call('compareLogs', done().map(({ log }) => log), source(), wanted);
       whole = { start_s: 0, end_s: length_s };
@@ -261,7 +261,7 @@ export function open(root: HTMLElement, app: App): Room {
       drawn = wanted ?? whole;
       await report.draw([['comparison', html]], true);
     } else if (current?.state === 'done') {
-      const parts = await engine.call('reportParts', current.log, source(), isAll ? undefined : OVER_TIME, wanted);
+      const parts = await engine.call('reportParts', current.log, source(), signals, isAll ? undefined : OVER_TIME, wanted);
       drawn = wanted ?? whole;
       await report.draw(parts, isAll);
     }
@@ -296,7 +296,7 @@ export function open(root: HTMLElement, app: App): Room {
     cursor_s = Math.min(end_s, Math.max(start_s, t_s));
     report?.point((cursor_s - drawn.start_s) / lengthOf(drawn));
     bar.show(view(), whole, cursor_s);
-    bar.say(`${cursor_s.toFixed(1)} s`);
+    bar.say(`${minutes(cursor_s - whole.start_s)} min`);
     quiet(follow());
     write();
   }
@@ -307,9 +307,9 @@ export function open(root: HTMLElement, app: App): Room {
     const entry = current;
     const moment = await engine.call('momentOf', entry.log, source(), cursor_s);
     if (entry !== current || isComparing) return;
-    moments.show(moment, report?.near((cursor_s - drawn.start_s) / lengthOf(drawn)) ?? []);
+    moments.show(moment, whole.start_s, report?.near((cursor_s - drawn.start_s) / lengthOf(drawn)) ?? []);
     const risk = moment.step?.risk;
-    const words = [`${moment.t_s.toFixed(1)} s`, moment.mode, typeof risk === 'number' ? `risk ${risk.toFixed(0)} %` : 'risk unknown'];
+    const words = [`${minutes(moment.t_s - whole.start_s)} min`, moment.mode, typeof risk === 'number' ? `risk ${risk.toFixed(0)} %` : 'risk unknown'];
     bar.say(words.filter(Boolean).join(', '));
   });
 
@@ -376,11 +376,7 @@ export function open(root: HTMLElement, app: App): Room {
   });
 
   let shipped: string[] = [];
-  function listProfiles(): void {
-    const names = base.text === undefined ? shipped : [...shipped, base.name];
-    const option = (value: string, words: string, selected: boolean) => h('option', { value, selected }, words);
-    fill(profiles, ...names.map((name) => option(name, name, name === base.name)), option('', 'from a file, or with its rules …', false));
-  }
+  const listProfiles = (): void => profile.show(shipped, base);
 
   async function save(kind: Kind): Promise<void> {
     const logs = compared().map(({ log }) => log);
@@ -402,7 +398,7 @@ export function open(root: HTMLElement, app: App): Room {
     clearTimeout(written);
     const profile = base.text === undefined && base.name !== shipped[0] ? base.name : undefined;
     const t_s = current && !isComparing ? cursor_s : undefined;
-    written = window.setTimeout(() => app.navigate(said({ example, profile, changes, t_s, stretch: shown })), 300);
+    written = window.setTimeout(() => app.navigate(said({ example, profile, changes, signals, t_s, stretch: shown })), 300);
   }
 
   const ready = (async () => {
@@ -417,12 +413,13 @@ export function open(root: HTMLElement, app: App): Room {
         if (entry) void choose(entry);
       },
     });
+    report.element.append(tools, bar.element);
     place.append(report.element);
     await useProfile(base, changes);
   })();
   quiet(ready);
   if (example) quiet(takeExample(example));
-  compareButton.disabled = true;
+  countLogs();
   return {
     shown(parameters) {
       const wanted = placeIn(parameters);
@@ -433,6 +430,11 @@ export function open(root: HTMLElement, app: App): Room {
       if (isOther || isTried) quiet(useProfile(isOther ? { name } : base, wanted.changes));
       if (viewer.hidden) return;
       const { stretch, t_s } = wanted;
+      if (wanted.signals.join() !== signals.join()) {
+        signals = wanted.signals;
+        plotted.show(current?.signals ?? [], signals);
+        quiet(redraw(false));
+      }
       const apart_s = stretch ? Math.abs(stretch.start_s - view().start_s) + Math.abs(stretch.end_s - view().end_s) : 0;
       if (stretch && apart_s > 0.02) show(within(stretch, whole));
       if (t_s !== undefined && Math.abs(t_s - cursor_s) > 0.01) seek(t_s);
@@ -442,14 +444,5 @@ export function open(root: HTMLElement, app: App): Room {
 
 /** The message for an error; bugs are distinguished from refusals. */
 const told = (error: Error): string => (error instanceof Trapped ? `flagred has a defect: ${error.message}` : error.message);
-
-/** Reads a profile that was chosen, with its rule set if that was chosen too. */
-async function profileIn(files: File[]): Promise<ProfileSource> {
-  const texts = await Promise.all(files.map(async (file) => ({ name: file.name, text: await file.text() })));
-  const isProfile = ({ text }: { text: string }) => /^flagred\s*:/m.test(text);
-  const profile = texts.find(isProfile) ?? texts[0]!;
-  const rules = texts.find((other) => other !== profile)?.text;
-  return rules === undefined ? profile : { ...profile, rules };
-}
 
 const lengthOf = ({ start_s, end_s }: Stretch) => Math.max(end_s - start_s, 1e-6);

@@ -1,6 +1,14 @@
-/** Stretches of time that are shown. */
+/** Stretches of time that are shown, and times in words. */
 
 import type { Stretch } from 'flagred';
+
+/** Minutes and seconds, as in `12:03.4`. */
+export function minutes(seconds: number, decimals = 1): string {
+  const unit = 10 ** decimals;
+  const rounded = Math.round(Math.abs(seconds) * unit);
+  const rest = ((rounded % (60 * unit)) / unit).toFixed(decimals).padStart(decimals > 0 ? decimals + 3 : 2, '0');
+  return `${seconds < 0 && rounded > 0 ? '-' : ''}${Math.floor(rounded / (60 * unit))}:${rest}`;
+}
 
 /** The shortest stretch that is shown, in seconds. */
 const SHORTEST_S = 0.5;

@@ -2,6 +2,7 @@
 
 import type { Stretch } from 'flagred';
 import { h } from '../dom';
+import { minutes } from './time';
 
 export interface TimeBar {
   element: HTMLElement;
@@ -48,9 +49,9 @@ export function timeBar(actions: Actions): TimeBar {
   const all = button('All', 'All of the flight', actions.reset);
   const element = h(
     'div',
-    { class: 'timebar', role: 'group', 'aria-label': 'Time' },
+    { class: 'timebar', role: 'group', 'aria-label': 'Time', slot: 'bar', title: 'Drag over a chart to zoom.' },
     h('div', { class: 'slider' }, slider, h('span', { class: 'overview' }, overview)),
-    h('div', { class: 'zoom' }, h('span', { class: 'hint soft' }, 'Drag over a chart to zoom.'), span, earlier, farther, all, closer, later),
+    h('div', { class: 'zoom' }, span, earlier, farther, all, closer, later),
   );
   return {
     element,
@@ -63,7 +64,8 @@ export function timeBar(actions: Actions): TimeBar {
       const isAll = shown.end_s - shown.start_s > length_s * 0.999;
       overview.style.left = `${(100 * (shown.start_s - whole.start_s)) / length_s}%`;
       overview.style.width = `${(100 * (shown.end_s - shown.start_s)) / length_s}%`;
-      span.textContent = `${shown.start_s.toFixed(1)} to ${shown.end_s.toFixed(1)} s`;
+      const ends = [shown.start_s, shown.end_s].map((t_s) => minutes(t_s - whole.start_s));
+      span.textContent = `${ends.join(' to ')} min`;
       farther.disabled = all.disabled = isAll;
       overview.hidden = isAll;
       earlier.disabled = shown.start_s <= whole.start_s;

@@ -73,6 +73,25 @@ impl Assessment {
         Ok(Report::new(&self.subject, &self.loaded, stretch).part(part))
     }
 
+    /// The signals of the log with their units and sources, as JSON.
+    pub fn signals(&self) -> Result<String, JsError> {
+        let signals = flagred_report::offered::signals(&self.subject.flight);
+        serde_json::to_string(&signals).map_err(|error| failure(error, None))
+    }
+
+    /// The curves of some signals as HTML, as those of a part.
+    #[wasm_bindgen(js_name = signalCharts)]
+    pub fn signal_charts(
+        &self,
+        names: Vec<String>,
+        start_s: Option<f64>,
+        end_s: Option<f64>,
+    ) -> String {
+        let stretch = start_s.zip(end_s);
+        let stretch = stretch.map(|(start_s, end_s)| Stretch { start_s, end_s });
+        Report::new(&self.subject, &self.loaded, stretch).signals(&names)
+    }
+
     /// The state at a time in seconds, and the rules that fire, as JSON.
     pub fn moment(&self, t_s: f64) -> Result<String, JsError> {
         let Subject {

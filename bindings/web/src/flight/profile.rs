@@ -76,11 +76,10 @@ impl Profile {
         )
     }
 
-    /// The signals that must be read from a log to assess it and to draw the report.
+    /// The signals that must be read from a log to assess it and to draw the report without added signals.
     #[wasm_bindgen(getter)]
     pub fn signals(&self) -> Vec<String> {
-        let options = flagred_report::options(&self.loaded.estimator, true);
-        options.signals.unwrap_or_default()
+        flagred_report::signals(&self.loaded.estimator)
     }
 
     /// The conditions for levels, as JSON: `profile.verdict` in the document of an assessment.

@@ -4,6 +4,7 @@
 pub mod exchange;
 pub mod parts;
 pub mod set;
+pub mod single;
 pub mod text;
 pub mod viewer;
 

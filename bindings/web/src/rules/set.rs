@@ -18,7 +18,7 @@ use fuzzy::{
 use serde::Serialize;
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
 
-use super::{exchange::refused, json};
+use super::{exchange::refused, json, single::Memory};
 use crate::failure::failure;
 
 /// The number of points of the curve of a rule set with one input.
@@ -30,6 +30,8 @@ pub struct RuleSet {
     pub(super) engine: Engine,
     /// Of a profile: its output, what fills the gaps of its rules, and the name of the method.
     profile: Option<(usize, Filling, &'static str)>,
+    /// The memory of single values, once there was one.
+    pub(super) memory: Option<Memory>,
 }
 
 /// The content of a map: the index of an output and of one or two inputs, the parts of their ranges, the number of
@@ -269,7 +271,12 @@ impl RuleSet {
         if !document.is_profile() {
             let engine = document.source().engine().map_err(refused)?.clone();
             let profile = None;
-            return Ok(RuleSet { engine, profile });
+            let memory = None;
+            return Ok(RuleSet {
+                engine,
+                profile,
+                memory,
+            });
         }
         let estimator = document.estimator();
         let estimator = estimator.ok_or_else(|| refused(document.findings().clone()))?;
@@ -281,6 +288,7 @@ impl RuleSet {
         Ok(RuleSet {
             profile: Some((output, filling, profile.gap.method.name())),
             engine,
+            memory: None,
         })
     }
 

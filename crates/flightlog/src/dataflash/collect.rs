@@ -246,6 +246,9 @@ impl<'o> Collector<'o> {
                     Part::Field { column, scale } => {
                         number(*column).map_or(f64::NAN, |value| value * scale)
                     }
+                    Part::Position(column) => number(*column)
+                        .filter(|degrees| *degrees != 0.0)
+                        .unwrap_or(f64::NAN),
                     Part::Length(columns) => {
                         vector_length(columns.iter().map(|&column| number(column)))
                             .unwrap_or(f64::NAN)

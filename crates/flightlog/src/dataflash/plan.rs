@@ -31,6 +31,7 @@ pub(super) enum Role {
 pub(super) enum Part {
     Field { column: usize, scale: f64 },
     Length(Vec<usize>),
+    Position(usize),
 }
 
 /// A message type and its use.
@@ -147,6 +148,13 @@ fn parts(spec: &Spec, format: &Format, options: &Options) -> Vec<(Part, Label)> 
                     let scale = if integer(column) { 0.01 } else { 1.0 };
                     (
                         Part::Field { column, scale },
+                        format.columns.get(column)?.label.clone(),
+                    )
+                }
+                From::Position(labels) => {
+                    let column = format.column(labels)?;
+                    (
+                        Part::Position(column),
                         format.columns.get(column)?.label.clone(),
                     )
                 }

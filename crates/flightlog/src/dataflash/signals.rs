@@ -8,6 +8,8 @@ pub(crate) enum From {
     Hundredths(&'static [&'static str]),
     /// The length of the vector of these fields.
     Length(&'static [&'static str]),
+    /// As `Field`; 0, which an autopilot writes before its first position, is unknown.
+    Position(&'static [&'static str]),
 }
 
 /// The signals of one message type: computation, name, unit.
@@ -19,7 +21,7 @@ pub(crate) struct Spec {
 /// Labels of the field that numbers several sensors, cores or batteries; only number 0 is used.
 pub(crate) const INSTANCE: &[&str] = &["I", "Inst", "Instance", "IMU", "C"];
 
-use From::{Field, Hundredths, Length};
+use From::{Field, Hundredths, Length, Position};
 
 const WIND: &[(From, &str, &str)] = &[
     (Field(&["VWN"]), "ekf_wind_north_m_s", "m/s"),
@@ -82,9 +84,19 @@ pub(crate) const SPECS: &[Spec] = &[
             (Field(&["Clip", "Clip0"]), "accelerometer_clips", ""),
         ],
     },
+    // The estimated position is preferred to that of the receiver.
+    Spec {
+        message: "POS",
+        signals: &[
+            (Position(&["Lat"]), "latitude_deg", "deg"),
+            (Position(&["Lng"]), "longitude_deg", "deg"),
+        ],
+    },
     Spec {
         message: "GPS",
         signals: &[
+            (Position(&["Lat"]), "latitude_deg", "deg"),
+            (Position(&["Lng"]), "longitude_deg", "deg"),
             (Field(&["Status"]), "gps_fix", ""),
             (Field(&["NSats"]), "gps_satellites", ""),
             (Field(&["HDop"]), "gps_hdop", ""),

@@ -103,11 +103,24 @@ pub(crate) const SPECS: &[Spec] = &[
     Spec {
         id: 33,
         message: "GLOBAL_POSITION_INT",
-        signals: &[(
-            From::Number(at(16, Kind::I32), 1e-3, None),
-            "altitude_m",
-            "m",
-        )],
+        signals: &[
+            // 0 before the first position.
+            (
+                From::Number(at(4, Kind::I32), 1e-7, Some(0.0)),
+                "latitude_deg",
+                "deg",
+            ),
+            (
+                From::Number(at(8, Kind::I32), 1e-7, Some(0.0)),
+                "longitude_deg",
+                "deg",
+            ),
+            (
+                From::Number(at(16, Kind::I32), 1e-3, None),
+                "altitude_m",
+                "m",
+            ),
+        ],
     },
     Spec {
         id: 74,
@@ -136,6 +149,16 @@ pub(crate) const SPECS: &[Spec] = &[
         id: 24,
         message: "GPS_RAW_INT",
         signals: &[
+            (
+                From::Number(at(8, Kind::I32), 1e-7, Some(0.0)),
+                "latitude_deg",
+                "deg",
+            ),
+            (
+                From::Number(at(12, Kind::I32), 1e-7, Some(0.0)),
+                "longitude_deg",
+                "deg",
+            ),
             (plain(28, Kind::U8), "gps_fix", ""),
             (
                 From::Number(at(29, Kind::U8), 1.0, Some(255.0)),

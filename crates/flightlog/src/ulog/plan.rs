@@ -24,6 +24,8 @@ pub(super) enum Role {
 pub(super) enum Part {
     Field(NumericField, f64),
     Length(Vec<NumericField>),
+    Position(NumericField, f64),
+    If(NumericField, NumericField),
     Angle(Angle, [NumericField; 4]),
 }
 
@@ -32,6 +34,14 @@ impl Part {
         match self {
             Self::Field(field, scale) => Some(field.number(body)? * scale),
             Self::Length(fields) => vector_length(fields.iter().map(|field| field.number(body))),
+            Self::Position(field, scale) => {
+                let number = field.number(body).filter(|number| *number != 0.0);
+                number.map(|number| number * scale)
+            }
+            Self::If(field, flag) => {
+                let valid = flag.number(body).filter(|flag| *flag == 1.0);
+                valid.and_then(|_| field.number(body))
+            }
             Self::Angle(angle, [w, x, y, z]) => {
                 let number = |field: &NumericField| field.number(body);
                 Some(angle.of([number(w)?, number(x)?, number(y)?, number(z)?]))
@@ -56,6 +66,10 @@ pub(super) fn parts(
                     fields.join(", "),
                 )
             }
+            From::Position(field, scale) => {
+                (Part::Position(find(field)?, *scale), (*field).to_owned())
+            }
+            From::If(field, flag) => (Part::If(find(field)?, find(flag)?), (*field).to_owned()),
             From::Angle(angle, field) => {
                 let element = |index| find(&format!("{field}[{index}]"));
                 let found = [element(0)?, element(1)?, element(2)?, element(3)?];

@@ -8,6 +8,10 @@ pub(super) enum From {
     Field(&'static str, f64),
     /// The length of the vector of these fields.
     Length(&'static [&'static str]),
+    /// As `Field`; 0, which a receiver reports before its first position, is unknown.
+    Position(&'static str, f64),
+    /// A field, which is unknown unless the second one is 1.
+    If(&'static str, &'static str),
     /// An angle of the attitude quaternion in the four elements of this field.
     Angle(Angle, &'static str),
 }
@@ -18,7 +22,7 @@ pub(super) struct Spec {
     pub(super) signals: &'static [(&'static [From], &'static str, &'static str)],
 }
 
-use From::{Field, Length};
+use From::{Field, If, Length, Position};
 
 const DEG: f64 = 180.0 / std::f64::consts::PI;
 
@@ -37,6 +41,16 @@ const WIND: &[(&[From], &str, &str)] = &[
 ];
 
 const GPS: &[(&[From], &str, &str)] = &[
+    (
+        &[Position("latitude_deg", 1.0), Position("lat", 1e-7)],
+        "latitude_deg",
+        "deg",
+    ),
+    (
+        &[Position("longitude_deg", 1.0), Position("lon", 1e-7)],
+        "longitude_deg",
+        "deg",
+    ),
     (&[Field("fix_type", 1.0)], "gps_fix", ""),
     (&[Field("satellites_used", 1.0)], "gps_satellites", ""),
     (&[Field("hdop", 1.0)], "gps_hdop", ""),
@@ -123,8 +137,17 @@ pub(super) const SPECS: &[Spec] = &[
         ],
     },
     Spec {
+        topic: "vehicle_global_position",
+        signals: &[
+            (&[Position("lat", 1.0)], "latitude_deg", "deg"),
+            (&[Position("lon", 1.0)], "longitude_deg", "deg"),
+        ],
+    },
+    Spec {
         topic: "vehicle_local_position",
         signals: &[
+            (&[If("x", "xy_valid")], "north_m", "m"),
+            (&[If("y", "xy_valid")], "east_m", "m"),
             (&[Field("z", -1.0)], "altitude_m", "m"),
             (&[Field("vz", -1.0)], "climb_m_s", "m/s"),
         ],

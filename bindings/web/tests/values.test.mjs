@@ -1,0 +1,111 @@
+// Values of rule sets as users give them: by place and by name, known, unknown and wrong; and how fast one is.
+
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { join } from 'node:path';
+import { before, test } from 'node:test';
+import { isTimed } from '../../../web/tests/page.mjs';
+import { repository } from './installed.mjs';
+import { RuleSet, RuleText, startRules } from '../../../target/web/package/rules.js';
+import { Flight, startFlight } from '../../../target/web/package/flight.js';
+
+/** The maximum time of one value, in microseconds. */
+const MOST_US = 0.5;
+
+let text, rules;
+before(async () => {
+  await startRules();
+  text = await readFile(join(repository, 'rules/tipper.yaml'), 'utf8');
+  rules = new RuleSet(text);
+});
+
+test('a point is a list, an array of numbers, or has names', () => {
+  const { value } = rules.evaluate([8, 9])[0];
+  assert.equal(value, 22.984937679969402);
+  for (const point of [[8, 9], Float64Array.of(8, 9), Uint8Array.of(8, 9), { service: 8, food: 9 }, { food: 9, service: 8 }]) {
+    assert.equal(rules.evaluate(point)[0].value, value);
+    assert.equal(rules.value(point), value);
+    assert.equal(rules.value(point, 'tip'), value);
+    assert.equal(rules.explain(point).outputs[0].value, value);
+  }
+  for (const columns of [[[8], [9]], { food: [9], service: Float32Array.of(8) }]) {
+    assert.equal(rules.evaluateColumns(columns)[0][0], value);
+  }
+});
+
+test('what is unknown is unknown, never 0', () => {
+  for (const point of [[8, null], [8, NaN], [null, 9], [8, undefined], { service: null, food: 9 }]) {
+    const [{ value }] = rules.evaluate(point);
+    assert.equal(value, null, JSON.stringify(point));
+    assert.ok(Number.isNaN(rules.value(point)));
+  }
+  const [tips] = rules.evaluateColumns([[8, null], [9, 9]]);
+  assert.ok(tips[0] > 22 && Number.isNaN(tips[1]));
+  // The next known point is not touched by it.
+  assert.equal(rules.value([8, 9]), 22.984937679969402);
+});
+
+test('a wrong name, text or number of values is an error that says what to do', () => {
+  const all = [(point) => rules.evaluate(point), (point) => rules.value(point), (point) => rules.explain(point), (point) => rules.explanationSvg(point)];
+  const wrong = [
+    [['8', 9], 'input `service` is the text "8", not a number\nhelp: give a number, or `null` if it is unknown'],
+    [[8, true], 'input `food` is a value of type boolean, not a number\nhelp: give a number, or `null` if it is unknown'],
+    [{ servise: 8, food: 9 }, '`servise` is not an input of the rule set\nhelp: the inputs are `service`, `food`'],
+    [{ service: 8 }, 'input `food` has no value\nhelp: give `null` if it is unknown'],
+    [[8], '1 value for 2 inputs\nhelp: the inputs are `service`, `food`'],
+    [8, 'the values are neither a list nor an object\nhelp: the inputs are `service`, `food`'],
+    ['89', 'the values are neither a list nor an object\nhelp: the inputs are `service`, `food`'],
+  ];
+  for (const [point, message] of wrong) for (const use of all) assert.throws(() => use(point), { message });
+  assert.throws(() => rules.value([8, 9], 'tips'), { message: '`tips` is not an output of the rule set\nhelp: the outputs are `tip`' });
+  assert.throws(() => rules.value([8, 9], 1), { message: /not an output/ });
+  assert.throws(() => rules.evaluateColumns([[8, 8], [9]]), { message: 'column `food` has 1 rows, the first one 2\nhelp: give columns of one length' });
+  assert.throws(() => rules.evaluateColumns([[8, 'x'], [9, 9]]), { message: /^row 2 of column `service` is the text "x"/ });
+});
+
+test('messages of several lines have lines', () => {
+  assert.throws(() => new RuleSet('fuzzy: 1\n'), ({ message }) => message.includes('\n') && !message.includes('\\u{a}'));
+});
+
+test('a freed object says so', async () => {
+  await startFlight();
+  const freed = { message: 'this object was released by `free()`\nhelp: create a new one' };
+  const set = new RuleSet(text);
+  assert.ok(set.value([8, 9]) > 22);
+  set.free();
+  for (const use of [() => set.value([8, 9]), () => set.evaluate([8, 9]), () => set.about(), () => set.free()]) assert.throws(use, freed);
+  const open = new RuleText(text);
+  open.free();
+  assert.throws(() => open.findings(), freed);
+  const flight = Flight.fromBytes('steady.BIN', await readFile(join(repository, 'examples/flights/steady.BIN')));
+  flight.free();
+  assert.throws(() => flight.warnings, freed);
+});
+
+test('a value is right after the memory of the module has moved', () => {
+  const expected = rules.value([8, 9]);
+  const rows = 2_000_000;
+  rules.evaluateColumns([new Float64Array(rows).fill(1), new Float64Array(rows).fill(2)]);
+  const others = Array.from({ length: 50 }, () => new RuleSet(text));
+  assert.equal(rules.value([8, 9]), expected);
+  assert.deepEqual(new Set(others.map((other) => other.value([8, 9]))), new Set([expected]));
+  for (const other of others) other.free();
+});
+
+test('a value is fast', (told) => {
+  const calls = 200_000;
+  const point = [8, 9];
+  const times = Array.from({ length: 7 }, (_, round) => {
+    const start = performance.now();
+    let sum = 0;
+    for (let i = 0; i < calls; i++) {
+      point[0] = (i % 100) / 10;
+      sum += rules.value(point);
+    }
+    assert.ok(sum > 0, `round ${round}`);
+    return ((performance.now() - start) * 1000) / calls;
+  });
+  const best = Math.min(...times);
+  told.diagnostic(`${best.toFixed(3)} us a value, the best of ${times.length} times ${calls}`);
+  assert.ok(best < MOST_US || !isTimed, `${best} us`);
+});

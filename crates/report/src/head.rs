@@ -1,0 +1,208 @@
+//! The head of a report: the verdict in a sentence, findings, vehicle and figures.
+
+use flagred::{
+    flight::{Assessment, Peak, Verdict},
+    loaded::Loaded,
+    profile::{Followed, Reliability},
+    verdict::Measure,
+};
+use maud::{Markup, html};
+
+use crate::{
+    charts,
+    clock::Clock,
+    finding::{self, Teller},
+    subject::Subject,
+    words,
+};
+
+/// Verdict and findings.
+pub(crate) fn head(subject: &Subject, loaded: &Loaded) -> Markup {
+    html! {
+        h1 { (badge(&subject.assessed.verdict)) " " (subject.title()) }
+        (findings(subject, loaded))
+    }
+}
+
+/// Figures, vehicle and limitations of the verdict.
+pub(crate) fn about(subject: &Subject, loaded: &Loaded) -> Markup {
+    let Subject {
+        flight, assessed, ..
+    } = subject;
+    html! {
+        (figures(subject))
+        p.soft { (words::vehicle(flight)) }
+        @if !flight.report.is_clean() {
+            p.soft { (words::damage(&flight.report)) }
+        }
+        @for note in words::notes(flight, assessed) { p.soft { (note) } }
+        (reliability(&loaded.estimator.profile().reliability))
+    }
+}
+
+pub(crate) fn verdict_class(verdict: &Verdict) -> &'static str {
+    match verdict {
+        Verdict::Known(level) => charts::level_class(*level),
+        Verdict::NotAvailable(_) => "na",
+    }
+}
+
+pub(crate) fn badge(verdict: &Verdict) -> Markup {
+    html! { span.badge.(verdict_class(verdict)) { (verdict) } }
+}
+
+/// The heading for the time in which vehicles are assessed.
+pub(crate) fn in_the_air(has_motors: bool) -> &'static str {
+    match has_motors {
+        true => "In the air",
+        false => "In use",
+    }
+}
+
+pub(crate) fn percent(value: Option<f64>) -> String {
+    value.map_or("unknown".into(), |value| format!("{value:.0} %"))
+}
+
+pub(crate) fn share(value: Option<f64>) -> String {
+    percent(value.map(|share| 100.0 * share))
+}
+
+/// The highest risk of a flight: in judged time, or of a finding that lasted longer.
+pub(crate) fn highest(assessed: &Assessment) -> Option<Peak> {
+    let of_findings = assessed
+        .findings
+        .iter()
+        .filter(|finding| finding.measure == Measure::Risk && finding.risk_output.is_none());
+    let mut highest = assessed.summary.risk_max;
+    for finding in of_findings {
+        if highest.is_none_or(|peak| finding.value_pct > peak.value_pct) {
+            let steps = assessed.steps.iter();
+            let within = steps.filter(|step| (finding.from_s..=finding.to_s).contains(&step.t_s));
+            let risks = within.filter_map(|step| Some((step.t_s, step.estimate?.risk_pct)));
+            let peak = risks.max_by(|a, b| a.1.total_cmp(&b.1));
+            highest = Some(Peak {
+                t_s: peak.map_or(finding.raised_s, |(t_s, _)| t_s),
+                value_pct: finding.value_pct,
+            });
+        }
+    }
+    highest
+}
+
+fn at(peak: Peak, clock: Clock) -> String {
+    format!("{:.0} % at {}", peak.value_pct, clock.at(peak.t_s))
+}
+
+/// One entry for each cause, the gravest first, with the details of its worst finding.
+pub(crate) fn findings(subject: &Subject, loaded: &Loaded) -> Markup {
+    let assessed = &subject.assessed;
+    let clock = Clock::Since(subject.stretch().start_s);
+    let teller = Teller {
+        estimator: &loaded.estimator,
+        motors: &subject.flight.motors,
+    };
+    let unknown = match &assessed.verdict {
+        Verdict::NotAvailable(reason) => Some(reason),
+        Verdict::Known(_) => None,
+    };
+    html! {
+        ul.findings {
+            @if let Some(reason) = unknown {
+                li.na {
+                    span.what { "No verdict: " (reason) }
+                    @if let Some(help) = reason.help() { br; (help) }
+                }
+            }
+            @for line in finding::lines(&assessed.findings) {
+                li.(charts::level_class(line.worst.severity)) {
+                    span.what { b { (line.worst.severity) } " " (teller.words(line.worst).text) }
+                    br;
+                    (teller.words(line.worst).advice)
+                    br;
+                    span.soft { (line.when(clock)) ". " (teller.details_by(line.worst, clock)) }
+                }
+            }
+            @if unknown.is_none() && assessed.findings.is_empty() {
+                li.good {
+                    span.what {
+                        "No threshold was reached."
+                        @if let Some(peak) = highest(assessed) { " The highest risk was " (at(peak, clock)) "." }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn figures(subject: &Subject) -> Markup {
+    let summary = &subject.assessed.summary;
+    let clock = Clock::Since(subject.stretch().start_s);
+    let of_air = |part_s: f64| share((summary.in_air_s > 0.0).then(|| part_s / summary.in_air_s));
+    let has_motors = !subject.flight.motors.is_empty();
+    let time = (
+        in_the_air(has_motors),
+        Clock::Since(0.0).at(subject.in_air_s()),
+    );
+    let figures = [
+        (
+            "Highest risk",
+            highest(&subject.assessed).map(|peak| at(peak, clock)),
+        ),
+        (
+            "Mean risk",
+            summary.risk_mean_pct.map(|mean| percent(Some(mean))),
+        ),
+        (
+            "Highest elevated risk",
+            summary.elevated_risk_max.map(|peak| at(peak, clock)),
+        ),
+    ];
+    let figures = figures
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value?)));
+    html! {
+        dl.figures {
+            @for (name, value) in figures.chain([time]) { div { dt { (name) } dd { (value) } } }
+        }
+        @if summary.risk_max.is_some() {
+            p.soft {
+                "The risk is known for " (of_air(summary.assessed_s)) " of that time and interpolated for "
+                (of_air(summary.filled_s)) "."
+                @if has_motors { " Motors were at a limit for " (share(summary.saturated_share)) " of it." }
+                @if has_motors {
+                    " Mean and elevated risk are without the seconds around take-off and landing."
+                } @else {
+                    " Mean and elevated risk are without the first seconds in use and the last ones before a stop."
+                }
+            }
+        }
+    }
+}
+
+/// How often large attitude errors followed a risk, if it was measured.
+fn reliability(rows: &[Reliability]) -> Markup {
+    let of = |counts: Option<Followed>| counts.and_then(words::share).unwrap_or("unknown".into());
+    html! {
+        @if !rows.is_empty() {
+            details {
+                summary { "How sure a risk is" }
+                p.soft {
+                    "Of the moments with such a risk on the flights that the rules were tested on, the share that was followed by an attitude \
+                     error over 5 degrees within 5 s."
+                }
+                table.rules {
+                    thead { tr { th.n { "Risk" } th.n { "Real vehicles" } th.n { "Simulated vehicles" } } }
+                    tbody {
+                        @for row in rows {
+                            tr {
+                                td.n { (row.from_pct) " to " (row.to_pct) " %" }
+                                td.n { (of(row.real)) }
+                                td.n { (of(row.simulated)) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
