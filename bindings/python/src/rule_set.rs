@@ -114,7 +114,7 @@ fn by_frame<'py>(
     evaluate.call1((rule_set, frame, threads, with_reasons))
 }
 
-/// The language of this name.
+/// Returns the language with the given name.
 pub(crate) fn language(name: &str) -> Option<Language> {
     match name {
         "rust" => Some(Language::Rust),
@@ -262,7 +262,7 @@ impl RuleSet {
         }
     }
 
-    /// The names of the terms of a variable.
+    /// Returns the names of the terms of a variable.
     fn _term_names(&self, variable: &str) -> Vec<String> {
         self.model(|model| {
             let outputs = model.outputs.iter().map(|output| &output.variable);

@@ -129,13 +129,13 @@ export interface FlightDocument {
   /** The amount of data read, and damage. */
   read: Report;
   profile: Profile;
-  /** The level of the gravest finding; `NA` where there is no verdict. */
+  /** The level of the most severe finding; `NA` where there is no verdict. */
   verdict: VerdictWord;
   /** Only with `NA`: why there is no verdict. */
   reason?: string;
   /** Only with `NA`: how to get a verdict for the next flight. */
   help?: string | null;
-  /** The findings, the gravest first, those of equal severity in order of time; at most 1,000. */
+  /** The findings, the most severe first, those of equal severity in order of time; at most 1,000. */
   findings: FlightFinding[];
   /** The number of findings that were left out. */
   findings_left_out: number;

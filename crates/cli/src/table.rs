@@ -77,7 +77,7 @@ impl Reader {
     }
 }
 
-/// How a table is read.
+/// Options for reading a table.
 #[derive(clap::Args)]
 pub(crate) struct Format {
     /// Read a variable from a column of another name: `margin=margin_mean`; may be repeated
@@ -466,7 +466,8 @@ impl Table {
         }
     }
 
-    /// Returns the finite number in the column with this name; `None` if there is no such column.
+    /// Returns the finite number in the column with the given name; `None` if there is no such
+    /// column.
     pub(crate) fn named_number(&self, row: usize, name: &str) -> Result<Option<f64>, BadCell> {
         let column = self.header.column(name);
         column.map(|column| self.number(row, column)).transpose()

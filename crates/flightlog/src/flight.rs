@@ -341,7 +341,7 @@ impl Flight {
         self.series.iter().flat_map(Series::signals)
     }
 
-    /// The signal with this name.
+    /// The signal with the given name.
     pub fn signal(&self, name: &str) -> Option<Signal<'_>> {
         self.signals().find(|signal| signal.label.name == name)
     }

@@ -31,7 +31,8 @@ pub struct Document<'a> {
     profile: Profile<'a>,
     #[serde(flatten)]
     verdict: &'a Verdict,
-    /// The findings, the gravest first, those of equal severity in order of time; at most 1,000.
+    /// The findings, the most severe first, those of equal severity in order of time; at most
+    /// 1,000.
     findings: Vec<FindingDocument<'a>>,
     /// The number of findings that were left out.
     findings_left_out: u64,

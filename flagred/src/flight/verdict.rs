@@ -13,7 +13,7 @@ use crate::{
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(with = "super::serialize::VerdictFields"))]
 pub enum Verdict {
-    /// The level of the gravest finding; GOOD without findings.
+    /// The level of the most severe finding; GOOD without findings.
     Known(Level),
     /// No verdict (NA), with the reason.
     NotAvailable(Reason),

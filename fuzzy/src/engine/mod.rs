@@ -179,12 +179,12 @@ impl Scratch {
 type RowBuffers<const L: usize> = Buffers<Rows<L>, Vec<Partial<L>>, Vec<Strongest<L>>>;
 
 impl Engine {
-    /// Returns the index of an input; `None` if there is no input of this name.
+    /// Returns the index of an input; `None` if there is no input with the given name.
     pub fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| &*input.name == name)
     }
 
-    /// Returns the index of an output; `None` if there is no output of this name.
+    /// Returns the index of an output; `None` if there is no output with the given name.
     pub fn output(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|output| &*output.name == name)
     }

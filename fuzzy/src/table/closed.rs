@@ -37,8 +37,8 @@ pub enum ClosedForm {
 }
 
 impl ClosedForm {
-    /// Returns the form of a code in exported data; [`ClosedForm::Integrated`] for an unknown code, which only a
-    /// damaged table contains.
+    /// Returns the form with the given code in exported data; [`ClosedForm::Integrated`] for an
+    /// unknown code, which only a damaged table contains.
     #[inline(always)]
     pub(crate) const fn from_code(code: u32) -> Self {
         match code {

@@ -168,7 +168,7 @@ pub(crate) struct Document<'a> {
     #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
     rows: Rows<'a>,
-    /// How conflicts are resolved.
+    /// The method that resolves conflicts.
     #[schemars(extend("enum" = ["strongest", "heaviest", "mean"]))]
     resolution: String,
     rules: Rules,
@@ -231,7 +231,7 @@ struct Coverage {
     by_rules: f64,
     /// The share of the map with a value after filling.
     after_filling: f64,
-    /// How gaps are filled.
+    /// The method that fills gaps.
     gap_method: &'static str,
 }
 

@@ -85,7 +85,7 @@ impl Format {
         described.is_some_and(|described| kinds.contains(&described.kind))
     }
 
-    /// The index of the first of `labels` that this message has.
+    /// The index of the first of `labels` that the message has.
     pub(crate) fn column(&self, labels: &[&str]) -> Option<usize> {
         labels
             .iter()
