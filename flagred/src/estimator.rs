@@ -91,7 +91,9 @@ pub enum EstimatorError {
         high: f64,
     },
     /// The value of an input for a vehicle without its signal is outside the range of the input.
-    #[error("`if_missing` of input `{input}` is {value}, and the input goes from {low} to {high}")]
+    #[error(
+        "`if_missing` of input `{input}` is {value}, but the range of the input is {low} to {high}"
+    )]
     IfMissingOutside {
         /// The input.
         input: String,

@@ -223,7 +223,7 @@ impl Header {
             }
             if let Some(other) = self.other_delimiter() {
                 return failure.help(format!(
-                    "its cells seem to be separated by another character: `--delimiter {other}`"
+                    "its cells seem to be separated by another character: add `--delimiter {other}`"
                 ));
             }
             if self.names.iter().all(|name| name.parse::<f64>().is_ok()) {
@@ -263,7 +263,7 @@ impl Header {
     pub(crate) fn misfit_help(&self) -> String {
         match self.other_delimiter() {
             Some(other) => format!(
-                "its cells seem to be separated by another character: `--delimiter {other}`"
+                "its cells seem to be separated by another character: add `--delimiter {other}`"
             ),
             None if self.delimiter == b',' => {
                 "write as many cells in every row as in the header; a decimal comma splits a number, so write a point".to_owned()

@@ -196,7 +196,7 @@ impl Reason {
                 }
             }),
             Reason::NoMotorOutputs => Some(
-                "ArduPilot: set SRx_RC_CHAN of the port to 25; PX4: `mavlink stream -d PORT -s SERVO_OUTPUT_RAW_0 -r 25`; `flagred watch` without `--all` asks for them",
+                "ArduPilot: set SRx_RC_CHAN of the port to 25; PX4: `mavlink stream -d PORT -s SERVO_OUTPUT_RAW_0 -r 25`; `flagred watch` without `--all` requests them",
             ),
             Reason::LostInAir => {
                 Some("the log on board shows how the flight ended: `flagred assess`")

@@ -103,7 +103,7 @@ pub(super) fn words(
             100.0 * after_filling,
             GapMethod::default().name()
         )?,
-        None => writeln!(out, "coverage   not computed for so many inputs")?,
+        None => writeln!(out, "coverage   not computed: too many inputs")?,
     }
     let parts = match &arguments.rows.group_by {
         Some(column) => format!("cross-validation over groups of `{}`", visible(column)),

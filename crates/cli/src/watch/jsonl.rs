@@ -59,7 +59,7 @@ pub(crate) enum EventLine<'a> {
         /// The reason why it is no longer followed.
         why: StopReason,
     },
-    /// The watch ended before the flight.
+    /// The watch ended.
     Ended {
         /// The worst verdict of the flights; one lost in the air is not GOOD.
         worst: VerdictWord,

@@ -178,7 +178,7 @@ pub(crate) enum Lost {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum StopReason {
-    /// The watch ended before the flight.
+    /// The watch ended while the vehicle was in the air.
     WatchEnded,
     /// Motors or limits became known too late to assess the flight again from its beginning: the
     /// rest is assessed as a separate flight.
