@@ -294,7 +294,7 @@ export interface NoticeSettings {
 
 /** A parameter of the autopilot. */
 export interface Parameter {
-  /** Its name. */
+  /** The name of the parameter. */
   name: string;
   /** The first value, because failure tests and learning change parameters in flight. */
   value: number;
