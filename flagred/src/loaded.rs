@@ -45,7 +45,7 @@ pub enum LoadError<E> {
         file: String,
         /// The content of the file.
         text: String,
-        /// The errors in it.
+        /// The errors in the file.
         findings: Findings,
     },
     /// A file has another format, is missing, or is in a folder that is not allowed.

@@ -306,8 +306,9 @@ impl RuleSet {
         Ok(values.map(degree).into_pyarray(py))
     }
 
-    /// The rules that contribute to each row: the row, the output and the rule from 1, strength, share, and the dominant rule of
-    /// the row. `columns` are in the order of the inputs. A row with an unknown input has no rules.
+    /// Returns a line for each rule that contributes to a row: the numbers of the row, the output
+    /// and the rule, the strength, the share, and the dominant rule of the row. `columns` are in
+    /// the order of the inputs. A row with an unknown input has no rules.
     fn _explain_rows<'py>(
         &self,
         py: Python<'py>,

@@ -83,7 +83,7 @@ export interface ExplainedOutput {
   reads: string[];
   /** The largest firing strength of a rule of this output. */
   coverage: number;
-  /** The rules that contribute to it, by decreasing share. */
+  /** The rules that contribute to the output, by decreasing share. */
   rules: Share[];
   /** The degree of the value in each term; empty for Takagi-Sugeno outputs. */
   terms: Degree[];
@@ -114,7 +114,7 @@ export interface FiredRule {
   rule: number;
   /** The text of the rule. */
   text: string;
-  /** The degree of its condition. */
+  /** The degree of the rule's condition. */
   degree: number;
   /** The degree of the condition times the weight of the rule, adjusted by the activation method. Hedges of its consequents are applied in `Share::strength`. */
   strength: number;
@@ -154,9 +154,9 @@ export interface FlightFinding {
   severity: Level;
   /** The time at which the level was first reached, in seconds. */
   from_s: number;
-  /** The time at which it was first raised, in seconds: `after_s` of that level later. */
+  /** The time at which the level was first raised, in seconds: `after_s` of that level later. */
   raised_s: number;
-  /** The time at which it was raised to FAIL, in seconds; null if it was not. */
+  /** The time at which the level was raised to FAIL, in seconds; null if it was not. */
   failed_s: number | null;
   /** The time at which the level was last reached, in seconds. It is held for some time after that. */
   to_s: number;
@@ -224,7 +224,7 @@ export interface LevelSettings {
 export interface Limit {
   /** The limit, on the effective range. */
   value: number;
-  /** How long it must be exceeded, in seconds. */
+  /** How long the limit must be exceeded, in seconds. */
   after_s: number;
 }
 
@@ -302,9 +302,9 @@ export interface Parameter {
   source: string;
 }
 
-/** The largest value of a quantity. */
+/** The highest value of a quantity, and when it was reached. */
 export interface Peak {
-  /** The time at which it was first reached, in seconds. */
+  /** The time at which the value was first reached, in seconds. */
   t_s: number;
   /** The value in %. */
   value_pct: number;
@@ -358,7 +358,7 @@ export interface Report {
   bad_messages: number;
   /** Whether the log ends inside a message, or the compressed stream ends early. */
   truncated: boolean;
-  /** The first reason for which bytes were skipped or a message was rejected. */
+  /** The first reason why bytes were skipped or a message was rejected. */
   reason: string | null;
   /** The data beyond the limits of what is kept. */
   left_out: LeftOut;

@@ -330,7 +330,7 @@ impl Cell {
     }
 }
 
-/// What to write instead of a number with a decimal comma, separators of thousands or a unit.
+/// Returns advice for a number with a decimal comma, separators of thousands or a unit.
 fn advice(text: &str) -> Option<String> {
     if let Some((whole, thousands)) = text.split_once(',')
         && thousands.len() == 3

@@ -139,7 +139,7 @@ pub enum Reason {
     /// The clock goes back in the air: the autopilot rebooted, or its clock was set back.
     #[error("the clock goes back in the air at {at_s:.1} s")]
     SetBackInAir {
-        /// The time at which it went back, in seconds.
+        /// The time at which the clock went back, in seconds.
         at_s: f64,
     },
     /// Samples in the air had times that are not after the time of the sample before.

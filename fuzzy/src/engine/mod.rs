@@ -119,7 +119,7 @@ struct CompiledOutput {
     low: f64,
     high: f64,
     when_no_rule_fires: NoRuleFires,
-    /// The range of its firing strengths.
+    /// The range of the output's firing strengths.
     strengths: Range<usize>,
     /// The offset, within that range, of each term's firing strengths, followed by the end of the last term's.
     offsets: Vec<usize>,

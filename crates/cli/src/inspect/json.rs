@@ -79,7 +79,7 @@ struct Signal<'a> {
     name: &'a str,
     /// The unit; empty if there is none.
     unit: &'a str,
-    /// The message or field of the log that it comes from.
+    /// The message or field of the log that contains the signal.
     source: &'a str,
     /// The number of values.
     samples: usize,

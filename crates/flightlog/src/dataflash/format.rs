@@ -11,7 +11,7 @@ pub(crate) const FMT: u8 = 128;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Column {
     pub(crate) label: String,
-    /// The letter of its type.
+    /// The letter of the field's type.
     pub(crate) kind: u8,
     /// The position and type of the number in the payload of a binary record.
     field: NumericField,
