@@ -148,7 +148,7 @@ export interface FlightDocument {
   widened_step_s: number | null;
 }
 
-/** A finding with the output of its motor, and its words. */
+/** A finding, with the output of the motor that it names, and its texts. */
 export interface FlightFinding {
   /** The worst level that was reached. */
   severity: Level;
@@ -244,7 +244,7 @@ export interface Moment {
   t_s: number;
   /** The flight mode. */
   mode: string | null;
-  /** The latest step, if it is recent. */
+  /** The latest step before the requested time, if it is recent. */
   step: Step | null;
   /** If the risk is interpolated, the distance to the nearest inputs that rules cover, in shares of their ranges. */
   filled_from: number | null;
@@ -298,7 +298,7 @@ export interface Parameter {
   name: string;
   /** The first value, because failure tests and learning change parameters in flight. */
   value: number;
-  /** The message that contains it, such as `PARM` or `PARAM_VALUE`. */
+  /** The message that contains the parameter, such as `PARM` or `PARAM_VALUE`. */
   source: string;
 }
 
@@ -314,7 +314,7 @@ export interface Peak {
 export interface Profile {
   /** The name of the profile. */
   name: string;
-  /** The name of its rule set, or its file. */
+  /** The name or the file of the rule set. */
   rules: string;
   /** The conditions under which levels are raised and cleared. */
   verdict: VerdictSettings;

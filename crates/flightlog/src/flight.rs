@@ -93,7 +93,7 @@ impl std::fmt::Display for VehicleKind {
     }
 }
 
-/// The vehicle, as far as the log describes it.
+/// The properties of the vehicle that the log contains.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -56,7 +56,7 @@ pub(crate) enum EventLine<'a> {
     LeftInAir {
         #[serde(flatten)]
         flown: FlownLine<'a>,
-        /// The reason why it is no longer followed.
+        /// The reason why the flight is no longer followed.
         why: StopReason,
     },
     /// The watch ended.
