@@ -21,7 +21,7 @@ impl Average {
         }
     }
 
-    /// The average, or `None` until it covers `least_s` seconds.
+    /// The average; `None` until the average covers `least_s` seconds.
     pub(crate) fn known_after(&self, least_s: f64) -> Option<f64> {
         (self.known_s >= least_s).then_some(self.value)
     }

@@ -10,7 +10,8 @@ pub struct Proposition {
     pub rule: u32,
     /// The index of the input in the profile; for an output that is read, the number of inputs plus its index.
     pub input: u32,
-    /// The index of its degree among the degrees of all literals, if rules read them by index.
+    /// The index of the proposition's degree among those of all literals, if rules read degrees by
+    /// index.
     pub literal: u32,
 }
 

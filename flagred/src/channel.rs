@@ -283,7 +283,7 @@ pub struct Input {
     pub channel: usize,
     /// The statistic.
     pub statistic: Statistic,
-    /// The division by another input, if it is a ratio.
+    /// The division by another input, if the input is a ratio.
     pub ratio: Option<Ratio>,
     /// The value to assume until the signals are known for the first time, because a vehicle may never send them.
     pub if_missing: Option<f64>,

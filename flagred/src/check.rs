@@ -513,11 +513,10 @@ fn signal(
         return None;
     }
     let message = format!(
-        "input `{}` goes from {} to {}, but its values are from {low} to {high}",
+        "the range of input `{}` is {} to {}, but its values are from {low} to {high}",
         input.name, variable.low, variable.high
     );
-    let help =
-        "motor commands are fractions of their range, from 0 to 1; write the terms of the input so";
+    let help = "motor commands are fractions of their range, from 0 to 1; write the terms of the input accordingly";
     Some(Diagnostic::warning("unit", place, message).help(help))
 }
 

@@ -85,13 +85,15 @@ pub enum EstimatorError {
     NoPercentage {
         /// The output.
         output: String,
-        /// The lower end of its range.
+        /// The lower end of the range of the output.
         low: f64,
-        /// The upper end of its range.
+        /// The upper end of the range.
         high: f64,
     },
     /// The value of an input for a vehicle without its signal is outside the range of the input.
-    #[error("`if_missing` of input `{input}` is {value}, and the input goes from {low} to {high}")]
+    #[error(
+        "`if_missing` of input `{input}` is {value}, but the range of the input is {low} to {high}"
+    )]
     IfMissingOutside {
         /// The input.
         input: String,
@@ -99,7 +101,7 @@ pub enum EstimatorError {
         value: f64,
         /// The lower end of the input's range.
         low: f64,
-        /// The upper end of its range.
+        /// The upper end of the range.
         high: f64,
     },
     /// The output keeps its previous value where no rule fires, which conflicts with filling gaps.

@@ -37,7 +37,7 @@ impl Unknown {
         };
         match self {
             Unknown::OnGround => "on the ground".into(),
-            Unknown::OutOfOrder => "the time stamp is not after the previous one".into(),
+            Unknown::OutOfOrder => "the timestamp is not after the previous one".into(),
             Unknown::WarmingUp { input } => {
                 let (name, window_s) = name(input);
                 format!("the {window_s} s window of input `{name}` does not cover enough time yet")

@@ -108,7 +108,7 @@ impl Motor {
         ..Motor::IDLE
     };
 
-    /// The change of its command from its trim, relative to the mean of all motors.
+    /// The change of the motor's command from its trim, relative to the mean of all motors.
     pub(crate) fn shift(&self) -> f64 {
         self.difference.value - self.trim.value
     }

@@ -79,7 +79,7 @@ pub fn rules(engine: &Engine) -> Result<Rules<'_>, NoPlan> {
     rules_for(engine, 0..engine.output_names().len())
 }
 
-/// The rule set with the values of these outputs only.
+/// The rule set as plain data, with the values of the given outputs only.
 pub(crate) fn rules_for(engine: &Engine, mut outputs: Range<usize>) -> Result<Rules<'_>, NoPlan> {
     if engine.model().has_type2_terms() {
         return Err(NoPlan::Type2);

@@ -39,7 +39,8 @@ pub struct Update {
     /// The level. If a risk of the profile is unknown, it is the level of an ongoing alarm or `None`, never
     /// [`Level::Good`].
     pub level: Option<Level>,
-    /// The new level if this sample changed it; `None` if the new level is unknown.
+    /// The new level, if this sample changed the level; `None` if it did not, or if the new level
+    /// is unknown.
     pub change: Option<Level>,
     /// Whether the risk counts for levels, findings and the summary of a flight. It does not in the first seconds after
     /// take-off. A landing also excludes the last seconds before it.

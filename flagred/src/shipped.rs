@@ -11,7 +11,7 @@ use crate::{estimator::Estimator, profile::Profile};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Shipped {
-    /// The name by which it can be loaded, such as `flagred-paper`.
+    /// The name for loading it, such as `flagred-paper`.
     pub name: &'static str,
     /// Its path relative to the folder `rules`.
     pub file: &'static str,

@@ -190,7 +190,7 @@ pub struct VerdictSettings {
 pub struct Limit {
     /// The limit, on the effective range.
     pub value: f64,
-    /// How long it must be exceeded, in seconds.
+    /// How long the limit must be exceeded, in seconds.
     pub after_s: f64,
 }
 
@@ -264,9 +264,9 @@ pub struct Finding {
     pub severity: Level,
     /// The time at which the level was first reached, in seconds.
     pub from_s: f64,
-    /// The time at which it was first raised, in seconds: `after_s` of that level later.
+    /// The time at which the level was first raised, in seconds: `after_s` of that level later.
     pub raised_s: f64,
-    /// The time at which it was raised to FAIL, in seconds; `None` if it was not.
+    /// The time at which the level was raised to FAIL, in seconds; `None` if it was not.
     pub failed_s: Option<f64>,
     /// The time at which the level was last reached, in seconds. It is held for some time after that.
     pub to_s: f64,

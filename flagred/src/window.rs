@@ -52,7 +52,7 @@ pub struct Window {
     samples: u32,
     /// The number of the oldest slots whose `and_later` is set.
     front: usize,
-    /// The total of all slots after those.
+    /// The total of all slots after the front.
     back: Moments,
 }
 

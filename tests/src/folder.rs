@@ -21,7 +21,8 @@ impl Folder {
         self.0.path()
     }
 
-    /// The path of a file with this name, as an argument for a command; the file need not exist.
+    /// Returns the path of a file with the given name, as an argument for a command; the file need
+    /// not exist.
     pub fn at(&self, name: &str) -> String {
         self.path().join(name).display().to_string()
     }

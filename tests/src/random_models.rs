@@ -166,7 +166,7 @@ fn shape(rng: &mut Rng, low: f64, high: f64) -> MembershipFunction {
     }
 }
 
-/// A variable with a random range and this many terms.
+/// Returns a variable with a random range and the given number of terms.
 fn variable(rng: &mut Rng, name: &str, terms: usize) -> Variable {
     let scale = 10f64.powi(rng.i32(-3..4));
     let low = between(rng, -2.0, 2.0) * scale;

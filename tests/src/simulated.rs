@@ -70,7 +70,7 @@ pub struct ProfileRun {
     pub warnings: Vec<Span>,
 }
 
-/// The vehicle of a name: one craft has two names.
+/// Returns the vehicle with the given name; one craft has two names.
 pub fn vehicle(name: &str) -> String {
     name.replace("lin_tw125_z12", "lin_c80_z12")
 }

@@ -178,7 +178,11 @@ fn pulse_widths_in_another_unit_are_refused() {
     ] {
         let csv = flight("", |_, t_s| Some(format!("{t_s},1500,1500,{third},1500,1")));
         let said = format!("line 4: `pwm3` is {shown}, not a pulse width in us");
-        refused(&csv, &said, "name fractions from 0 to 1 `motor1`");
+        refused(
+            &csv,
+            &said,
+            "name columns of fractions from 0 to 1 `motor1`",
+        );
         // Without limits there is no verdict anyway; `convert` writes such commands.
         assert!(read(csv.strip_prefix(HEAD).unwrap()).is_ok());
     }

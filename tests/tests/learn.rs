@@ -494,7 +494,7 @@ fn rules_of_many_inputs_are_learned_without_a_map() {
     let said = learn(&[&model, &rows, "--output", &text]);
     let said = String::from_utf8(said.stdout).unwrap();
     assert!(
-        said.contains("coverage   not computed for so many inputs"),
+        said.contains("coverage   not computed: too many inputs"),
         "{said}"
     );
     let said = learn(&[&model, &rows, "--json", "--output", &json]);

@@ -573,8 +573,9 @@ fn every_output_reports_an_assumed_signal() {
     let (code, told, _) = run(&["check", &outside]);
     assert_eq!(code, Some(1), "{told}");
     assert!(
-        told.contains("`if_missing` of input `battery` is 120, and the input goes from 0 to 100")
-            && told.contains("help: write a number from 0 to 100"),
+        told.contains(
+            "`if_missing` of input `battery` is 120, but the range of the input is 0 to 100"
+        ) && told.contains("help: write a number from 0 to 100"),
         "{told}"
     );
 }

@@ -148,7 +148,7 @@ impl Imported {
     }
 }
 
-/// The pointer in a capsule with this name.
+/// Returns the pointer in a capsule with the given name.
 fn content(capsule: &Bound<'_, PyAny>, name: &CStr) -> PyResult<NonNull<c_void>> {
     let wanted = || mismatched(&format!("a capsule `{}`", name.to_string_lossy()));
     let capsule = capsule.cast::<PyCapsule>().map_err(|_| wanted())?;

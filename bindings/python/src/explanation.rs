@@ -47,7 +47,7 @@ pub(crate) struct FiredRule {
     rule: usize,
     /// The text of the rule.
     text: String,
-    /// The degree of its condition.
+    /// The degree of the rule's condition.
     degree: f64,
     /// The degree times the weight, after the activation method.
     strength: f64,

@@ -79,7 +79,7 @@ pub(crate) struct Worth {
     ratio: Figure,
 }
 
-/// Finds a rule set that predicts the truths, from columns with these names.
+/// Finds a rule set that predicts the truths, from columns with the given names.
 #[pyfunction]
 pub(crate) fn _identify(
     py: Python<'_>,

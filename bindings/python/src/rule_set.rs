@@ -114,7 +114,7 @@ fn by_frame<'py>(
     evaluate.call1((rule_set, frame, threads, with_reasons))
 }
 
-/// The language of this name.
+/// Returns the language with the given name.
 pub(crate) fn language(name: &str) -> Option<Language> {
     match name {
         "rust" => Some(Language::Rust),
@@ -262,7 +262,7 @@ impl RuleSet {
         }
     }
 
-    /// The names of the terms of a variable.
+    /// Returns the names of the terms of a variable.
     fn _term_names(&self, variable: &str) -> Vec<String> {
         self.model(|model| {
             let outputs = model.outputs.iter().map(|output| &output.variable);
@@ -306,8 +306,9 @@ impl RuleSet {
         Ok(values.map(degree).into_pyarray(py))
     }
 
-    /// The rules that contribute to each row: the row, the output and the rule from 1, strength, share, and the dominant rule of
-    /// the row. `columns` are in the order of the inputs. A row with an unknown input has no rules.
+    /// Returns a line for each rule that contributes to a row: the numbers of the row, the output
+    /// and the rule, the strength, the share, and the dominant rule of the row. `columns` are in
+    /// the order of the inputs. A row with an unknown input has no rules.
     fn _explain_rows<'py>(
         &self,
         py: Python<'py>,

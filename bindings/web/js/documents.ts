@@ -89,7 +89,7 @@ export interface ExplainedOutput {
   reads: string[];
   /** The largest firing strength of a rule of this output. */
   coverage: number;
-  /** The rules that contribute to it, by decreasing share. */
+  /** The rules that contribute to the output, by decreasing share. */
   rules: Share[];
   /** The degree of the value in each term; empty for Takagi-Sugeno outputs. */
   terms: Degree[];
@@ -120,7 +120,7 @@ export interface FiredRule {
   rule: number;
   /** The text of the rule. */
   text: string;
-  /** The degree of its condition. */
+  /** The degree of the rule's condition. */
   degree: number;
   /** The degree of the condition times the weight of the rule, adjusted by the activation method. Hedges of its consequents are applied in `Share::strength`. If the condition reads an interval type-2 term, this is the upper bound, and so is `degree`. */
   strength: number;
@@ -137,13 +137,13 @@ export interface FlightDocument {
   /** The amount of data read, and damage. */
   read: Report;
   profile: Profile;
-  /** The level of the gravest finding; `NA` where there is no verdict. */
+  /** The level of the most severe finding; `NA` where there is no verdict. */
   verdict: VerdictWord;
   /** Only with `NA`: why there is no verdict. */
   reason?: string;
   /** Only with `NA`: how to get a verdict for the next flight. */
   help?: string | null;
-  /** The findings, the gravest first, those of equal severity in order of time; at most 1,000. */
+  /** The findings, the most severe first, those of equal severity in order of time; at most 1,000. */
   findings: FlightFinding[];
   /** The number of findings that were left out. */
   findings_left_out: number;
@@ -156,15 +156,15 @@ export interface FlightDocument {
   widened_step_s: number | null;
 }
 
-/** A finding with the output of its motor, and its words. */
+/** A finding, with the output of the motor that it names, and its texts. */
 export interface FlightFinding {
   /** The worst level that was reached. */
   severity: Level;
   /** The time at which the level was first reached, in seconds. */
   from_s: number;
-  /** The time at which it was first raised, in seconds: `after_s` of that level later. */
+  /** The time at which the level was first raised, in seconds: `after_s` of that level later. */
   raised_s: number;
-  /** The time at which it was raised to FAIL, in seconds; null if it was not. */
+  /** The time at which the level was raised to FAIL, in seconds; null if it was not. */
   failed_s: number | null;
   /** The time at which the level was last reached, in seconds. It is held for some time after that. */
   to_s: number;
@@ -232,7 +232,7 @@ export interface LevelSettings {
 export interface Limit {
   /** The limit, on the effective range. */
   value: number;
-  /** How long it must be exceeded, in seconds. */
+  /** How long the limit must be exceeded, in seconds. */
   after_s: number;
 }
 
@@ -252,7 +252,7 @@ export interface Moment {
   t_s: number;
   /** The flight mode. */
   mode: string | null;
-  /** The latest step, if it is recent. */
+  /** The latest step before the requested time, if it is recent. */
   step: Step | null;
   /** If the risk is interpolated, the distance to the nearest inputs that rules cover, in shares of their ranges. */
   filled_from: number | null;
@@ -302,17 +302,17 @@ export interface NoticeSettings {
 
 /** A parameter of the autopilot. */
 export interface Parameter {
-  /** Its name. */
+  /** The name of the parameter. */
   name: string;
   /** The first value, because failure tests and learning change parameters in flight. */
   value: number;
-  /** The message that contains it, such as `PARM` or `PARAM_VALUE`. */
+  /** The message that contains the parameter, such as `PARM` or `PARAM_VALUE`. */
   source: string;
 }
 
-/** The largest value of a quantity. */
+/** The highest value of a quantity, and when it was reached. */
 export interface Peak {
-  /** The time at which it was first reached, in seconds. */
+  /** The time at which the value was first reached, in seconds. */
   t_s: number;
   /** The value in %. */
   value_pct: number;
@@ -322,7 +322,7 @@ export interface Peak {
 export interface Profile {
   /** The name of the profile. */
   name: string;
-  /** The name of its rule set, or its file. */
+  /** The name or the file of the rule set. */
   rules: string;
   /** The conditions under which levels are raised and cleared. */
   verdict: VerdictSettings;
@@ -366,7 +366,7 @@ export interface Report {
   bad_messages: number;
   /** Whether the log ends inside a message, or the compressed stream ends early. */
   truncated: boolean;
-  /** The first reason for which bytes were skipped or a message was rejected. */
+  /** The first reason why bytes were skipped or a message was rejected. */
   reason: string | null;
   /** The data beyond the limits of what is kept. */
   left_out: LeftOut;

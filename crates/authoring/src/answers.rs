@@ -57,7 +57,7 @@ impl<'a> Checked<'a> {
         }
     }
 
-    /// The findings of a profile with this name.
+    /// The findings of the profile with the given name.
     pub fn profile(
         file: &'a str,
         name: Option<&'a str>,
@@ -98,7 +98,7 @@ pub struct Explained<'a> {
 }
 
 impl<'a> Explained<'a> {
-    /// The explanation for the rule set with this name.
+    /// The explanation for the rule set with the given name.
     pub fn new(model: &'a str, explanation: &'a engine::Explanation) -> Explained<'a> {
         Explained {
             schema: EXPLAIN,

@@ -37,7 +37,7 @@ impl fmt::Display for Unformatted {
 /// comments are preserved.
 ///
 /// # Errors
-/// The reason why it cannot be formatted.
+/// The reason why the text cannot be formatted.
 pub fn formatted(text: &str) -> Result<String, Unformatted> {
     let before = fuzzy::yaml::read(text).map_err(Unformatted::NotYaml)?;
     if !is_ours(&before) {

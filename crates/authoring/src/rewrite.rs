@@ -59,7 +59,7 @@ pub(crate) fn head(text: &str) -> String {
     lines.take_while(|line| line.starts_with('#')).collect()
 }
 
-/// The edits of the entries that differ; `None` if they cannot be changed in place.
+/// The edits of the entries that differ; `None` if these entries cannot be changed in place.
 fn entries(text: &str, before: &Model, after: &Model) -> Option<Vec<Edit>> {
     let tree = yaml::read(text).ok()?;
     let mut changes = Changes {
@@ -239,7 +239,8 @@ impl<'t> Changes<'t> {
         line.map_or(0, str::len)
     }
 
-    /// The text before an entry on its line, if it consists of spaces and dashes; then the entry is in a block.
+    /// The text before an entry on its line, if that text consists of spaces and dashes, that is,
+    /// if the entry is in a block.
     fn indent(&self, at: usize) -> Option<&'t str> {
         let text: &'t str = self.text;
         let line = text.get(..at)?.rsplit('\n').next()?;

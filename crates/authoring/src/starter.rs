@@ -6,12 +6,13 @@ const RULES: &str = include_str!("starter.yaml");
 /// The comment at the top of a profile, which describes its use.
 const PROFILE: &str = include_str!("starter-profile.yaml");
 
-/// A rule set with this name, which must satisfy [`is_name`].
+/// Returns a rule set with the given name, which must satisfy [`is_name`].
 pub fn rules(name: &str) -> String {
     RULES.replace("my-rules", name)
 }
 
-/// A profile with this name, which must satisfy [`is_name`], with the values and comments of a shipped profile.
+/// Returns a profile with the given name, which must satisfy [`is_name`], with the values and
+/// comments of a shipped profile.
 pub fn profile(name: &str, from: &Shipped) -> String {
     format!("{}\n{}", PROFILE.replace("NAME", name), renamed(name, from))
 }

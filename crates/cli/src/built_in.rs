@@ -16,12 +16,12 @@ pub(crate) fn profile_at(path: &Path) -> Option<&'static Shipped> {
     PROFILES.iter().find(|known| path == Path::new(known.name))
 }
 
-/// Returns the built-in rule set with this name.
+/// Returns the built-in rule set with the given name.
 pub(crate) fn rule_set(name: &str) -> Result<&'static Shipped, Failure> {
     rule_set_at(Path::new(name)).ok_or_else(|| unknown(name))
 }
 
-/// Returns the built-in profile with this name.
+/// Returns the built-in profile with the given name.
 pub(crate) fn profile(name: &str) -> Result<&'static Shipped, Failure> {
     profile_at(Path::new(name)).ok_or_else(|| unknown(name))
 }

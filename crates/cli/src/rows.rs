@@ -59,7 +59,8 @@ pub(crate) struct FromRows {
     #[arg(long, value_name = "COLUMN")]
     weight: Option<String>,
 
-    /// In cross-validation, leave out all rows with one value of this column together: `vehicle`
+    /// In cross-validation, keep all rows with the same value of this column in the same fold:
+    /// `vehicle`
     #[arg(long, value_name = "COLUMN")]
     pub(crate) group_by: Option<String>,
 

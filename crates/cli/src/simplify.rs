@@ -99,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// A column for each input, and the reasons why other rows cannot be used.
+/// Returns a column of usable rows for each input, and the reasons why other rows cannot be used.
 fn rows(arguments: &Arguments, model: &Model) -> Result<(Vec<Vec<f64>>, Vec<String>), Failure> {
     if arguments.data.is_empty() {
         return Ok((Vec::new(), Vec::new()));

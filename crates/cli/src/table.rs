@@ -77,7 +77,7 @@ impl Reader {
     }
 }
 
-/// How a table is read.
+/// Options for reading a table.
 #[derive(clap::Args)]
 pub(crate) struct Format {
     /// Read a variable from a column of another name: `margin=margin_mean`; may be repeated
@@ -223,7 +223,7 @@ impl Header {
             }
             if let Some(other) = self.other_delimiter() {
                 return failure.help(format!(
-                    "its cells seem to be separated by another character: `--delimiter {other}`"
+                    "its cells seem to be separated by another character: add `--delimiter {other}`"
                 ));
             }
             if self.names.iter().all(|name| name.parse::<f64>().is_ok()) {
@@ -263,7 +263,7 @@ impl Header {
     pub(crate) fn misfit_help(&self) -> String {
         match self.other_delimiter() {
             Some(other) => format!(
-                "its cells seem to be separated by another character: `--delimiter {other}`"
+                "its cells seem to be separated by another character: add `--delimiter {other}`"
             ),
             None if self.delimiter == b',' => {
                 "write as many cells in every row as in the header; a decimal comma splits a number, so write a point".to_owned()
@@ -330,7 +330,7 @@ impl Cell {
     }
 }
 
-/// What to write instead of a number with a decimal comma, separators of thousands or a unit.
+/// Returns advice for a number with a decimal comma, separators of thousands or a unit.
 fn advice(text: &str) -> Option<String> {
     if let Some((whole, thousands)) = text.split_once(',')
         && thousands.len() == 3
@@ -466,7 +466,8 @@ impl Table {
         }
     }
 
-    /// Returns the finite number in the column with this name; `None` if there is no such column.
+    /// Returns the finite number in the column with the given name; `None` if there is no such
+    /// column.
     pub(crate) fn named_number(&self, row: usize, name: &str) -> Result<Option<f64>, BadCell> {
         let column = self.header.column(name);
         column.map(|column| self.number(row, column)).transpose()

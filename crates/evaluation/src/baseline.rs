@@ -22,7 +22,7 @@ pub struct Baseline {
     pub name: &'static str,
     /// A description in one sentence.
     pub description: &'static str,
-    /// The source of its value.
+    /// The source of the value.
     pub source: Source,
     /// How the statistics of single motors are combined, if the statistic is computed for each motor separately.
     pub per_motor: Option<PerMotor>,

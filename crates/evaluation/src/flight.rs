@@ -64,7 +64,7 @@ pub(crate) struct Upset {
     pub(crate) air: Span,
 }
 
-/// A time of the flight with the scores for it.
+/// A time of the flight, with the scores of the estimators at that time.
 pub(crate) struct Step {
     pub(crate) t_s: f64,
     pub(crate) is_critical: bool,

@@ -69,7 +69,7 @@ use warnings::Warnings;
 pub struct LeftOut {
     /// The name of the file.
     file: String,
-    /// The reason why it was left out.
+    /// The reason why the file was left out.
     reason: String,
 }
 

@@ -222,7 +222,7 @@ impl Ranking {
         })
     }
 
-    /// The areas when every prediction counts as often as its group.
+    /// The areas if every prediction is counted as often as its group.
     fn weighted_areas(&self, weights: &[u32]) -> Option<Areas> {
         let (mut critical, mut others) = (0_u64, 0_u64);
         let (mut critical_of_tie, mut others_of_tie) = (0_u64, 0_u64);

@@ -20,7 +20,7 @@ const ROC_STEPS: u32 = 200;
 
 /// A step or a flight with its outcome and scores.
 pub struct Case {
-    /// The index of its flight.
+    /// The index of the flight.
     pub group: u32,
     /// The time on the flight's clock, in seconds; `None` for a whole flight.
     pub t_s: Option<f64>,
@@ -28,7 +28,7 @@ pub struct Case {
     pub vehicle: String,
     /// The kind of flight.
     pub kind: String,
-    /// Whether it was critical.
+    /// Whether the case was critical.
     pub is_critical: bool,
     /// Whether no error was critical in the 5 s before the case.
     pub is_quiet: bool,

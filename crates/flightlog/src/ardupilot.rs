@@ -128,7 +128,7 @@ pub(crate) fn air_from_commands(
     )
 }
 
-/// A flight mode as it is logged.
+/// A flight mode in the form of the log.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Mode {
     Number(i64),

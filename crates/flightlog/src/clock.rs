@@ -16,7 +16,7 @@ const LATEST_S: f64 = 5e9;
 /// The number of boots that are kept of a log.
 const MOST_BOOTS: usize = 1000;
 
-/// How to handle a message, by its timestamp.
+/// The treatment of a message, by its timestamp.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Checked {
     /// Accept the message, at this time.

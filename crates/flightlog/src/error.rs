@@ -19,7 +19,7 @@ pub enum ReadError {
     /// The file could not be opened, or reading it failed.
     #[error("`{path}` cannot be read: {source}")]
     Io {
-        /// The path as the user gave it; `standard input`, or `the log` for a reader.
+        /// The path of the file, as given by the user; `standard input`, or `the log` for a reader.
         path: String,
         /// The error of the operating system.
         source: std::io::Error,
@@ -27,13 +27,13 @@ pub enum ReadError {
     /// The file is empty.
     #[error("`{path}` is empty")]
     Empty {
-        /// The path as the user gave it.
+        /// The path of the file, as given by the user.
         path: String,
     },
     /// The file is not a flight log.
     #[error("`{path}` is {what}, not a flight log")]
     NotALog {
-        /// The path as the user gave it.
+        /// The path of the file, as given by the user.
         path: String,
         /// The kind of file, such as `a PNG picture`.
         what: String,
@@ -41,7 +41,7 @@ pub enum ReadError {
     /// The file is a flight log in a format that is not supported.
     #[error("`{path}` is {what}, a format that is not supported")]
     NotRead {
-        /// The path as the user gave it.
+        /// The path of the file, as given by the user.
         path: String,
         /// The format.
         what: String,
@@ -49,7 +49,7 @@ pub enum ReadError {
     /// The log contradicts the range of motor outputs that the user gave for it.
     #[error("`{path}` {problem}")]
     Range {
-        /// The path as the user gave it.
+        /// The path of the file, as given by the user.
         path: String,
         /// The contradiction.
         problem: String,
@@ -59,7 +59,7 @@ pub enum ReadError {
     /// A flight CSV has columns or header values that cannot be used.
     #[error("`{path}`, line {line}: {problem}")]
     Csv {
-        /// The path as the user gave it.
+        /// The path of the file, as given by the user.
         path: String,
         /// The line in the file, from 1.
         line: u64,

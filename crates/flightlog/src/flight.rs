@@ -93,7 +93,7 @@ impl std::fmt::Display for VehicleKind {
     }
 }
 
-/// The vehicle, as far as the log describes it.
+/// The properties of the vehicle that the log contains.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -341,7 +341,7 @@ impl Flight {
         self.series.iter().flat_map(Series::signals)
     }
 
-    /// The signal with this name.
+    /// The signal with the given name.
     pub fn signal(&self, name: &str) -> Option<Signal<'_>> {
         self.signals().find(|signal| signal.label.name == name)
     }

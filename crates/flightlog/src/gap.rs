@@ -50,7 +50,7 @@ pub enum Gap {
         expected: usize,
     },
     /// Fewer motors are known than the smallest multirotor has.
-    #[error("the log has {found} motor{}, and a multirotor has at least {LEAST_MOTORS}", if *found == 1 { "" } else { "s" })]
+    #[error("the log has {found} motor{}, but a multirotor has at least {LEAST_MOTORS}", if *found == 1 { "" } else { "s" })]
     TooFewMotors {
         /// Motors whose outputs are known.
         found: usize,
@@ -143,7 +143,7 @@ impl Gap {
                 }
                 ULog => "log actuator_motors, or actuator_outputs before 1.13 (SDLOG_PROFILE)",
                 Tlog => {
-                    "let the ground station ask for SERVO_OUTPUT_RAW (ArduPilot: SRx_RC_CHAN), or use the log on the vehicle"
+                    "let the ground station request SERVO_OUTPUT_RAW (ArduPilot: SRx_RC_CHAN), or use the log on the vehicle"
                 }
                 Csv => "add the columns pwm1.. (us) or motor1.. (0 to 1)",
             },

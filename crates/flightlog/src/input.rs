@@ -82,7 +82,7 @@ impl<'r> Input<'r> {
         matches!(self.last, None | Some(b'\n' | b'\r'))
     }
 
-    /// The reason why the stream ended early, if it did.
+    /// The reason why the stream ended early; `None` if it did not.
     pub(crate) fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
     }

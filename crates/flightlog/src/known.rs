@@ -12,7 +12,7 @@ pub struct KnownSignal {
     pub name: &'static str,
     /// The unit; `1` for a share, empty for a count or a code.
     pub unit: &'static str,
-    /// The formats whose logs can contain it, in the order DataFlash, ULog, tlog.
+    /// The formats whose logs can contain the signal, in the order DataFlash, ULog, tlog.
     pub formats: Vec<Format>,
 }
 

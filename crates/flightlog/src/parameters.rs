@@ -85,7 +85,7 @@ pub struct Parameter {
     pub name: String,
     /// The first value, because failure tests and learning change parameters in flight.
     pub value: f64,
-    /// The message that contains it, such as `PARM` or `PARAM_VALUE`.
+    /// The message that contains the parameter, such as `PARM` or `PARAM_VALUE`.
     pub source: String,
 }
 

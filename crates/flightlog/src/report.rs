@@ -20,7 +20,7 @@ pub struct Report {
     pub bad_messages: u64,
     /// Whether the log ends inside a message, or the compressed stream ends early.
     pub truncated: bool,
-    /// The first reason for which bytes were skipped or a message was rejected.
+    /// The first reason why bytes were skipped or a message was rejected.
     pub reason: Option<String>,
     /// The data beyond the limits of what is kept.
     pub left_out: LeftOut,

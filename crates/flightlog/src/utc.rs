@@ -10,7 +10,7 @@ const LEAPS: &[(f64, f64)] = &[
     (1_230_768_000.0, 15.0),
 ];
 
-/// The seconds since 1970 of a GPS week and the seconds in it.
+/// Converts a GPS week and the seconds in that week to seconds since 1970.
 pub(crate) fn from_gps_s(week: f64, seconds: f64) -> f64 {
     let gps_s = GPS_EPOCH_S + week * 604_800.0 + seconds;
     let leap = LEAPS.iter().find(|(from_s, leap)| gps_s - leap >= *from_s);

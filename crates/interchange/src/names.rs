@@ -58,12 +58,12 @@ impl Allowed {
     }
 }
 
-/// Letters, digits and `_`.
+/// Whether a character is a letter, a digit or `_`.
 pub(crate) fn is_plain(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
 }
 
-/// A letter or `_`.
+/// Whether a character is a letter or `_`.
 pub(crate) fn is_plain_first(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }

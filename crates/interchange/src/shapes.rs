@@ -148,7 +148,8 @@ pub(crate) fn linear(numbers: &[f64], inputs: &[&str]) -> MembershipFunction {
     }
 }
 
-/// The shape with this name in a format, and the number of its parameters there.
+/// Returns the shape with the given name in a format, and the number of its parameters in that
+/// format.
 pub(crate) fn named(format: Format, name: &str) -> Option<(Shape, usize)> {
     let is = |known: &str| known.eq_ignore_ascii_case(name);
     let spelling = SPELLINGS.iter().find(|s| s.names(format).any(is))?;

@@ -15,7 +15,7 @@ const MOST_BETWEEN: usize = 1000;
 /// counted.
 const MOST_DRAWN: usize = 100;
 
-/// How findings are displayed.
+/// Options for displaying findings.
 #[derive(Debug, Clone, Copy)]
 pub struct Style {
     /// Whether to use the colours of a terminal.

@@ -31,7 +31,8 @@ pub struct Document<'a> {
     profile: Profile<'a>,
     #[serde(flatten)]
     verdict: &'a Verdict,
-    /// The findings, the gravest first, those of equal severity in order of time; at most 1,000.
+    /// The findings, the most severe first, those of equal severity in order of time; at most
+    /// 1,000.
     findings: Vec<FindingDocument<'a>>,
     /// The number of findings that were left out.
     findings_left_out: u64,
@@ -85,7 +86,7 @@ struct Vehicle<'a> {
 struct Profile<'a> {
     /// The name of the profile.
     name: &'a str,
-    /// The name of its rule set, or its file.
+    /// The name or the file of the rule set.
     rules: &'a str,
     /// The conditions under which levels are raised and cleared.
     verdict: VerdictSettings,
@@ -93,7 +94,7 @@ struct Profile<'a> {
     reliability: &'a [Reliability],
 }
 
-/// A finding with the output of its motor, and its words.
+/// A finding, with the output of the motor that it names, and its texts.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "FlightFinding"))]

@@ -26,7 +26,7 @@ pub struct Line<'a> {
     count: usize,
 }
 
-/// Groups findings by cause, in the order of the findings: the gravest first.
+/// Groups findings by cause, in the order of the findings: the most severe first.
 pub fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
     let mut lines: Vec<Line<'_>> = Vec::new();
     for finding in findings {

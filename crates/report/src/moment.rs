@@ -18,7 +18,7 @@ pub struct Moment<'a> {
     t_s: f64,
     /// The flight mode.
     mode: Option<&'a str>,
-    /// The latest step, if it is recent.
+    /// The latest step before the requested time, if it is recent.
     step: Option<NamedStep<'a>>,
     /// If the risk is interpolated, the distance to the nearest inputs that rules cover, in shares of their ranges.
     filled_from: Option<f64>,

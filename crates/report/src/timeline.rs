@@ -84,7 +84,7 @@ pub(crate) enum Size {
     Large,
     /// A panel with its own scale.
     Medium,
-    /// One of many panels below each other: only the ends of its scale are labelled.
+    /// A small panel, one of many below each other: only the ends of its scale are labelled.
     Small,
 }
 

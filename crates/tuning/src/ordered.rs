@@ -26,7 +26,8 @@ struct Segment {
 /// The minimum initial share of a distance in a segment, so that it can grow.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// A position closer to the end of the range than this share of its segment is set to the end.
+/// The distance from the end of the range, as a share of the segment, below which a position is set
+/// to the end.
 const AT_END: f64 = 1e-9;
 
 impl Ordered {

@@ -100,7 +100,7 @@ pub(crate) fn bounds(variable: &Variable, term: &Term, beyond_range: bool) -> (f
     )
 }
 
-/// A weight of 1 starts at this value, because it could not change at 1 itself.
+/// The start value for a weight of 1, because the search could not change a weight of exactly 1.
 const LARGEST_WEIGHT: f64 = 0.98;
 
 impl Parameters {

@@ -116,7 +116,7 @@ pub enum TuneError {
         /// The name.
         name: String,
     },
-    /// All parameters are fixed, or there are none.
+    /// No parameter may change: all are fixed, or the model has none.
     #[error("no number is allowed to change")]
     NothingMoves,
     /// No input reduces the cross-validation error.

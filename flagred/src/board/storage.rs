@@ -62,7 +62,7 @@ macro_rules! lent {
 }
 
 impl Plan<'_> {
-    /// The sizes of the memory that it requires.
+    /// The sizes of the memory that the plan requires.
     pub const fn sizes(&self) -> Sizes {
         let numbers = self
             .rules

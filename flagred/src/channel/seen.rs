@@ -163,7 +163,8 @@ pub(crate) fn note(
     }
 }
 
-/// The value to assume for an input, if it has one and its signals have not been known yet.
+/// The value to assume for an input, if the profile gives one and the signals of the input have not
+/// been known yet.
 pub(crate) fn assumed(inputs: &[Input], seen: &[ChannelState], input: usize) -> Option<f64> {
     let Input {
         channel,

@@ -39,7 +39,7 @@ pub struct Alone {
     pub risk_output: String,
     /// That risk in %.
     pub risk_pct: f64,
-    /// The level that the risk reaches if it stays.
+    /// The level that this risk raises if it is constant.
     pub level: Level,
 }
 

@@ -81,12 +81,12 @@ pub struct Summary {
     pub saturated_share: Option<f64>,
 }
 
-/// The largest value of a quantity.
+/// The highest value of a quantity, and when it was reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Peak {
-    /// The time at which it was first reached, in seconds.
+    /// The time at which the value was first reached, in seconds.
     pub t_s: f64,
     /// The value in %.
     pub value_pct: f64,
@@ -105,7 +105,7 @@ impl Peak {
 pub struct Step {
     /// The time in seconds.
     pub t_s: f64,
-    /// The risk and how it was estimated; `None` if it is unknown.
+    /// The estimate of the risk; `None` if the risk is unknown.
     pub estimate: Option<Estimate>,
     /// The elevated risk in %.
     pub elevated_risk_pct: Option<f64>,

@@ -12,11 +12,11 @@ use crate::{sample::RiskFields, verdict::Level};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "UPPERCASE")]
 pub enum VerdictWord {
-    /// No finding is graver than INFO.
+    /// No finding is more severe than INFO.
     Good,
-    /// The gravest finding is WARN.
+    /// The most severe finding is WARN.
     Warn,
-    /// The gravest finding is FAIL.
+    /// The most severe finding is FAIL.
     Fail,
     /// There is no verdict.
     Na,
@@ -47,7 +47,7 @@ impl From<&Verdict> for VerdictWord {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct VerdictFields {
-    /// The level of the gravest finding; `NA` where there is no verdict.
+    /// The level of the most severe finding; `NA` where there is no verdict.
     verdict: VerdictWord,
     /// Only with `NA`: why there is no verdict.
     #[serde(skip_serializing_if = "Option::is_none")]

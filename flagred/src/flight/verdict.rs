@@ -13,7 +13,7 @@ use crate::{
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(with = "super::serialize::VerdictFields"))]
 pub enum Verdict {
-    /// The level of the gravest finding; GOOD without findings.
+    /// The level of the most severe finding; GOOD without findings.
     Known(Level),
     /// No verdict (NA), with the reason.
     NotAvailable(Reason),
@@ -139,7 +139,7 @@ pub enum Reason {
     /// The clock goes back in the air: the autopilot rebooted, or its clock was set back.
     #[error("the clock goes back in the air at {at_s:.1} s")]
     SetBackInAir {
-        /// The time at which it went back, in seconds.
+        /// The time at which the clock went back, in seconds.
         at_s: f64,
     },
     /// Samples in the air had times that are not after the time of the sample before.
@@ -196,7 +196,7 @@ impl Reason {
                 }
             }),
             Reason::NoMotorOutputs => Some(
-                "ArduPilot: set SRx_RC_CHAN of the port to 25; PX4: `mavlink stream -d PORT -s SERVO_OUTPUT_RAW_0 -r 25`; `flagred watch` without `--all` asks for them",
+                "ArduPilot: set SRx_RC_CHAN of the port to 25; PX4: `mavlink stream -d PORT -s SERVO_OUTPUT_RAW_0 -r 25`; `flagred watch` without `--all` requests them",
             ),
             Reason::LostInAir => {
                 Some("the log on board shows how the flight ended: `flagred assess`")

@@ -133,7 +133,7 @@ impl Followed {
 pub struct OtherRisk {
     /// The output of the rule set, in %.
     pub output: String,
-    /// The parameters of its elevated risk.
+    /// The parameters of the elevated risk of this output.
     pub elevated_risk: AccumulatorSettings,
     /// The conditions for WARN.
     pub warn: LevelSettings,
@@ -158,9 +158,9 @@ pub struct OtherRisk {
 pub struct ProfileInput {
     /// The name of the input in the rule set.
     pub name: String,
-    /// The source of its value.
+    /// The source of the value.
     pub source: Source,
-    /// The division by another input, if it is a ratio.
+    /// The division by another input, if the input is a ratio.
     pub ratio: Option<Ratio>,
     /// The value to assume on a vehicle that does not send its signal.
     pub if_missing: Option<f64>,

@@ -29,7 +29,7 @@ use verdict::{level, verdict};
 /// The version of the format.
 const VERSION: u64 = 1;
 
-/// The window of an input if neither it nor its profile sets one, in seconds.
+/// The window of an input in seconds, if neither the input nor the profile sets one.
 const WINDOW_S: f64 = 2.0;
 
 type Found = Vec<Diagnostic>;

@@ -31,7 +31,7 @@ struct Watch {
     finding: Option<Finding>,
 }
 
-/// A value that exceeds its limit, and the motor that it is about.
+/// A value that exceeds its limit, and the motor to which the value belongs.
 struct Passed {
     measure: Measure,
     /// The value and its limit, on the effective range.

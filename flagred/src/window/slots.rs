@@ -5,9 +5,9 @@ use super::{SLOTS, Window};
 /// The mean of the samples of a slot.
 #[derive(Debug, Clone, Copy)]
 struct Mean {
-    /// The middle of their time, in seconds relative to now.
+    /// The middle of the samples' time, in seconds relative to now.
     t_s: f64,
-    /// The part of their time that is inside the window, in seconds.
+    /// The part of the samples' time that is inside the window, in seconds.
     weight: f64,
     value: f64,
 }

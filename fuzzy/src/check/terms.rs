@@ -159,7 +159,7 @@ pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> 
     found
 }
 
-/// Returns whether the term of a name is 0 on the whole range of its variable.
+/// Returns whether the term with the given name is 0 on the whole range of its variable.
 pub(super) fn is_outside(variable: &Variable, term: &str) -> bool {
     let values = axis::values(variable);
     let mut terms = variable.terms.iter().filter(|one| one.name == term);

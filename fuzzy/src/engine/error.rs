@@ -28,7 +28,7 @@ pub enum EvaluateError {
         /// The length of the first column that differs.
         other: usize,
     },
-    /// The model has no input of this name.
+    /// The model has no input with the given name.
     UnknownInput {
         /// The unknown name.
         name: String,

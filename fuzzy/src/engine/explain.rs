@@ -116,7 +116,7 @@ pub(super) struct Known<'a> {
 }
 
 impl<'a> Known<'a> {
-    /// Returns the input or output of a name, with its value.
+    /// Returns the input or output with the given name, and its value.
     pub(super) fn variable(&self, name: &str) -> Option<(&'a Variable, Option<f64>)> {
         let inputs = self.model.inputs.iter().zip(self.inputs);
         let inputs = inputs.map(|(variable, input)| (variable, Some(input.value)));

@@ -62,7 +62,7 @@ pub struct FiredRule {
     pub rule: usize,
     /// The text of the rule.
     pub text: String,
-    /// The degree of its condition.
+    /// The degree of the rule's condition.
     pub degree: f64,
     /// The degree of the condition times the weight of the rule, adjusted by the activation method. Hedges of its
     /// consequents are applied in [`Share::strength`]. If the condition reads an interval type-2 term, this is the upper
@@ -99,7 +99,7 @@ pub struct ExplainedOutput {
     pub reads: Vec<String>,
     /// The largest firing strength of a rule of this output.
     pub coverage: f64,
-    /// The rules that contribute to it, by decreasing share.
+    /// The rules that contribute to the output, by decreasing share.
     pub rules: Vec<Share>,
     /// The degree of the value in each term; empty for Takagi-Sugeno outputs.
     pub terms: Vec<Degree>,

@@ -121,7 +121,7 @@ struct CompiledOutput {
     low: f64,
     high: f64,
     when_no_rule_fires: NoRuleFires,
-    /// The range of its firing strengths.
+    /// The range of the output's firing strengths.
     strengths: Range<usize>,
     /// The offset, within that range, of each term's firing strengths, followed by the end of the last term's.
     offsets: Vec<usize>,
@@ -183,12 +183,12 @@ impl Scratch {
 type RowBuffers<const L: usize> = Buffers<Rows<L>, Vec<Partial<L>>, Vec<Strongest<L>>>;
 
 impl Engine {
-    /// Returns the index of an input; `None` if there is no input of this name.
+    /// Returns the index of an input; `None` if there is no input with the given name.
     pub fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| &*input.name == name)
     }
 
-    /// Returns the index of an output; `None` if there is no output of this name.
+    /// Returns the index of an output; `None` if there is no output with the given name.
     pub fn output(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|output| &*output.name == name)
     }

@@ -19,7 +19,7 @@ pub struct NamedOutcomes<'e> {
 }
 
 impl NamedOutcomes<'_> {
-    /// Returns the outcome of an output; `None` if the rule set has no output of this name.
+    /// Returns the outcome of an output; `None` if the rule set has no output with the given name.
     pub fn get(&self, name: &str) -> Option<&Outcome> {
         let mut named = self.iter();
         named

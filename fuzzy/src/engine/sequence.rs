@@ -39,7 +39,7 @@ pub struct Sequence<'e> {
 /// The values of the outputs in the previous row.
 #[derive(Debug, Clone)]
 pub(super) struct Previous {
-    /// Whether each output keeps its value.
+    /// Whether each output keeps its previous value.
     keeps: Vec<bool>,
     values: Vec<Option<f64>>,
 }

@@ -1,4 +1,4 @@
-//! The reasons for which rules do not fire.
+//! The reasons why rules do not fire.
 
 use alloc::{
     string::{String, ToString},
@@ -30,12 +30,12 @@ pub struct SilentRule {
     pub rule: usize,
     /// The text of the rule.
     pub text: String,
-    /// The reason for which it does not fire.
+    /// The reason why the rule does not fire.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub silence: Silence,
 }
 
-/// A reason for which a rule does not fire.
+/// The reason why a rule does not fire.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

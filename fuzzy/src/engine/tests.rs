@@ -1,4 +1,4 @@
-//! Tests of outcomes.
+//! Tests of the outcomes of evaluations.
 
 use alloc::string::ToString;
 

@@ -70,7 +70,7 @@ pub enum GridError {
         /// The number of points.
         points: usize,
     },
-    /// There is no axis with this name: it is not an input, or it is fixed.
+    /// There is no axis with the given name: it is not an input, or it is fixed.
     NoAxis {
         /// The requested name.
         name: String,

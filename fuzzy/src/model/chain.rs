@@ -23,9 +23,10 @@ use crate::diagnostic::Diagnostic;
 pub(crate) struct Read {
     /// The index of the output that is read.
     pub(crate) output: usize,
-    /// The index of the first rule that reads it; `None` if only a linear function or a formula does.
+    /// The index of the first rule that reads this output; `None` if only a linear function or a
+    /// formula does.
     pub(crate) rule: Option<usize>,
-    /// The span of its name in the text.
+    /// The span of the output's name in the text.
     pub(crate) span: Range<usize>,
 }
 

@@ -250,11 +250,11 @@ pub struct Operators {
 pub struct Rule {
     /// The parsed rule, with its weight.
     pub rule: rule::Rule,
-    /// The index of its block; 0 if the model has no blocks.
+    /// The index of the rule's block; 0 if the model has no blocks.
     pub block: usize,
     /// The confidence that its source assigned, in [0, 1]. It is not a weight and does not affect evaluation.
     pub confidence: Option<f64>,
-    /// The number of samples that support it.
+    /// The number of samples that support the rule.
     pub support: Option<u64>,
     /// The consequents that were rejected in favour of this one when the rule was learned.
     pub against: Vec<Beaten>,
@@ -269,6 +269,6 @@ pub struct Beaten {
     pub term: String,
     /// The degree of the rejected consequent.
     pub degree: f64,
-    /// The number of samples that support it.
+    /// The number of samples that support this consequent.
     pub support: u64,
 }

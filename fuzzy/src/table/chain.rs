@@ -75,7 +75,7 @@ impl Conjunctions {
         }
     }
 
-    /// Returns the value of a code; `None` if the code is invalid.
+    /// Returns the variant with the given code; `None` if the code is invalid.
     pub const fn from_code(code: [u32; 4]) -> Option<Conjunctions> {
         let [which, actions_a_cell, first_action, sums] = code;
         Some(match which {

@@ -23,7 +23,7 @@ fn require(holds: bool, array: &'static str) -> Result<(), Damaged> {
     holds.then_some(()).ok_or(Damaged(array))
 }
 
-/// Returns whether a range of indices is inside an array of a length.
+/// Returns whether a range of indices is inside an array of the given length.
 fn within(first: u32, end: u32, length: usize) -> bool {
     first <= end && end as usize <= length
 }

@@ -37,8 +37,8 @@ pub enum ClosedForm {
 }
 
 impl ClosedForm {
-    /// Returns the form of a code in exported data; [`ClosedForm::Integrated`] for an unknown code, which only a
-    /// damaged table contains.
+    /// Returns the form with the given code in exported data; [`ClosedForm::Integrated`] for an
+    /// unknown code, which only a damaged table contains.
     #[inline(always)]
     pub(crate) const fn from_code(code: u32) -> Self {
         match code {
@@ -107,9 +107,10 @@ pub struct Consequent {
     pub first: u32,
     /// The index after the last coefficient.
     pub end: u32,
-    /// The index in `points` of the code of its formula; the range is empty if it has no formula.
+    /// The index in `points` of the code of the formula; the range is empty if the consequent has
+    /// no formula.
     pub first_code: u32,
-    /// The end of that code.
+    /// The index in `points` after the code of the formula.
     pub end_code: u32,
 }
 

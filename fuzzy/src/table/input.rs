@@ -62,7 +62,7 @@ pub struct Curve {
     pub kind: Kind,
     /// The index of the literal among those of its input.
     pub literal: u32,
-    /// The index of the first point, if it is piecewise linear or a formula.
+    /// The index of the first point, if the function is piecewise linear or a formula.
     pub first_point: u32,
     /// The index after the last point.
     pub end_point: u32,

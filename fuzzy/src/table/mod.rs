@@ -154,7 +154,7 @@ pub struct Output {
     pub high: f64,
     /// The value if no rule fires; NaN if the output is then undefined.
     pub default_value: f64,
-    /// The code of its [closed form](Output::form).
+    /// The code of the output's [closed form](Output::form).
     pub form: u32,
     /// The index of the first element in the array of that form.
     pub first: u32,

@@ -78,7 +78,7 @@ pub struct Node {
     pub end_edge: u32,
     /// The index of the first action of the rules that end here.
     pub first_action: u32,
-    /// The end of those actions.
+    /// The index after the last of those actions.
     pub end_action: u32,
 }
 

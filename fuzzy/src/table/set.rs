@@ -119,7 +119,7 @@ pub struct Strand {
     pub left_tail: [f64; 2],
     /// The area and moment of the flank's tail up to the upper end of the section.
     pub right_tail: [f64; 2],
-    /// The index of its firing strength among those of the output.
+    /// The index of the term's firing strength among those of the output.
     pub strength: u32,
     /// The index of the flank.
     pub flank: u32,

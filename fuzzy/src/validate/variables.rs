@@ -166,7 +166,8 @@ impl Validator<'_> {
         self.has_a_value(what, variable, formula, spans);
     }
 
-    /// An error if a formula has no finite value at any of 101 points of the range, such as `1 / 0`.
+    /// Reports an error if a formula has no finite value at any of 101 points of the range, such as
+    /// `1 / 0`.
     fn has_a_value(&mut self, what: &str, read: &Variable, formula: &Formula, spans: &TermSpans) {
         let width = read.high - read.low;
         let mut points = (0..=100).map(|i| read.low + width * f64::from(i) / 100.0);

@@ -33,8 +33,8 @@ pub struct Set<'a> {
 /// Defuzzifies a [`Set`]; `None` if it is 0 everywhere.
 pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> Option<f64>;
 
-/// The value of each output at a point; `None` if no rule fires and there is no default. Integrals are sums of this many samples
-/// between every two positions at which a shape has a parameter.
+/// The value of each output at a point; `None` if no rule fires and there is no default. Integrals
+/// are sums of `samples` samples between every two positions at which a shape has a parameter.
 pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
     evaluate_with(model, point, &|set| Some(sampled(set, samples)))
 }

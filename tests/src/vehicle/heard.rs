@@ -29,7 +29,7 @@ impl Inbox {
         texts.collect()
     }
 
-    /// The values with this name, each with its arrival time and the vehicle's time in ms.
+    /// The values with the given name, each with its arrival time and the vehicle's time in ms.
     pub fn values(&self, name: &str) -> Vec<(Instant, u32, f32)> {
         let values = self
             .messages

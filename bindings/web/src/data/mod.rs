@@ -66,7 +66,7 @@ struct Made {
     text: String,
     /// A sentence that describes the result.
     words: String,
-    /// The numbers that moved, or other details, a line each.
+    /// The numbers that changed, or other details, one per line.
     details: Vec<String>,
 }
 

@@ -25,8 +25,8 @@ pub struct Profile {
 
 #[wasm_bindgen]
 impl Profile {
-    /// A shipped profile with this name, or one from a text, which then has this name in findings. A given rule set
-    /// replaces the one that the profile names.
+    /// Returns the shipped profile with the given name, or a profile from a text, to which findings
+    /// refer by that name. A given rule set replaces the one that the profile names.
     #[wasm_bindgen(constructor)]
     pub fn new(
         name: String,

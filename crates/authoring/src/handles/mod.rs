@@ -61,7 +61,7 @@ pub fn of(document: &Document, variable: usize, term: usize) -> Vec<Handle> {
 /// about a thousandth of the range.
 ///
 /// # Errors
-/// The reason why it cannot be moved.
+/// The reason why the handle cannot be moved.
 pub fn moved(
     document: &Document,
     (variable, term): (usize, usize),

@@ -8,7 +8,7 @@ use fuzzy::{
 };
 use serde_json::{Value, json};
 
-/// How findings are printed.
+/// The output format of findings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Format {
     /// Text for people, with the source lines of the findings

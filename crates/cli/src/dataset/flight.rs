@@ -84,7 +84,7 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     Ok(made)
 }
 
-/// A part of a flight from which rows are made.
+/// A part of a flight from which rows are computed.
 struct Part {
     /// The time in the air that contains this part.
     air_s: Span,
@@ -118,7 +118,7 @@ fn parts(flight: &Flight, plan: &Plan) -> Vec<Part> {
     parts.collect()
 }
 
-/// The times at which rows are made, in order.
+/// The times of the rows, in order.
 fn moments(cut: Cut, from_s: f64, to_s: f64) -> Vec<f64> {
     let every = |first_s: f64, step_s: f64| {
         let count = ((to_s - first_s) / step_s + 1e-9).floor();

@@ -34,7 +34,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS", value_parser = numbers::positive, conflicts_with = "horizon")]
     window: Option<f64>,
 
-    /// Make a row for each moment instead, with the inputs then and the largest attitude error in this many seconds after it
+    /// Make a row for each moment instead, with the inputs at that moment and the largest attitude
+    /// error in the given number of seconds after it
     #[arg(long, value_name = "SECONDS", value_parser = numbers::positive)]
     horizon: Option<f64>,
 
@@ -51,14 +52,14 @@ pub(crate) struct Arguments {
     output: Option<PathBuf>,
 }
 
-/// How the rows are made.
+/// The settings for computing rows.
 struct Plan {
     profile: Profile,
     cut: Cut,
     critical_deg: f64,
 }
 
-/// How a flight is cut into rows.
+/// The method by which a flight is divided into rows.
 #[derive(Clone, Copy)]
 enum Cut {
     /// One row for each time in the air.

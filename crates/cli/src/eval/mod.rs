@@ -77,7 +77,7 @@ impl With {
     }
 }
 
-/// How each row is processed.
+/// The settings for processing a row.
 struct Plan {
     engine: Engine,
     header: Header,

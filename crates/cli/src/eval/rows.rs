@@ -268,7 +268,7 @@ impl<'p> Evaluator<'p> {
         writer.write_record(None::<&[u8]>)
     }
 
-    /// Why a row, or one of its outputs, has no value.
+    /// Returns the reason why a row, or one of its outputs, has no value.
     fn error(&self, row: usize, outcomes: &[Outcome]) -> String {
         if let Some(Some(problem)) = self.problems.get(row) {
             return problem.clone();

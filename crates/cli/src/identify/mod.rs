@@ -85,7 +85,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "COLUMN")]
     weight: Option<String>,
 
-    /// In cross-validation, leave out all rows with one value of this column together: `vehicle`
+    /// In cross-validation, keep all rows with the same value of this column in the same fold:
+    /// `vehicle`
     #[arg(long, value_name = "COLUMN")]
     group_by: Option<String>,
 
@@ -253,7 +254,7 @@ fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
     ))
 }
 
-/// The rows as columns, and the reasons why other rows cannot be used.
+/// Returns the usable rows as columns, and the reasons why other rows cannot be used.
 fn data(
     arguments: &Arguments,
     tables: impl Iterator<Item = Result<Table, Failure>>,

@@ -35,9 +35,9 @@ pub(crate) struct Document<'a> {
     /// Statistics of margin and command over the time in the air; null if the log lacks the
     /// required data.
     statistics: Option<Statistics>,
-    /// When the motors were armed.
+    /// The times in which the motors were armed.
     armed: Option<&'a Intervals>,
-    /// When the vehicle was in the air.
+    /// The times in which the vehicle was in the air.
     in_air: Option<&'a Intervals>,
     /// All signals except the motor commands.
     signals: Vec<Signal<'a>>,
@@ -79,7 +79,7 @@ struct Signal<'a> {
     name: &'a str,
     /// The unit; empty if there is none.
     unit: &'a str,
-    /// The message or field of the log that it comes from.
+    /// The message or field of the log that contains the signal.
     source: &'a str,
     /// The number of values.
     samples: usize,

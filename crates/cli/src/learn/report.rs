@@ -103,7 +103,7 @@ pub(super) fn words(
             100.0 * after_filling,
             GapMethod::default().name()
         )?,
-        None => writeln!(out, "coverage   not computed for so many inputs")?,
+        None => writeln!(out, "coverage   not computed: too many inputs")?,
     }
     let parts = match &arguments.rows.group_by {
         Some(column) => format!("cross-validation over groups of `{}`", visible(column)),
@@ -168,7 +168,7 @@ pub(crate) struct Document<'a> {
     #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
     rows: Rows<'a>,
-    /// How conflicts are resolved.
+    /// The method that resolves conflicts.
     #[schemars(extend("enum" = ["strongest", "heaviest", "mean"]))]
     resolution: String,
     rules: Rules,
@@ -231,7 +231,7 @@ struct Coverage {
     by_rules: f64,
     /// The share of the map with a value after filling.
     after_filling: f64,
-    /// How gaps are filled.
+    /// The method that fills gaps.
     gap_method: &'static str,
 }
 

@@ -95,7 +95,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with_all = ["svg", "activations"])]
     csv: bool,
 
-    /// With `--csv`: this many points, spread over all inputs, instead of a grid
+    /// With `--csv`: the given number of points, spread over all inputs, instead of a grid
     #[arg(
         long,
         value_name = "POINTS",

@@ -21,7 +21,7 @@ const TAG_DIGITS: usize = 32;
 
 pub(super) struct EditedFile {
     path: PathBuf,
-    /// Why the file is read-only, if it is; empty if the user chose that.
+    /// The reason why the file is read-only, if it is; empty if the user chose that.
     pub(super) read_only: Option<&'static str>,
 }
 
@@ -96,7 +96,7 @@ impl EditedFile {
         }
         let bytes = read_bytes(file, &shown)?;
         if self.read_only.is_none() && is_utf16(&bytes) {
-            let message = format!("`{shown}` is in UTF-16, and the page would save it in UTF-8");
+            let message = format!("`{shown}` is in UTF-16, but the page would save it in UTF-8");
             return Err(Failure::unreadable(message)
                 .help("convert the file to UTF-8, or show it with `--read-only`"));
         }

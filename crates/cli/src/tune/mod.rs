@@ -235,7 +235,7 @@ fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
     Ok(settings)
 }
 
-/// The rows as columns, and the reasons why other rows cannot be used.
+/// Returns the usable rows as columns, and the reasons why other rows cannot be used.
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
     let read = rows::read(&arguments.rows, model)?;
     let read = rows::in_range(read, model, !arguments.beyond_range);

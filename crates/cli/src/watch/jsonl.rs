@@ -56,14 +56,14 @@ pub(crate) enum EventLine<'a> {
     LeftInAir {
         #[serde(flatten)]
         flown: FlownLine<'a>,
-        /// The reason why it is no longer followed.
+        /// The reason why the flight is no longer followed.
         why: StopReason,
     },
     /// The watch ended.
     Ended {
         /// The worst verdict of the flights; one lost in the air is not GOOD.
         worst: VerdictWord,
-        /// Why there is no verdict.
+        /// The reason why there is no verdict.
         reason: Option<String>,
         /// The number of bytes that do not belong to a packet.
         skipped_bytes: u64,
@@ -112,7 +112,7 @@ pub(crate) struct Risk<'a> {
     /// The effective command of each motor; null where it is unknown.
     #[schemars(with = "Vec<Option<f64>>")]
     motors: &'a [f64],
-    /// Why the risk is unknown.
+    /// The reason why the risk is unknown.
     unknown: Option<String>,
 }
 
@@ -189,7 +189,7 @@ pub(crate) enum FleetLine<'a> {
         vehicle: &'a str,
         /// The worst verdict of the vehicle's flights.
         verdict: VerdictWord,
-        /// Why there is no verdict.
+        /// The reason why there is no verdict.
         reason: Option<String>,
         /// Advice on how to get a verdict.
         help: Option<&'static str>,

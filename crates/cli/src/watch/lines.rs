@@ -113,7 +113,7 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
                 _ => "another station requested a lower rate, or the link is too slow".to_owned(),
             };
             format!(
-                "motor commands come at {rate_hz:.1} Hz, {wanted_hz:.0} Hz are needed: {who}; they are requested again"
+                "motor commands arrive at {rate_hz:.1} Hz, but {wanted_hz:.0} Hz are needed: {who}; they are requested again"
             )
         }
         Event::Note { text } => text.clone(),
@@ -163,8 +163,14 @@ fn another_watch(component: Option<u8>, speaks: bool) -> String {
     let (what, so) = match (component, speaks) {
         (None, _) => return "no other watch is received any more".to_owned(),
         (Some(1), false) => ("the autopilot itself sends the risk".to_owned(), "nothing"),
-        (Some(number), false) => (format!("component {number} watches it too"), "nothing"),
-        (Some(number), true) => (format!("component {number} watches it too"), "all"),
+        (Some(number), false) => (
+            format!("component {number} also watches the vehicle"),
+            "nothing",
+        ),
+        (Some(number), true) => (
+            format!("component {number} also watches the vehicle"),
+            "all",
+        ),
     };
     let help = match speaks {
         false => "; `--send-anyway` sends both",

@@ -23,7 +23,7 @@ const BUFFER: usize = 4 << 20;
 /// An open endpoint.
 pub(crate) struct Port {
     kind: Kind,
-    /// Why the endpoint could not be opened at first, until this is reported.
+    /// The reason why the endpoint could not be opened at first, until this is reported.
     closed_because: Option<String>,
     /// The number of packets that could not be sent.
     unsent: u64,

@@ -20,7 +20,7 @@ pub(crate) struct Printer {
 }
 
 impl Printer {
-    /// Creates a printer with a queue of this many pieces.
+    /// Creates a printer with a queue of at most `waiting` pieces.
     pub(crate) fn new(waiting: usize) -> Printer {
         let (sender, receiver) = sync_channel(waiting);
         Printer {

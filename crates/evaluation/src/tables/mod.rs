@@ -116,7 +116,7 @@ pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
     lines
 }
 
-/// The reasons for which files were left out, each with the number of files.
+/// The reasons why files were left out, each with the number of files.
 pub(crate) fn left_out(evaluation: &Evaluation) -> BTreeMap<String, usize> {
     let mut reasons = BTreeMap::new();
     for left in &evaluation.left_out {

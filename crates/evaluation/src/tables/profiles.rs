@@ -49,7 +49,7 @@ pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
     notes.extend(by_kind.map(|(kind, _, of)| format!("upsets, {}: {}", seen(kind), upsets(of))));
     Table {
         title: format!(
-            "alarms of {name} where nothing happens (WARN or FAIL; a WARN that turns FAIL is one)"
+            "alarms of {name} in calm times (WARN or FAIL; a WARN that is raised to FAIL counts once)"
         ),
         columns: vec![
             column("", 22),

@@ -10,7 +10,7 @@ use crate::input::Input;
 use crate::outputs::{Bounds, FRACTIONS, PULSES_US};
 use crate::{Flight, Intervals, Range, ReadError, VehicleKind, identity};
 
-/// An entry, and the line that contains it.
+/// An entry of the header, and the line that contains it.
 pub(super) struct HeaderLine {
     line: u64,
     key: String,

@@ -147,7 +147,11 @@ const MOST_MOTORS: usize = 32;
 
 fn too_long(line: u64) -> ReadError {
     let text = format!("the row is longer than {LONGEST_ROW} bytes");
-    problem(line, text, "a row is one sample: end it with a line end")
+    problem(
+        line,
+        text,
+        "end every row with a line end: a row is one sample",
+    )
 }
 
 /// Limits the bytes that are read for a row, which otherwise could fill the memory.
@@ -202,7 +206,7 @@ impl Layout {
         for name in names.iter().filter(|name| !name.is_empty()) {
             if !seen.insert(name) {
                 let text = format!("the column `{name}` occurs twice");
-                return Err(problem(line, text, "give each column a name of its own"));
+                return Err(problem(line, text, "give each column a different name"));
             }
         }
         let find = |name: &str| names.iter().position(|other| other == name);

@@ -9,11 +9,12 @@ use crate::{Commands, Intervals, ReadError, Report, Series};
 
 /// Fractions up to this far outside 0 to 1 are rounding errors or slightly exceeded limits.
 const MOST_OUTSIDE: f64 = 0.5;
-const HELP_FRACTIONS: &str = "name pulse widths in us `pwm1`.. and add their limits; divide percent by 100; for DShot see docs/flight-csv.md";
-const HELP_PULSES: &str = "name fractions from 0 to 1 `motor1`..; divide percent by 100 first; for DShot see docs/flight-csv.md";
+const HELP_FRACTIONS: &str = "name columns of pulse widths in us `pwm1`.. and add the limits; divide percent by 100; for DShot see docs/flight-csv.md";
+const HELP_PULSES: &str = "name columns of fractions from 0 to 1 `motor1`..; divide percent by 100 first; for DShot see docs/flight-csv.md";
 const HELP_SHORT: &str = "give every row a cell for each column, empty where the value is unknown";
-/// The furthest accepted time from 0, in seconds. It admits 64-bit counts of microseconds before and after conversion.
-/// A single damaged time beyond it would make all later ones go back.
+/// The furthest accepted time from 0, in seconds. It admits 64-bit counts of microseconds before
+/// and after conversion. If a single damaged time beyond this limit were accepted, all later times
+/// would seem to go back.
 const FURTHEST_S: f64 = 1e14;
 /// The smallest step between motor commands that is recognised as milliseconds.
 const LEAST_STEP_MS: f64 = 2.0;

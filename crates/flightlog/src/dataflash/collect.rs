@@ -190,7 +190,7 @@ impl<'o> Collector<'o> {
 
     fn refute(&mut self) {
         self.waiting = None;
-        self.report.bad("a time stamp that does not fit the others");
+        self.report.bad("a timestamp that contradicts the others");
     }
 
     fn take(&mut self, type_id: u8, cells: Cells<'_>, t_s: f64) {

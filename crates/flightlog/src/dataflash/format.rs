@@ -11,7 +11,7 @@ pub(crate) const FMT: u8 = 128;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Column {
     pub(crate) label: String,
-    /// The letter of its type.
+    /// The letter of the field's type.
     pub(crate) kind: u8,
     /// The position and type of the number in the payload of a binary record.
     field: NumericField,
@@ -85,7 +85,7 @@ impl Format {
         described.is_some_and(|described| kinds.contains(&described.kind))
     }
 
-    /// The index of the first of `labels` that this message has.
+    /// The index of the first of `labels` that the message has.
     pub(crate) fn column(&self, labels: &[&str]) -> Option<usize> {
         labels
             .iter()

@@ -168,7 +168,7 @@ impl Decoder {
         self.is_in_air().unwrap_or(self.is_armed)
     }
 
-    /// The type in its heartbeats, if it is the type of a vehicle.
+    /// The type in the heartbeats, if it is the type of a vehicle.
     pub(crate) fn mav_type(&self) -> Option<(u8, MavType)> {
         let number = self.mav_type?;
         Some((number, mav_type(number.into())?))
@@ -322,7 +322,7 @@ impl Decoder {
         };
     }
 
-    /// The vehicle that its heartbeat describes.
+    /// The vehicle that the heartbeat describes.
     pub(crate) fn vehicle(&self) -> Vehicle {
         let mut vehicle = Vehicle::default();
         if let Some(number) = self.mav_type {

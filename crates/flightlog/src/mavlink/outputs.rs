@@ -10,7 +10,7 @@ use crate::{Motor, PulseRange, Range, Vehicle, ardupilot, px4};
 pub(crate) struct KnownOutputs {
     /// The motors in order of their number, and the output of each, from 1.
     pub(crate) motors: Vec<(Motor, u16)>,
-    /// The number of motors that the vehicle reported, if it did.
+    /// The number of motors that the vehicle reported; `None` if it did not report it.
     #[cfg(feature = "mavlink")]
     pub(crate) expected: Option<u16>,
     pub(crate) range: Range,
@@ -22,7 +22,7 @@ pub(crate) struct KnownOutputs {
     pub(crate) assumed: Vec<String>,
 }
 
-/// The number of motors that the vehicle reported, if it did.
+/// The number of motors that the vehicle reported; `None` if it did not report it.
 pub(super) fn motors_expected(
     parameters: &Parameters,
     vehicle: &Vehicle,

@@ -27,9 +27,9 @@ pub struct Packet<'a> {
     pub version: Version,
     /// The sequence number, which counts all packets of a sender.
     pub sequence: u8,
-    /// The vehicle or ground station that sent it.
+    /// The vehicle or ground station that sent the packet.
     pub system: u8,
-    /// The component of the system that sent it; 1 is the autopilot.
+    /// The component of the system that sent the packet; 1 is the autopilot.
     pub component: u8,
     /// The id of the message.
     pub id: u32,

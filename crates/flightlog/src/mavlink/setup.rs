@@ -176,7 +176,7 @@ fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     let Some((_, output)) = motors.first().filter(|_| motors.len() >= all) else {
         let main = (1..=OUTPUTS_A_PORT).map(|output| format!("PWM_MAIN_FUNC{output}"));
         let aux = (1..=AUX_OUTPUTS).map(|output| format!("PWM_AUX_FUNC{output}"));
-        // Versions before 1.13 have these instead, for one bank or for all.
+        // Versions before 1.13 have other parameters, for one bank or for all banks.
         let old = ends.map(|end| format!("PWM_MAIN_{end}"));
         let older = ends.map(|end| format!("PWM_{end}"));
         let first = std::iter::once(count).chain(main).chain(aux);

@@ -156,7 +156,8 @@ pub struct Telemetry {
 #[derive(Debug)]
 struct LatestSignal {
     name: String,
-    /// The position in [`SPECS`] of the message that it came from; a later one does not replace it.
+    /// The position in [`SPECS`] of the message that contained the value; a message at a later
+    /// position does not replace the value.
     spec: usize,
     /// The value; NaN is unknown.
     value: f64,
@@ -226,7 +227,7 @@ impl Telemetry {
         self.system
     }
 
-    /// The vehicle as its heartbeat describes it.
+    /// The vehicle, as described by the heartbeat.
     pub fn vehicle(&self) -> &Vehicle {
         &self.vehicle
     }

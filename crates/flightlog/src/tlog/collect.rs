@@ -63,7 +63,7 @@ impl<'o> Collector<'o> {
         let zero_us = *self.zero_us.get_or_insert(stamp_us);
         let t_s = (stamp_us as f64 - zero_us as f64) * 1e-6;
         if !self.latest.believe(t_s) {
-            return self.report.bad("a time stamp that does not fit the others");
+            return self.report.bad("a timestamp that contradicts the others");
         }
         let known = (self.systems.iter()).position(|(system, _)| *system == packet.system);
         let index = known.unwrap_or_else(|| {

@@ -220,7 +220,7 @@ impl<'o> Collector<'o> {
             return self.report.bad("a message without a time");
         };
         if !self.latest.believe(t_s) {
-            return self.report.bad("a time stamp that does not fit the others");
+            return self.report.bad("a timestamp that contradicts the others");
         }
         let flag = |field: &NumericField, yes: f64| Some(field.number(body)? == yes);
         match role {

@@ -29,7 +29,7 @@ pub(super) struct Formats {
     bytes: usize,
 }
 
-/// The number type with this name.
+/// The number type with the given name.
 fn kind_of(name: &str) -> Option<Kind> {
     Some(match name {
         "int8_t" => Kind::I8,

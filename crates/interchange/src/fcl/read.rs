@@ -143,7 +143,8 @@ impl<'r, 't> Reader<'r, 't> {
         self.draft.error("fcl-syntax", part, message, &help);
     }
 
-    /// Moves to the function block with a name. Without a name and with several blocks it is the first, with a loss.
+    /// Moves to the function block with the given name. Without a name it moves to the first block,
+    /// and reports a loss if there are several.
     fn choose(&mut self, name: Option<&str>) -> bool {
         let words = self.words.iter().zip(self.words.iter().skip(1)).enumerate();
         let blocks = words.filter(|(_, (word, _))| word.eq_ignore_ascii_case("FUNCTION_BLOCK"));

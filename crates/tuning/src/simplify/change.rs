@@ -70,7 +70,7 @@ pub(crate) fn rule_size(rule: &rule::Rule) -> usize {
 
 struct Finder<'a> {
     model: &'a Model,
-    /// The position and the rule, and its parts if it is a conjunction of such.
+    /// The position, the rule, and the parts of its antecedent if that is a conjunction of parts.
     rules: Vec<(usize, &'a Standing, Option<Vec<Part>>)>,
 }
 

@@ -13,7 +13,7 @@ use super::{Difference, SimplifyError};
 /// The number of points that are evaluated at once; these are enough to reject most candidates.
 const CHUNK: usize = 4096;
 
-/// The number of points that are tried first, because candidates failed there.
+/// The maximum number of points that are tried first, because earlier candidates failed at them.
 const MOST_HARD: usize = 64;
 
 /// Points, and the outputs of the original there.

@@ -153,7 +153,7 @@ fn about<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result<S::Ok, S::Er
     about.serialize(serializer)
 }
 
-/// How a flight ended, or the part of it that was received.
+/// The way in which a flight, or the received part of it, ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum End {
     /// The vehicle landed.
@@ -174,11 +174,11 @@ pub(crate) enum Lost {
     Reboot,
 }
 
-/// Why a flight is not followed to its end.
+/// The reason why a flight is not followed to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum StopReason {
-    /// The watch ended.
+    /// The watch ended while the vehicle was in the air.
     WatchEnded,
     /// Motors or limits became known too late to assess the flight again from its beginning: the
     /// rest is assessed as a separate flight.

@@ -26,7 +26,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Creates an empty history for this many samples.
+    /// Creates an empty history for a maximum number of samples.
     pub(super) fn new(most: usize) -> History {
         History {
             most,

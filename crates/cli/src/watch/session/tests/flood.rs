@@ -68,7 +68,7 @@ impl Link<'_> {
         self.stream.end();
     }
 
-    /// Sends this many packets, one in [`SHARE`] of them from the hovering vehicle.
+    /// Sends a number of packets, one in [`SHARE`] of them from the hovering vehicle.
     fn flood(
         &mut self,
         from_s: f64,
