@@ -359,7 +359,7 @@ fn an_fcl_that_is_cut_off_is_refused() {
     for length in 1..lines.len() {
         let text = lines[..length].join("\n");
         let found = flagred_interchange::read(&text, Format::Fcl, Losses::Accept).unwrap_err();
-        let is_cut_off = |message: &str| message.contains("the text ends");
+        let is_cut_off = |message: &str| message.contains("the file ends");
         assert!(
             found.0.iter().any(|finding| is_cut_off(&finding.message)),
             "{text}\n{found}"

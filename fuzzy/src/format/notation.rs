@@ -2,9 +2,9 @@
 
 use alloc::{format, string::String, vec::Vec};
 
-use super::{TermSpans, VariableSpans, variables::unread, words::DEFUZZIFIERS};
+use super::{TermSpans, VariableSpans, variables::unread};
 use crate::{
-    diagnostic::{Diagnostic, meant},
+    diagnostic::Diagnostic,
     model::{Defuzzifier, Term, Variable},
     tree::{Entry, Node, Value},
 };
@@ -94,23 +94,11 @@ pub(super) fn colons_without_space(entries: &[Entry<'_>]) -> Option<String> {
     (!peaks.is_empty()).then(|| format!("write `{{{}}}`", peaks.join(", ")))
 }
 
-/// Returns the defuzzifier that a misspelt word probably means.
-pub(super) fn likely_defuzzifier(node: &Node, variable: &Variable) -> Option<Defuzzifier> {
-    let Value::Scalar(scalar) = &node.value else {
-        return None;
-    };
-    let words = DEFUZZIFIERS.map(|(word, _)| word);
-    let meant = meant(&scalar.text, &words);
-    let mut likely = DEFUZZIFIERS.iter().filter(|(word, _)| meant.contains(word));
+/// Returns the defuzzifier that fits the terms of a variable, for one whose word is not known.
+pub(super) fn likely_defuzzifier(variable: &Variable) -> Option<Defuzzifier> {
     let is_number = |term: &Term| term.membership_function.number().is_some();
-    match likely.next() {
-        Some((_, defuzzifier)) => Some(*defuzzifier),
-        None => variable
-            .terms
-            .iter()
-            .any(is_number)
-            .then_some(Defuzzifier::WeightedAverage),
-    }
+    let mut terms = variable.terms.iter();
+    terms.any(is_number).then_some(Defuzzifier::WeightedAverage)
 }
 
 /// Returns a suggestion for a word of other programs in place of what happens if no rule fires.

@@ -100,8 +100,8 @@ pub(super) fn outputs(
             if let Some(node) = fields.get("defuzzifier") {
                 let key = format!("the defuzzifier of {what}");
                 let word = node.choice(&key, &DEFUZZIFIERS, findings);
-                // Of a misspelt word the likely meaning is used, so that the terms that match it are not reported.
-                let likely = || likely_defuzzifier(node, &output.variable);
+                // In place of an unknown word, one that fits the terms is used, so that they are not reported.
+                let likely = || likely_defuzzifier(&output.variable);
                 output.defuzzifier = word.or_else(likely).unwrap_or(output.defuzzifier);
             }
             if let Some(node) = fields.get("samples") {

@@ -119,7 +119,7 @@ fn every_mistake_has_a_position_and_help() {
             "IF wind speed IS low THEN r IS h",
             "speed",
             "expected `IS` after the input, found `speed`",
-            "stands in quotes",
+            "in quotes",
         ),
         (
             "IF margin = low THEN r IS h",
@@ -179,7 +179,7 @@ fn every_mistake_has_a_position_and_help() {
             "IF margin IS low) THEN r IS h",
             ")",
             "expected `AND`, `OR` or `THEN` after the condition, found `)`",
-            "no `(` stands before it",
+            "there is no `(` before it",
         ),
         (
             "IF margin IS 'low THEN r IS h",
@@ -196,7 +196,7 @@ fn every_mistake_has_a_position_and_help() {
         (
             "IF margin IS low THEN r IS any h",
             "any",
-            "`any` cannot stand after `THEN`",
+            "`any` is not allowed after `THEN`",
             "belong in the condition",
         ),
         (
@@ -262,7 +262,7 @@ fn every_mistake_has_a_position_and_help() {
         (
             "IF margin IS low THEN r IS h WITH 0.5 x",
             "x",
-            "the rule ends after the conclusion, but here stands `x`",
+            "expected the end of the rule after the conclusion, found `x`",
             "a weight ends its rule",
         ),
         (

@@ -127,7 +127,7 @@ fn a_handle_that_cannot_move_reports_the_reason() {
         .replace("near: {", "near: &n {")
         .replace("wide: {cosine: {center: 0, width: 4}}", "wide: *n");
     let refused = moved(&document(&shared), (3, 1), 0, (1.0, 0.0)).unwrap_err();
-    assert!(refused.contains("stands for others"), "{refused}");
+    assert!(refused.contains("shared with other places"), "{refused}");
     assert!(moved(&document(RULES), (3, 0), 1, (f64::NAN, 0.0)).is_err());
     assert!(moved(&document(RULES), (3, 0), 7, (0.0, 0.0)).is_err());
     assert!(moved(&document("flagred: 1\n"), (0, 0), 0, (0.0, 0.0)).is_err());

@@ -212,6 +212,13 @@ impl<'r, 't> Reader<'r, 't> {
         }
     }
 
+    /// Moves to the next section after an error: it begins here, or after the end of this one.
+    pub(super) fn resume(&mut self, section: &str) {
+        if !self.peek().is_some_and(is_section) {
+            self.skip(section);
+        }
+    }
+
     pub(super) fn skip(&mut self, section: &str) {
         let end = format!("END_{}", section.to_ascii_uppercase());
         while !self.ends(&end) {

@@ -78,7 +78,7 @@ impl<'t> Reader<'_, 't> {
         while !self.ends("END_FUZZIFY") {
             if !self.part(&mut variable, &mut spans) {
                 self.unexpected("`TERM`, `RANGE` or `END_FUZZIFY`");
-                return self.skip("FUZZIFY");
+                return self.resume("FUZZIFY");
             }
         }
         self.universe(&mut variable, &mut spans, name);
@@ -120,7 +120,7 @@ impl<'t> Reader<'_, 't> {
                 self.default(&mut output, &mut spans);
             } else if !self.part(&mut output.variable, &mut spans) {
                 self.unexpected("`TERM`, `METHOD`, `DEFAULT`, `RANGE` or `END_DEFUZZIFY`");
-                return self.skip("DEFUZZIFY");
+                return self.resume("DEFUZZIFY");
             }
         }
         if output.defuzzifier == Defuzzifier::WeightedAverage

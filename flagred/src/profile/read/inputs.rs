@@ -331,7 +331,11 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
                 Some("the statistics over motors are `mean`, `std`, `min` and `max`".into());
         }
     }
-    if fields.get("motor").is_some() {
+    let given: Vec<&str> = keys
+        .into_iter()
+        .filter(|key| fields.get(key).is_some())
+        .collect();
+    if let ["motor"] = given.as_slice() {
         let number = match fields.get("motor").map(|node| &node.value) {
             Some(Value::Scalar(number)) => number.text.as_str(),
             _ => "1",
@@ -339,10 +343,6 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         let help = format!("name a signal of motors: `{{motor: {number}, of: motor_command}}`");
         fields.require("of", &help, found)?;
     }
-    let given: Vec<&str> = keys
-        .into_iter()
-        .filter(|key| fields.get(key).is_some())
-        .collect();
     let over_motors = match given.as_slice() {
         [key] => MOTORS.iter().find(|(name, _)| name == key),
         _ => None,
