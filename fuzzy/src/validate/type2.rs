@@ -42,7 +42,7 @@ impl Validator<'_> {
                 lower = rounded(lower),
                 upper = rounded(upper)
             );
-            let help = "between both lies the degree, so the lower one is nowhere above the upper one: make it narrower, or give it a smaller `height`";
+            let help = "the degree lies between both: make the lower one narrower, or give it a smaller `height`";
             self.error("lower-above-upper", &here, message, help);
         }
     }
