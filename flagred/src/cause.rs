@@ -39,7 +39,7 @@ pub(crate) struct Propositions<'a> {
 
 /// The rule that is searched for.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Asked {
+pub(crate) enum RuleQuery {
     /// The rule that raises an output of this value most.
     Raises(f64),
     /// The rule that contributes most to the truth of this proposition about an output.
@@ -56,9 +56,9 @@ impl Propositions<'_> {
         inputs: &[f64],
         (mut output, risk_pct): (usize, f64),
         outputs: usize,
-        mut ask: impl FnMut(usize, Asked, &dyn Fn(usize, &[f64]) -> Option<usize>) -> Option<usize>,
+        mut ask: impl FnMut(usize, RuleQuery, &dyn Fn(usize, &[f64]) -> Option<usize>) -> Option<usize>,
     ) -> Option<Cause> {
-        let mut asked = Asked::Raises(risk_pct);
+        let mut asked = RuleQuery::Raises(risk_pct);
         // A chain has no cycles, so it is at most this long.
         for _ in 0..outputs {
             let proposition = ask(output, asked, &|rule, degrees| self.of_rule(rule, degrees))?;
@@ -73,7 +73,7 @@ impl Propositions<'_> {
                 });
             }
             output = input - inputs.len();
-            asked = Asked::Concludes(proposition);
+            asked = RuleQuery::Concludes(proposition);
         }
         None
     }

@@ -4,8 +4,8 @@
 mod code;
 mod seen;
 
+pub use seen::{ChannelState, Observation};
 pub(crate) use seen::{Now, assumed, note, push, restart, value};
-pub use seen::{Observation, Seen};
 
 /// A statistic over time.
 ///

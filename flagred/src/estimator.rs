@@ -10,7 +10,7 @@ use fuzzy::{
 
 use crate::{
     board::Plan,
-    cause::{Asked, Cause, Proposition, Propositions},
+    cause::{Cause, Proposition, Propositions, RuleQuery},
     channel::{Channel, Input},
     craft::Craft,
     gap::Filling,
@@ -63,7 +63,7 @@ pub enum EstimatorError {
     #[error("the rule set cannot be evaluated everywhere: {0}")]
     Evaluate(#[from] EvaluateError),
     /// The rule set has an input that the profile does not provide.
-    #[error("the profile does not say where input `{input}` of the rule set comes from")]
+    #[error("the profile has no source for input `{input}` of the rule set")]
     NoSource {
         /// The input.
         input: String,
@@ -268,8 +268,8 @@ impl Estimator {
         let outputs = engine.output_names().len();
         let cause = propositions.cause(inputs, risk, outputs, |output, asked, pick| {
             let rule = match asked {
-                Asked::Raises(value) => engine.raised_by(scratch, point, output, value),
-                Asked::Concludes(said) => {
+                RuleQuery::Raises(value) => engine.raised_by(scratch, point, output, value),
+                RuleQuery::Concludes(said) => {
                     engine.concluded_by(scratch, point, self.0.said.get(said)?)
                 }
             };

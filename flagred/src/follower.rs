@@ -3,10 +3,10 @@
 use crate::{
     accumulator::{Accumulator, AccumulatorSettings},
     cause::{Cause, is_of_limits},
-    channel::{Channel, Input, Now, Seen, assumed, note, push, reads_motors, value},
+    channel::{Channel, ChannelState, Input, Now, assumed, note, push, reads_motors, value},
     motor::{self, Bin, Motor},
     sample::{Estimate, Sample, Sampling, Unknown, Update},
-    verdict::{self, Alert, Ended, Finding, Level, Notices, ROUNDING_S, VerdictSettings},
+    verdict::{self, Alert, EndedFindings, Finding, Level, Notices, ROUNDING_S, VerdictSettings},
     window::Window,
 };
 
@@ -86,9 +86,9 @@ struct Risk {
 /// The memory of a flight: the risks of the last seconds, the observations of each channel, the values of the inputs
 /// after the latest sample (NaN is unknown), and the motors.
 #[derive(Debug)]
-pub(crate) struct Room<'m> {
+pub(crate) struct FlightMemory<'m> {
     pub(crate) risks: &'m mut Window,
-    pub(crate) seen: &'m mut [Seen],
+    pub(crate) seen: &'m mut [ChannelState],
     pub(crate) inputs: &'m mut [f64],
     pub(crate) motors: &'m mut [Motor],
 }
@@ -149,7 +149,7 @@ impl Follower {
     pub(crate) fn push(
         &mut self,
         feed: Feed<'_>,
-        room: &mut Room<'_>,
+        room: &mut FlightMemory<'_>,
         sample: &Sample<'_>,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
     ) -> Update {
@@ -161,7 +161,7 @@ impl Follower {
             level: None,
             change: None,
             judged: false,
-            ended: Ended::default(),
+            ended: EndedFindings::default(),
         };
         match self.take(feed, room, sample, &mut update.ended, estimate) {
             Ok(risk) => {
@@ -182,9 +182,9 @@ impl Follower {
     fn take(
         &mut self,
         feed: Feed<'_>,
-        room: &mut Room<'_>,
+        room: &mut FlightMemory<'_>,
         sample: &Sample<'_>,
-        ended: &mut Ended,
+        ended: &mut EndedFindings,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
     ) -> Result<Risk, Unknown> {
         let t_s = sample.t_s;
@@ -315,9 +315,9 @@ impl Follower {
     }
 
     /// Ends the flight and returns the findings that were still open.
-    pub(crate) fn finish(&mut self, room: &mut Room<'_>) -> Ended {
+    pub(crate) fn finish(&mut self, room: &mut FlightMemory<'_>) -> EndedFindings {
         let Some(last_s) = self.last_s else {
-            return Ended::default();
+            return EndedFindings::default();
         };
         let ended = match self.down_since_s {
             Some(down_s) => self.forget(down_s, End::Landing, room),
@@ -383,7 +383,7 @@ impl Follower {
     }
 
     /// Some time after take-off, discards it from the long windows and from the elevated risk.
-    fn settle(&mut self, t_s: f64, in_air_since_s: f64, room: &mut Room<'_>) {
+    fn settle(&mut self, t_s: f64, in_air_since_s: f64, room: &mut FlightMemory<'_>) {
         let Sampling {
             take_off_s,
             warm_up_s,
@@ -404,7 +404,7 @@ impl Follower {
     fn estimate(
         &self,
         feed: Feed<'_>,
-        room: &mut Room<'_>,
+        room: &mut FlightMemory<'_>,
         mut reason: Option<Unknown>,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
     ) -> Result<Estimate, Unknown> {
@@ -446,7 +446,7 @@ impl Follower {
     }
 
     /// Resets the state after a flight or a gap. A gap in the air keeps the trims and the doubt after an alarm.
-    fn forget(&mut self, t_s: f64, end: End, room: &mut Room<'_>) -> Ended {
+    fn forget(&mut self, t_s: f64, end: End, room: &mut FlightMemory<'_>) -> EndedFindings {
         for seen in room.seen.iter_mut() {
             seen.clear();
         }
@@ -466,7 +466,7 @@ impl Follower {
         [risk, noise, reserve, balance]
     }
 
-    fn stop_judging(&mut self, t_s: f64, end: End, room: &mut Room<'_>) -> Ended {
+    fn stop_judging(&mut self, t_s: f64, end: End, room: &mut FlightMemory<'_>) -> EndedFindings {
         self.in_doubt_s = (end == End::Gap && self.level() > Level::Good).then_some(t_s);
         self.sum.clear(room.risks);
         self.last_known_s = None;
@@ -488,7 +488,7 @@ fn unknown_motor(motors: &[Motor], commands: &[f64]) -> Option<Unknown> {
 /// The statistic of an input, if enough of its window is known.
 pub(crate) fn reading(
     plan: (&[Channel], &[Input]),
-    seen: &[Seen],
+    seen: &[ChannelState],
     sampling: &Sampling,
     input: usize,
 ) -> Result<f64, Unknown> {

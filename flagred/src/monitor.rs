@@ -3,13 +3,13 @@
 use alloc::{format, string::String, vec, vec::Vec};
 
 use crate::{
-    channel::{Channel, Input, Seen, assumed, motors_needed, restart},
+    channel::{Channel, ChannelState, Input, assumed, motors_needed, restart},
     estimator::{Estimator, Memory},
-    follower::{Feed, Follower, Room, reading},
+    follower::{Feed, FlightMemory, Follower, reading},
     motor::{Motor, set_geometry},
     profile::Profile,
     source::{Motors, Signal, Source, Statistic},
-    verdict::{Ended, Finding, Level},
+    verdict::{EndedFindings, Finding, Level},
     window::Window,
 };
 
@@ -140,7 +140,7 @@ pub struct OfRisk {
 #[derive(Debug, Clone)]
 struct OwnRoom {
     risks: Window,
-    seen: Vec<Seen>,
+    seen: Vec<ChannelState>,
     inputs: Vec<f64>,
     motors: Vec<Motor>,
 }
@@ -198,7 +198,7 @@ impl Monitor {
         }
         let mut motors = vec![Motor::UNKNOWN; craft.motors];
         set_geometry(&mut motors, craft.geometry);
-        let mut seen = vec![Seen::IDLE; channels.len()];
+        let mut seen = vec![ChannelState::IDLE; channels.len()];
         restart(&channels, &mut seen);
         let others = estimator.others().iter();
         let others = others.map(|other| Monitor::new(other, craft));
@@ -333,7 +333,7 @@ impl Monitor {
     }
 
     /// Ends the flight and returns the findings that were still open. A second call returns none.
-    pub fn finish(&mut self) -> Ended {
+    pub fn finish(&mut self) -> EndedFindings {
         self.ended_elsewhere.clear();
         for (risk, other) in self.others.iter_mut().enumerate() {
             let [found, ..] = other.follower.finish(&mut other.room.lend());
@@ -367,8 +367,8 @@ impl Monitor {
 }
 
 impl OwnRoom {
-    fn lend(&mut self) -> Room<'_> {
-        Room {
+    fn lend(&mut self) -> FlightMemory<'_> {
+        FlightMemory {
             risks: &mut self.risks,
             seen: &mut self.seen,
             inputs: &mut self.inputs,

@@ -1,6 +1,6 @@
 //! The samples that a monitor takes, and the updates that it returns.
 
-use crate::verdict::{Ended, Level};
+use crate::verdict::{EndedFindings, Level};
 
 /// A sample of a flight.
 #[derive(Debug, Clone, Copy)]
@@ -45,7 +45,7 @@ pub struct Update {
     /// take-off. A landing also excludes the last seconds before it.
     pub judged: bool,
     /// The findings that ended with this sample.
-    pub ended: Ended,
+    pub ended: EndedFindings,
 }
 
 /// A known risk.

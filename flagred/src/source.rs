@@ -4,7 +4,7 @@ use alloc::{string::String, vec, vec::Vec};
 
 pub use crate::channel::{Motors, Observation, Statistic};
 use crate::{
-    channel::{Channel, Input, Now, Observed, Seen, Threshold, push, restart, value},
+    channel::{Channel, ChannelState, Input, Now, Observed, Threshold, push, restart, value},
     craft::Craft,
     motor::{Bin, Motor, clear, set_geometry, take},
 };
@@ -185,7 +185,7 @@ pub struct Source {
 pub struct Observer {
     inputs: Vec<Input>,
     channels: Vec<Channel>,
-    seen: Vec<Seen>,
+    seen: Vec<ChannelState>,
     motors: Vec<Motor>,
     bin: Bin,
 }
@@ -201,7 +201,7 @@ impl Observer {
         craft: Craft<'_>,
     ) -> Result<Observer, String> {
         let (channels, inputs) = channels(sources, craft.signals)?;
-        let mut seen = vec![Seen::IDLE; channels.len()];
+        let mut seen = vec![ChannelState::IDLE; channels.len()];
         restart(&channels, &mut seen);
         let mut motors = vec![Motor::UNKNOWN; craft.motors];
         set_geometry(&mut motors, craft.geometry);

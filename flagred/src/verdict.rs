@@ -329,4 +329,4 @@ impl Finding {
 }
 
 /// The findings that end at one time: of the risk, the noise, the reserve and the balance.
-pub type Ended = [Option<Finding>; 4];
+pub type EndedFindings = [Option<Finding>; 4];

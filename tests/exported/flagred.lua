@@ -1605,7 +1605,7 @@ return load_all, 1000
 --     return
 --   end
 --   if not is_open and level > 0 then
---     gcs:send_text(severity, text .. " stands: motors not as before")
+--     gcs:send_text(severity, text .. " stays: motors not as before")
 --     return
 --   end
 --   if is_open and by_elevated then

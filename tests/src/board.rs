@@ -7,7 +7,7 @@ use flagred::{
     estimator::Estimator,
     profile::Profile,
     sample::{Estimate, Sample, Update},
-    verdict::{Cause, Ended, Finding},
+    verdict::{Cause, EndedFindings, Finding},
 };
 use flagred_flightlog::{Flight, Options};
 
@@ -258,7 +258,7 @@ pub fn moment(said: Option<&Estimate>) -> String {
 }
 
 /// Findings as text.
-pub fn findings(ended: &Ended) -> String {
+pub fn findings(ended: &EndedFindings) -> String {
     ended
         .iter()
         .flatten()

@@ -60,7 +60,7 @@ pub const AS_FLOWN: Replay = Replay {
 };
 
 /// The results of a profile for a flight.
-pub struct Said {
+pub struct ProfileRun {
     /// At each step: the inputs, and the risk in %; NaN is unknown.
     pub steps: Vec<(Vec<f64>, f64)>,
     /// The known risk over time: seconds and %.
@@ -162,14 +162,14 @@ impl Simulated {
     }
 
     /// Passes the flight through a monitor.
-    pub fn replay(&self, estimator: &Estimator, replay: Replay) -> Said {
+    pub fn replay(&self, estimator: &Estimator, replay: Replay) -> ProfileRun {
         let flight = &self.flight;
         let (low, high) = (
             flight.effective_range.low + replay.wrong_by.0,
             flight.effective_range.high + replay.wrong_by.1,
         );
         let mut monitor = Monitor::new(estimator, Craft::new(flight.motors.len())).unwrap();
-        let mut said = Said {
+        let mut said = ProfileRun {
             steps: Vec::new(),
             risks: Vec::new(),
             warnings: Vec::new(),

@@ -4,7 +4,7 @@ mod answers;
 mod heard;
 mod messages;
 
-pub use heard::{Heard, Progress};
+pub use heard::{Inbox, Progress};
 use messages::{OUTPUTS_A_PORT, attitude, landed_state, servo_of_port};
 pub use messages::{heartbeat, heartbeat_of, servo};
 
@@ -41,9 +41,9 @@ pub struct StandIn {
     other: Option<(Wire, Stream)>,
     late: VecDeque<(u32, Vec<u8>)>,
     /// Messages received from the other side.
-    pub heard: Heard,
+    pub heard: Inbox,
     /// Messages received on the second link.
-    pub heard_elsewhere: Heard,
+    pub heard_elsewhere: Inbox,
     /// When the motor commands of each time, in ms of the vehicle's clock, were sent.
     pub sent: Vec<(u32, Instant)>,
     /// The progress of the other side. A flight at full speed waits for it, because the buffers of the machine would lose
@@ -95,8 +95,8 @@ impl StandIn {
             stream: Stream::new(),
             other: None,
             late: VecDeque::new(),
-            heard: Heard::default(),
-            heard_elsewhere: Heard::default(),
+            heard: Inbox::default(),
+            heard_elsewhere: Inbox::default(),
             sent: Vec::new(),
             progress: None,
             marks: 0,

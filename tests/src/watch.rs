@@ -20,7 +20,7 @@ use serde_json::Value;
 
 use crate::{
     flagred,
-    vehicle::{Heard, Progress, StandIn},
+    vehicle::{Inbox, Progress, StandIn},
     wire::{Link, Speed, Wire},
 };
 
@@ -140,7 +140,7 @@ impl Watch {
     }
 
     /// Interrupts it and returns its output.
-    pub fn end(mut self) -> Said {
+    pub fn end(mut self) -> WatchOutput {
         // The `kill` of the shell: the program of that name is not on every machine.
         let interrupted = Command::new("sh")
             .args(["-c", &format!("kill -INT {}", self.child.0.id())])
@@ -148,18 +148,18 @@ impl Watch {
         assert!(interrupted.unwrap().success());
         let events = self.reader.join().unwrap();
         let code = self.child.0.wait().unwrap().code();
-        Said { events, code }
+        WatchOutput { events, code }
     }
 }
 
-pub struct Said {
+pub struct WatchOutput {
     /// The events that it printed.
     pub events: Vec<Value>,
     /// Its exit code.
     pub code: Option<i32>,
 }
 
-impl Said {
+impl WatchOutput {
     pub fn all<'a>(&'a self, kind: &'a str) -> impl Iterator<Item = &'a Value> {
         self.events
             .iter()
@@ -202,7 +202,12 @@ pub fn assess(log: &Path) -> Value {
 }
 
 /// Replays a log over UDP; returns the output of the watch and the messages to the vehicle.
-pub fn fly_udp(flight: &Flight, link: Link, options: &[&str], speed: Speed) -> (Said, StandIn) {
+pub fn fly_udp(
+    flight: &Flight,
+    link: Link,
+    options: &[&str],
+    speed: Speed,
+) -> (WatchOutput, StandIn) {
     let watch = Watch::udp(options);
     let mut vehicle = watch.vehicle(flight, link);
     vehicle.meet();
@@ -211,7 +216,7 @@ pub fn fly_udp(flight: &Flight, link: Link, options: &[&str], speed: Speed) -> (
 }
 
 /// The share of samples with a reported risk, and the largest difference from the results of `assess`.
-pub fn compare(said: &Said, assessed: &Value) -> (f64, f64) {
+pub fn compare(said: &WatchOutput, assessed: &Value) -> (f64, f64) {
     let steps = assessed["steps"].as_array().unwrap();
     let mut watched = said
         .all("risk")
@@ -237,7 +242,7 @@ pub fn compare(said: &Said, assessed: &Value) -> (f64, f64) {
 }
 
 /// Checks that there is one text for each change of state, none on the ground, and all in the form that ground stations require.
-pub fn check_texts(said: &Said, heard: &Heard) {
+pub fn check_texts(said: &WatchOutput, heard: &Inbox) {
     let texts = heard.texts();
     let levels: Vec<(String, u8)> = said
         .all("level")

@@ -9,7 +9,7 @@ use flagred_flightlog::{Flight, mavlink::Version};
 use flagred_tests::{
     STEADY, reference_data, shared_data,
     vehicle::{StandIn, flight},
-    watch::{Said, Watch, assess, check_texts, compare, fly_udp},
+    watch::{Watch, WatchOutput, assess, check_texts, compare, fly_udp},
     wire::{Link, Speed, Wire},
 };
 use serde_json::{Value, json};
@@ -48,7 +48,7 @@ fn every_link_gives_the_verdict_of_assess(log: &Path) {
 
 /// Asserts the same verdict, the same risk if no packet is lost, and one text for each change of state.
 fn says_what_assess_says(
-    (said, vehicle): &(Said, StandIn),
+    (said, vehicle): &(WatchOutput, StandIn),
     assessed: &Value,
     case: &str,
     link: Link,
@@ -88,7 +88,7 @@ fn watch_tcp(flight: &Flight, keep: fn(&Value) -> bool) -> (Watch, StandIn) {
 }
 
 /// Replays a log over TCP.
-fn fly_tcp(flight: &Flight, speed: Speed) -> (Said, StandIn) {
+fn fly_tcp(flight: &Flight, speed: Speed) -> (WatchOutput, StandIn) {
     let (watch, mut vehicle) = watch_tcp(flight, |_| true);
     vehicle.meet();
     vehicle.fly(flight, speed, 0.0, f64::INFINITY);

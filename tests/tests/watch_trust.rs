@@ -14,7 +14,7 @@ use flagred_flightlog::{
 use flagred_tests::{
     Folder, STEADY, schema,
     vehicle::{StandIn, flight, servo},
-    watch::{Said, Watch, assess, compare, refused},
+    watch::{Watch, WatchOutput, assess, compare, refused},
     wire::{Link, Speed, Wire},
 };
 use serde_json::json;
@@ -26,7 +26,7 @@ fn steady() -> (Flight, f64) {
 }
 
 /// Asserts that every line matches `flagred schema watch`.
-fn valid(said: &Said) {
+fn valid(said: &WatchOutput) {
     let schema = schema::schema("watch");
     for line in &said.events {
         assert_eq!(schema::errors(&schema, line), Vec::<String>::new());

@@ -15,10 +15,10 @@ use core::ffi::{CStr, c_char};
 
 use flagred::{
     board::{
-        Factors, Memory, Monitor, Refused,
+        Factors, Memory, Monitor, SetupError,
         table::{Outcome, Partial, Strongest},
     },
-    channel::Seen,
+    channel::ChannelState,
     margin::Range,
     sample::Sample,
     verdict::Motor,
@@ -163,13 +163,13 @@ unsafe fn start(
         strongest: block.fill(sizes.outputs, Strongest::NONE)?,
         outcomes: block.fill(sizes.outputs, Outcome::UNDEFINED)?,
         own: block.fill(sizes.outputs, Outcome::UNDEFINED)?,
-        seen: block.repeat(sizes.channels, |_| Ok(Seen::IDLE))?,
+        seen: block.repeat(sizes.channels, |_| Ok(ChannelState::IDLE))?,
         risks: block.place(Window::IDLE)?,
         motors: block.fill(motors, Motor::UNKNOWN)?,
     };
     let monitor = CMonitor {
         monitor: Monitor::new(plan, memory).map_err(|refused| match refused {
-            Refused::NoMotors => Status::NoMotors,
+            SetupError::NoMotors => Status::NoMotors,
             _ => Status::DamagedPlan,
         })?,
         limits: ranges,

@@ -117,7 +117,7 @@ impl Plan {
         // SAFETY: the caller's promise.
         let plan = unsafe { self.whole(&[], &[]) }?;
         // Plus the channels and inputs, which are converted into the memory.
-        let channel = size_of::<Channel>() + size_of::<channel::Seen>();
+        let channel = size_of::<Channel>() + size_of::<channel::ChannelState>();
         let input = size_of::<channel::Input>() + size_of::<f64>();
         let channels = self.channels.count.checked_mul(channel);
         let inputs = self.sources.count.checked_mul(input);

@@ -3,7 +3,7 @@
 use flagred::{
     margin::Side,
     sample::{self, Estimate, Unknown},
-    verdict::{self, Cause, Ended, Level},
+    verdict::{self, Cause, EndedFindings, Level},
 };
 
 /// `FLAGRED_ENDED`: the number of findings that can end at one time.
@@ -102,7 +102,7 @@ impl Finding {
     }
 }
 
-pub(crate) fn findings(ended: Ended) -> [Finding; ENDED] {
+pub(crate) fn findings(ended: EndedFindings) -> [Finding; ENDED] {
     ended.map(Finding::of)
 }
 

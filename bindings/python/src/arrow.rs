@@ -287,7 +287,7 @@ pub(crate) fn numbers<'a>(name: &str, column: &'a ArrayRef) -> PyResult<Cow<'a, 
         }
         DataType::Null => Cow::Owned(vec![f64::NAN; column.len()]),
         other => {
-            let message = format!("column `{name}` holds {other}, not numbers");
+            let message = format!("column `{name}` contains {other}, not numbers");
             let help = "convert it to numbers first".to_owned();
             return Err(data_error(message, Some(help)));
         }

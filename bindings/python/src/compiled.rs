@@ -37,20 +37,20 @@ pub(crate) struct Compiled {
 }
 
 /// The scratch memory of each thread for single evaluations, of the rule sets used last.
-struct Kept {
+struct CachedScratch {
     id: u64,
     scratch: Scratch,
     outcomes: Vec<Raw>,
 }
 
 thread_local! {
-    static KEPT: RefCell<Vec<Kept>> = const { RefCell::new(Vec::new()) };
+    static KEPT: RefCell<Vec<CachedScratch>> = const { RefCell::new(Vec::new()) };
 }
 
 const MOST_KEPT: usize = 8;
 
 /// The values to evaluate: numbers, or a value for each row.
-pub(crate) enum Asked<'py> {
+pub(crate) enum Inputs<'py> {
     /// In the order of the inputs.
     Numbers(Vec<f64>),
     /// In the order of the inputs.
@@ -77,7 +77,7 @@ impl Compiled {
         py: Python<'py>,
         args: &Bound<'py, PyTuple>,
         named: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Asked<'py>> {
+    ) -> PyResult<Inputs<'py>> {
         // `model({"service": 8, "food": 9})`, for names that are not Python identifiers.
         let mapping = match named {
             None if args.len() == 1 => args.get_item(0)?.cast_into::<PyDict>().ok(),
@@ -96,10 +96,10 @@ impl Compiled {
         };
         let numbers: Option<Vec<f64>> = values.iter().map(number).collect();
         match numbers {
-            Some(numbers) => Ok(Asked::Numbers(numbers)),
+            Some(numbers) => Ok(Inputs::Numbers(numbers)),
             None => match values.as_slice() {
-                [one] if named.is_none() && is_frame(py, one)? => Ok(Asked::Frame(one.clone())),
-                _ => Ok(Asked::Arrays(values)),
+                [one] if named.is_none() && is_frame(py, one)? => Ok(Inputs::Frame(one.clone())),
+                _ => Ok(Inputs::Arrays(values)),
             },
         }
     }
@@ -158,7 +158,7 @@ impl Compiled {
                 None => {
                     kept.truncate(MOST_KEPT - 1);
                     let outputs = self.engine.output_names().len();
-                    let new = Kept {
+                    let new = CachedScratch {
                         id: self.id,
                         scratch: self.engine.scratch(),
                         outcomes: vec![Raw::default(); outputs],
@@ -167,7 +167,7 @@ impl Compiled {
                     0
                 }
             };
-            let Kept {
+            let CachedScratch {
                 scratch, outcomes, ..
             } = &mut kept[at];
             let done = self.engine.evaluate_with(scratch, numbers, outcomes);

@@ -73,7 +73,7 @@ impl Failed {
             Failed::NoSteps => log_error(
                 "there is no step to evaluate in these logs",
                 Some(
-                    "it takes motors, attitude, and 20 s in the air; `flagred.read_log(log).gaps` tells what a log lacks",
+                    "it takes motors, attitude, and 20 s in the air; `flagred.read_log(log).gaps` lists what is missing in a log",
                 ),
             ),
         }
@@ -163,7 +163,7 @@ fn name(log: &Source) -> String {
 fn row_cases(rows: &FlightRows<'_>, estimators: &Estimators) -> PyResult<(Vec<Case>, Vec<String>)> {
     let columns: Vec<&str> = rows.names.iter().map(String::as_str).collect();
     if !columns.contains(&ERROR) {
-        let help = "without an attitude error nobody knows what was critical".to_owned();
+        let help = "critical moments cannot be identified without an attitude error".to_owned();
         return Err(data_error(
             format!("the rows have no column `{ERROR}`"),
             Some(help),

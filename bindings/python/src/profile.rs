@@ -9,7 +9,10 @@ use flagred::{
 use fuzzy::Source;
 use pyo3::prelude::*;
 
-use crate::errors::{data_error, diagnostics, os_error, rule_set_error};
+use crate::{
+    errors::{data_error, diagnostics, os_error, rule_set_error},
+    rule_set,
+};
 
 /// A profile with its rule set: which signals of a flight are the inputs, and at which risk it warns.
 ///
@@ -132,6 +135,29 @@ impl Profile {
     #[getter]
     fn rules_text(&self) -> &str {
         self.loaded.rules.text()
+    }
+
+    /// The profile and its rule set as code for firmware, as ``flagred export`` writes it.
+    ///
+    /// Parameters
+    /// ----------
+    /// language
+    ///     ``rust``, ``c``, or ``lua`` for a script that ArduPilot runs.
+    ///
+    /// Raises
+    /// ------
+    /// DataError
+    ///     The language cannot express the profile.
+    fn to_code(&self, language: &str) -> PyResult<String> {
+        let Some(chosen) = rule_set::language(language) else {
+            let message = format!("`{language}` is not a language of exported code");
+            return Err(data_error(
+                message,
+                Some("write `rust`, `c` or `lua`".into()),
+            ));
+        };
+        let code = flagred_cli::export_profile(&self.loaded.estimator, chosen);
+        code.map_err(|error| data_error(error, None))
     }
 
     /// The warnings about it.

@@ -3,6 +3,7 @@
 use std::sync::{Arc, PoisonError, RwLock};
 
 use flagred_authoring::rewrite::rewritten;
+use flagred_cli::Language;
 use flagred_interchange::{Format, Losses};
 use fuzzy::{
     Findings, Model,
@@ -26,7 +27,7 @@ use pyo3::{
 };
 
 use crate::{
-    compiled::Asked,
+    compiled::Inputs,
     errors::{data_error, diagnostics, rule_set_error},
     explained_rows::explained_rows,
     explanation::Explanation,
@@ -95,9 +96,9 @@ fn answer<'py>(
     let (py, source) = (rule_set.py(), rule_set.get().source());
     let compiled = source.compiled(py)?;
     match compiled.asked(py, args, named)? {
-        Asked::Numbers(numbers) => compiled.point(py, &numbers, with_reasons),
-        Asked::Arrays(values) => compiled.arrays(py, &values, threads, with_reasons),
-        Asked::Frame(frame) => by_frame(rule_set, frame, threads, with_reasons),
+        Inputs::Numbers(numbers) => compiled.point(py, &numbers, with_reasons),
+        Inputs::Arrays(values) => compiled.arrays(py, &values, threads, with_reasons),
+        Inputs::Frame(frame) => by_frame(rule_set, frame, threads, with_reasons),
     }
 }
 
@@ -111,6 +112,16 @@ fn by_frame<'py>(
     static EVALUATE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let evaluate = EVALUATE.import(rule_set.py(), "flagred._frames", "evaluate")?;
     evaluate.call1((rule_set, frame, threads, with_reasons))
+}
+
+/// The language of this name.
+pub(crate) fn language(name: &str) -> Option<Language> {
+    match name {
+        "rust" => Some(Language::Rust),
+        "c" => Some(Language::C),
+        "lua" => Some(Language::Lua),
+        _ => None,
+    }
 }
 
 #[pymethods]
@@ -222,6 +233,11 @@ impl RuleSet {
         lossy: bool,
     ) -> PyResult<(String, Vec<String>)> {
         let source = self.source();
+        if let Some(language) = language(format) {
+            let model = &source.document.model;
+            let code = flagred_cli::export_rules(model, language, lossy);
+            return code.map_err(|error| data_error(error, None));
+        }
         let known = Format::ALL
             .into_iter()
             .find(|known| known.ending() == format);
@@ -422,12 +438,12 @@ impl RuleSet {
         let (py, source) = (slf.py(), slf.get().source());
         let compiled = source.compiled(py)?;
         let numbers = match compiled.asked(py, args, named)? {
-            Asked::Numbers(numbers) => numbers,
-            Asked::Frame(frame) => {
+            Inputs::Numbers(numbers) => numbers,
+            Inputs::Frame(frame) => {
                 let explain = EXPLAIN.import(py, "flagred._frames", "explain")?;
                 return explain.call1((slf, frame));
             }
-            Asked::Arrays(_) => {
+            Inputs::Arrays(_) => {
                 let help = "give a number for each input, or a frame with a column for each input";
                 let message = "arrays are not explained";
                 return Err(data_error(message, Some(help.into())));

@@ -381,9 +381,23 @@ def test_formats_are_those_of_the_command(tip, tmp_path):
         pytest.skip("FLAGRED_COMMAND names no command `flagred`")
     source = tmp_path / "tip.yaml"
     tip.save(source)
-    for format in ("fis", "fll", "fcl", "fml"):
+    for format in ("fis", "fll", "fcl", "fml", "rust", "c"):
         run = subprocess.run([command, "export", f"--{format}", source], capture_output=True, text=True)
         assert run.stdout == tip.to_text(format), run.stderr
+    for language in ("rust", "c", "lua"):
+        run = subprocess.run([command, "export", f"--{language}", "flagred"], capture_output=True, text=True)
+        assert run.stdout == flagred.Profile("flagred").to_code(language), run.stderr
+
+
+def test_code_for_firmware_is_saved_by_its_ending(tip, tmp_path):
+    tip.save(tmp_path / "tip.c")
+    assert "flagred.h" in (tmp_path / "tip.c").read_text()
+    tip.save(tmp_path / "tip.rs")
+    assert "pub fn" in (tmp_path / "tip.rs").read_text()
+    with pytest.raises(flagred.DataError, match="`python` is not a language"):
+        flagred.Profile().to_code("python")
+    with pytest.raises(flagred.DataError, match="exported code has one"):
+        flagred.Profile("flagred-battery").to_code("lua")
 
 
 def test_unsupported_features_of_a_format_are_refused_or_dropped_with_a_warning(tmp_path):

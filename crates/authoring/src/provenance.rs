@@ -137,7 +137,7 @@ fn edited_since(document: &Document) -> Option<Diagnostic> {
         document.spans.provenance.clone(),
         format!("the rule set was edited after `{}` made it", last.command),
     );
-    let help = "what `provenance` says is of the rule set before; run the command again, or add a step of your own";
+    let help = "`provenance` describes an earlier version of the rule set; run the command again, or add a step of your own";
     (!is_same).then(|| finding.help(help))
 }
 

@@ -109,7 +109,7 @@ impl NoText {
     fn failure(&self, file: &str) -> Failure {
         let failure = Failure::unreadable(match self.at {
             Some((line, byte)) => {
-                format!("`{file}` is not UTF-8: line {line} holds the byte {byte:02X}")
+                format!("`{file}` is not UTF-8: line {line} contains the byte {byte:02X}")
             }
             None => format!("`{file}` is not UTF-16, which its first two bytes announce"),
         });

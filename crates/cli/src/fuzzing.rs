@@ -52,7 +52,8 @@ impl Profile {
 
     /// Returns the Rust and C code that `export` writes; `None` if there is no closed form.
     pub fn exported(&self) -> Option<[String; 2]> {
-        export::texts(&self.0.estimator).ok()
+        let code = |language| export::profile_code(&self.0.estimator, language).ok();
+        Some([code(export::Language::Rust)?, code(export::Language::C)?])
     }
 }
 
@@ -131,12 +132,12 @@ pub struct Watch<'e> {
     out: Out,
     words: Words,
     screen: Screen,
-    told: Told,
+    told: WatchOutput,
 }
 
 /// Output of a watch since the previous call.
 #[derive(Debug, Default)]
-pub struct Told {
+pub struct WatchOutput {
     /// Lines for people.
     pub words: Vec<String>,
     /// Lines for programs.
@@ -166,7 +167,7 @@ impl<'e> Watch<'e> {
             out: Out::default(),
             words: Words::default(),
             screen: Screen::new("fuzzing".to_owned()),
-            told: Told::default(),
+            told: WatchOutput::default(),
         }
     }
 
@@ -196,7 +197,7 @@ impl<'e> Watch<'e> {
     }
 
     /// Returns the output since the previous call.
-    pub fn told(&mut self) -> Told {
+    pub fn told(&mut self) -> WatchOutput {
         std::mem::take(&mut self.told)
     }
 

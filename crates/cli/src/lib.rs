@@ -45,6 +45,8 @@ mod tune;
 mod validate;
 mod watch;
 
+#[doc(hidden)] // For the Python package.
+pub use export::{Language, export_profile, export_rules};
 #[doc(hidden)] // For the types of the npm package.
 pub use schema::npm_types;
 
@@ -174,7 +176,7 @@ impl Command {
             Command::Validate(arguments) => validate::run(&arguments),
             Command::Evaluate(arguments) => {
                 output::say(
-                    "note: `evaluate` is called `validate` now; this name goes with the next release",
+                    "note: `evaluate` is called `validate` now; the old name is removed in the next release",
                 );
                 validate::run(&arguments)
             }

@@ -228,7 +228,7 @@ impl Header {
             }
             if self.names.iter().all(|name| name.parse::<f64>().is_ok()) {
                 return failure
-                    .help("the first line holds numbers; it must hold the names of the columns");
+                    .help("the first line contains numbers; it must contain the names of the columns");
             }
             let columns = self.names.iter().map(String::as_str);
             let columns = columns.filter(|name| !name.is_empty());

@@ -129,7 +129,7 @@ fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
     let table = Table::read(path, b',')?;
     table.header.require(
         flagred_evaluation::ERROR,
-        "without an attitude error nobody knows what was critical",
+        "critical moments cannot be identified without an attitude error",
     )?;
     let rows = Rows {
         columns: table.header.names.iter().map(String::as_str).collect(),

@@ -90,7 +90,7 @@ fn the_advice_for_mistakes_works() {
         (
             "eval fan.yaml numbers.csv",
             3,
-            "the first line holds numbers",
+            "the first line contains numbers",
         ),
         (
             "learn fan.yaml header.csv -o out.yaml",

@@ -105,7 +105,7 @@ fn utf_16_is_read_and_latin_1_is_reported() {
     assert_eq!(check(format!("\u{feff}{text}").as_bytes()).0, Some(0));
     let (code, said) = check(b"fuzzy: 1\nname: k\xfche\n");
     assert_eq!(code, Some(3));
-    assert!(said.contains("line 2 holds the byte FC"), "{said}");
+    assert!(said.contains("line 2 contains the byte FC"), "{said}");
     assert!(
         said.contains("Latin-1, where the byte is `\u{fc}`"),
         "{said}"

@@ -95,7 +95,7 @@ fn only_free_parameters_move() {
     let (code, _, err, written) = tune(&[], &["--only", "haet"]);
     assert_eq!((code, written), (Some(2), None));
     assert!(
-        err.contains("the model has no variable and no term `haet`"),
+        err.contains("the rule set has no variable and no term `haet`"),
         "{err}"
     );
 }

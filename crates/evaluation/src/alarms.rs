@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::{
     bootstrap::{Interval, bootstrap},
-    flight::{Record, Said},
+    flight::{ProfileResult, Record},
     scores::{APART, RESAMPLES, SEED, median},
     span::Span,
     upset::UpsetAlarm,
@@ -207,7 +207,7 @@ impl Upsets {
     /// Counts the upsets that a profile found; `alarms` selects the alarms that count.
     pub(crate) fn of<'a>(
         profile: usize,
-        alarms: fn(&Said) -> &[Span],
+        alarms: fn(&ProfileResult) -> &[Span],
         records: impl Iterator<Item = &'a Record>,
     ) -> Upsets {
         let mut found = Upsets::default();

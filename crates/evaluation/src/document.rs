@@ -10,9 +10,9 @@ use crate::{
     alarms::{Alarms, Figure, Needless, Upsets},
     announced::{Answer, Warning},
     bootstrap::Interval,
-    flight::{Record, Said},
+    flight::{ProfileResult, Record},
     ranking::Band,
-    scores::{Evaluated, Scores},
+    scores::{ProfileScores, Scores},
     span::Span,
     warnings::Warnings,
 };
@@ -303,7 +303,7 @@ impl<'a> Document<'a> {
 }
 
 impl<'a> EstimatorDocument<'a> {
-    fn new(i: usize, evaluated: &'a Evaluated, evaluation: &'a Evaluation) -> Self {
+    fn new(i: usize, evaluated: &'a ProfileScores, evaluation: &'a Evaluation) -> Self {
         let scores = |scores| ScoresDocument::new(scores, evaluation.cases);
         let has_times = evaluation.horizon_s.is_some();
         let by_vehicle = evaluated.by_vehicle.iter();
@@ -464,7 +464,7 @@ impl<'a> RecordDocument<'a> {
 }
 
 impl<'a> SaidDocument<'a> {
-    fn new(said: &'a Said) -> Self {
+    fn new(said: &'a ProfileResult) -> Self {
         let episode = |answer: &Answer| EpisodeDocument {
             episode: answer.episode,
             warned_s: answer.warned_s,

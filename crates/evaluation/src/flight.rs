@@ -55,7 +55,7 @@ pub struct Record {
     pub(crate) upsets: Vec<Upset>,
     pub(crate) steps: Vec<Step>,
     /// The results of each profile.
-    pub(crate) said: Vec<Said>,
+    pub(crate) said: Vec<ProfileResult>,
 }
 
 /// The first upset in a time in the air.
@@ -76,7 +76,7 @@ pub(crate) struct Step {
 
 /// The results of a profile for a flight.
 #[derive(Default)]
-pub(crate) struct Said {
+pub(crate) struct ProfileResult {
     /// The verdict; `None` is NA.
     pub(crate) verdict: Option<Level>,
     /// The periods of WARN or FAIL, from raised until last reached. A WARN that is raised to FAIL counts as one.
@@ -272,7 +272,7 @@ fn follow(
     flight: &Flight,
     estimators: &Estimators,
     steps: &mut [Step],
-) -> Result<Vec<(Said, Vec<Span>)>, String> {
+) -> Result<Vec<(ProfileResult, Vec<Span>)>, String> {
     let names = log::carried(flight, &estimators.signals());
     let mut running: Vec<Running> = estimators
         .profiles
@@ -328,7 +328,7 @@ fn follow(
             }
             assessor.finish()
         });
-        let said = assessment.map_or_else(Said::default, |assessment| Said {
+        let said = assessment.map_or_else(ProfileResult::default, |assessment| ProfileResult {
             verdict: match assessment.verdict {
                 Verdict::Known(level) => Some(level),
                 Verdict::NotAvailable(_) => None,

@@ -60,7 +60,7 @@ pub use span::Span;
 pub use upset::{UpsetAlarm, upset_s};
 
 use alarms::Alarms;
-use scores::{APART, Evaluated};
+use scores::{APART, ProfileScores};
 use warnings::Warnings;
 
 /// A file that is not among the evaluated flights, and the reason.
@@ -90,7 +90,7 @@ pub struct Evaluation {
     flights: usize,
     critical: usize,
     left_out: Vec<LeftOut>,
-    estimators: Vec<Evaluated>,
+    estimators: Vec<ProfileScores>,
     /// The warnings of each profile: over all flights, and by kind.
     warnings: Vec<(Warnings, Vec<(String, Warnings)>)>,
     alarms: Vec<Alarms>,

@@ -67,7 +67,7 @@ impl Scores {
 }
 
 /// An evaluated estimator.
-pub(crate) struct Evaluated {
+pub(crate) struct ProfileScores {
     pub(crate) name: String,
     pub(crate) description: String,
     /// The scores over all kinds except [`APART`].
@@ -88,7 +88,7 @@ pub(crate) fn score<'a>(
     risks: usize,
     cases: &[Case],
     done: &(dyn Fn() + Sync),
-) -> Vec<Evaluated> {
+) -> Vec<ProfileScores> {
     let names: Vec<(&str, &str)> = names.collect();
     let all = names.into_par_iter().enumerate().map(|(i, name)| {
         let evaluated = evaluated(i, name, i < risks, cases);
@@ -103,7 +103,7 @@ fn evaluated(
     (name, description): (&str, &str),
     is_risk: bool,
     cases: &[Case],
-) -> Evaluated {
+) -> ProfileScores {
     let main = || cases.iter().filter(|case| case.kind != APART);
     let ranking = Ranking::new(predictions(main(), i));
     let part = |is_in: fn(&Case) -> bool| {
@@ -111,7 +111,7 @@ fn evaluated(
         let ranking = Ranking::new(predictions(cases(), i));
         scores(cases().count(), &ranking, RESAMPLES)
     };
-    Evaluated {
+    ProfileScores {
         name: name.to_owned(),
         description: description.to_owned(),
         all: scores(main().count(), &ranking, RESAMPLES),

@@ -2,7 +2,7 @@
 
 use fuzzy::drawing::{Colour, Plot, Scale, Series, plots_svg};
 
-use crate::{Evaluation, ranking::Band, scores::Evaluated};
+use crate::{Evaluation, ranking::Band, scores::ProfileScores};
 
 /// Draws an evaluation.
 pub fn draw(evaluation: &Evaluation) -> String {
@@ -46,7 +46,7 @@ pub fn draw(evaluation: &Evaluation) -> String {
 }
 
 /// The name of an estimator and its area under the ROC curve.
-fn name(evaluated: &Evaluated) -> String {
+fn name(evaluated: &ProfileScores) -> String {
     let area = evaluated.all.areas;
     let area = area.map_or("unknown".to_owned(), |area| format!("{:.3}", area.roc));
     format!("{} {area}", evaluated.name)
@@ -85,7 +85,7 @@ mod tests {
             intervals: None,
             within: None,
         };
-        let evaluated = |name: &str, is_risk: bool| Evaluated {
+        let evaluated = |name: &str, is_risk: bool| ProfileScores {
             name: name.into(),
             description: String::new(),
             all: scores(),

@@ -75,7 +75,7 @@ impl Line<'_> {
         let Line { worst, count } = self;
         let worst_at = match worst.is_of_risk() {
             true => clock.span(worst.from_s, worst.to_s),
-            false => format!("from {}", clock.at(worst.raised_s)),
+            false => format!("from {}", clock.at(worst.from_s)),
         };
         match count {
             1 => worst_at,

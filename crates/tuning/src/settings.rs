@@ -108,7 +108,7 @@ pub enum TuneError {
         outputs: usize,
     },
     /// A name that the model does not have.
-    #[error("the model has no variable and no term `{name}`")]
+    #[error("the rule set has no variable and no term `{name}`")]
     Unknown {
         /// The name.
         name: String,
@@ -117,7 +117,7 @@ pub enum TuneError {
     #[error("nothing may move")]
     NothingMoves,
     /// No input reduces the cross-validation error.
-    #[error("no input tells more about the output than its mean")]
+    #[error("no input predicts the output better than its mean")]
     NoInputHelps,
     /// There are no rows.
     #[error("there are no rows")]

@@ -29,15 +29,15 @@
 use fuzzy::table::{Damaged, Sought};
 
 use crate::{
-    cause::{Asked, Cause, Propositions},
-    channel::{Channel, Input, Observed, Seen, motors_needed, restart},
+    cause::{Cause, Propositions, RuleQuery},
+    channel::{Channel, ChannelState, Input, Observed, motors_needed, restart},
     effort::ROLL_PITCH_YAW_THRUST,
-    follower::{Feed, Follower, Room, Settings},
+    follower::{Feed, FlightMemory, Follower, Settings},
     gap::FilledKnots,
     lookup::{Lookup, UNREAD},
     motor,
     sample::{Estimate, Sample, Update},
-    verdict::{Ended, Finding, Motor},
+    verdict::{EndedFindings, Finding, Motor},
     window::Window,
 };
 
@@ -102,7 +102,7 @@ pub struct Words<'a> {
 /// The reason why a monitor cannot be created.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Refused {
+pub enum SetupError {
     /// The memory does not have the sizes that the plan requires.
     Memory,
     /// The profile reads a motor that the vehicle does not have.
@@ -113,22 +113,22 @@ pub enum Refused {
     Geometry,
 }
 
-impl core::fmt::Display for Refused {
+impl core::fmt::Display for SetupError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Refused::Memory => f.write_str("the memory does not have the sizes of the plan"),
-            Refused::NoMotors => {
+            SetupError::Memory => f.write_str("the memory does not have the sizes of the plan"),
+            SetupError::NoMotors => {
                 f.write_str("the profile reads a motor that the vehicle does not have")
             }
-            Refused::Plan(damaged) => damaged.fmt(f),
-            Refused::Geometry => f.write_str(
+            SetupError::Plan(damaged) => damaged.fmt(f),
+            SetupError::Geometry => f.write_str(
                 "the geometry does not tell roll, pitch, yaw and thrust of all motors apart",
             ),
         }
     }
 }
 
-impl core::error::Error for Refused {}
+impl core::error::Error for SetupError {}
 
 impl Plan<'_> {
     /// Verifies every index and window of the plan, so that no sample can make a monitor panic. Exported plans pass.
@@ -253,18 +253,18 @@ impl Plan<'_> {
         let outputs = table.outputs.len();
         let Some(chain) = self.rules.chain() else {
             return propositions.cause(inputs, risk, outputs, |output, asked, pick| match asked {
-                Asked::Raises(value) => {
+                RuleQuery::Raises(value) => {
                     let rule = table.raised_by(scratch, point, output, value)?;
                     pick(rule, scratch.degrees)
                 }
-                Asked::Concludes(_) => None,
+                RuleQuery::Concludes(_) => None,
             });
         };
         let is_read = |said: &&Proposition| said.input as usize >= inputs.len();
         let cause = propositions.cause(inputs, risk, outputs, |output, asked, pick| {
             let sought = match asked {
-                Asked::Raises(value) => Sought::Raises(value),
-                Asked::Concludes(proposition) => {
+                RuleQuery::Raises(value) => Sought::Raises(value),
+                RuleQuery::Concludes(proposition) => {
                     let before = self.propositions.get(..proposition)?;
                     Sought::Concludes(before.iter().filter(is_read).count())
                 }
@@ -298,7 +298,7 @@ pub struct Monitor<'a> {
     point: &'a mut [f64],
     /// One for each input of the profile.
     inputs: &'a mut [f64],
-    seen: &'a mut [Seen],
+    seen: &'a mut [ChannelState],
     risks: &'a mut Window,
     motors: &'a mut [Motor],
 }
@@ -310,12 +310,12 @@ impl<'a> Monitor<'a> {
     /// # Errors
     /// If the memory does not have the sizes that the plan requires, if motors are missing, or if the plan is damaged.
     #[doc(hidden)] // For the C interface. Rust uses `Storage::monitor` or `OwnedMemory::monitor`.
-    pub fn new(plan: &'a Plan<'a>, memory: Memory<'a>) -> Result<Monitor<'a>, Refused> {
-        plan.check().map_err(Refused::Plan)?;
+    pub fn new(plan: &'a Plan<'a>, memory: Memory<'a>) -> Result<Monitor<'a>, SetupError> {
+        plan.check().map_err(SetupError::Plan)?;
         if memory.motors.len() < motors_needed(plan.channels, plan.settings.verdict.notices.any()) {
-            return Err(Refused::NoMotors);
+            return Err(SetupError::NoMotors);
         }
-        let monitor = Monitor::divide(plan, memory).ok_or(Refused::Memory)?;
+        let monitor = Monitor::divide(plan, memory).ok_or(SetupError::Memory)?;
         restart(plan.channels, monitor.seen);
         let window_s = plan.settings.elevated_risk.window_s;
         monitor.risks.restart(window_s);
@@ -378,15 +378,15 @@ impl<'a> Monitor<'a> {
     /// monitor.set_geometry(&[[-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0], [-1.0, -1.0, -1.0]])?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn set_geometry(&mut self, factors: &[Factors]) -> Result<(), Refused> {
+    pub fn set_geometry(&mut self, factors: &[Factors]) -> Result<(), SetupError> {
         let is_known = motor::set_geometry(self.motors, factors);
-        is_known.then_some(()).ok_or(Refused::Geometry)
+        is_known.then_some(()).ok_or(SetupError::Geometry)
     }
 
     /// Processes the next sample of the flight.
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         let plan = self.plan;
-        let mut room = Room {
+        let mut room = FlightMemory {
             risks: self.risks,
             seen: self.seen,
             inputs: self.inputs,
@@ -428,8 +428,8 @@ impl<'a> Monitor<'a> {
     }
 
     /// Ends the flight and returns the findings that were still open.
-    pub fn finish(&mut self) -> Ended {
-        self.follower.finish(&mut Room {
+    pub fn finish(&mut self) -> EndedFindings {
+        self.follower.finish(&mut FlightMemory {
             risks: self.risks,
             seen: self.seen,
             inputs: self.inputs,

@@ -2,9 +2,9 @@
 
 use fuzzy::table::{Outcome, Partial, Strongest};
 
-use super::{Monitor, Plan, Refused};
+use super::{Monitor, Plan, SetupError};
 use crate::{
-    channel::{Channel, Seen},
+    channel::{Channel, ChannelState},
     margin::Range,
     verdict::Motor,
     window::Window,
@@ -38,7 +38,7 @@ pub struct Memory<'m> {
     /// As many as [`Sizes::outputs`].
     pub own: &'m mut [Outcome],
     /// As many as [`Sizes::channels`].
-    pub seen: &'m mut [Seen],
+    pub seen: &'m mut [ChannelState],
     /// The window of the last risks.
     pub risks: &'m mut Window,
     /// One for each motor.
@@ -83,7 +83,7 @@ impl Plan<'_> {
         const ALIGNED: usize = 15;
         let sizes = self.sizes();
         let own = size_of::<Plan<'_>>() + size_of::<Monitor<'_>>() + size_of::<Window>();
-        let channel = size_of::<Seen>() + size_of::<Channel>();
+        let channel = size_of::<ChannelState>() + size_of::<Channel>();
         let output = size_of::<Strongest>() + 2 * size_of::<Outcome>();
         let motor = size_of::<Motor>() + size_of::<Range>() + size_of::<f64>();
         let frame = 4 * size_of::<usize>() + 16 * ALIGNED;
@@ -125,7 +125,7 @@ pub struct Storage<
     strongest: [Strongest; OUTPUTS],
     outcomes: [Outcome; OUTPUTS],
     own: [Outcome; OUTPUTS],
-    seen: [Seen; CHANNELS],
+    seen: [ChannelState; CHANNELS],
     risks: Window,
     motors: [Motor; MOTORS],
 }
@@ -150,7 +150,7 @@ impl<
             strongest: [Strongest::NONE; OUTPUTS],
             outcomes: [Outcome::UNDEFINED; OUTPUTS],
             own: [Outcome::UNDEFINED; OUTPUTS],
-            seen: [const { Seen::IDLE }; CHANNELS],
+            seen: [const { ChannelState::IDLE }; CHANNELS],
             risks: Window::IDLE,
             motors: [Motor::IDLE; MOTORS],
         }
@@ -160,7 +160,7 @@ impl<
     ///
     /// # Errors
     /// As [`Monitor::new`].
-    pub fn monitor<'a>(&'a mut self, plan: &'a Plan<'a>) -> Result<Monitor<'a>, Refused> {
+    pub fn monitor<'a>(&'a mut self, plan: &'a Plan<'a>) -> Result<Monitor<'a>, SetupError> {
         Monitor::new(plan, lent!(self))
     }
 }
@@ -174,7 +174,7 @@ pub struct OwnedMemory {
     strongest: Vec<Strongest>,
     outcomes: Vec<Outcome>,
     own: Vec<Outcome>,
-    seen: Vec<Seen>,
+    seen: Vec<ChannelState>,
     risks: Window,
     motors: Vec<Motor>,
 }
@@ -190,7 +190,7 @@ impl OwnedMemory {
             strongest: vec![Strongest::NONE; sizes.outputs],
             outcomes: vec![Outcome::UNDEFINED; sizes.outputs],
             own: vec![Outcome::UNDEFINED; sizes.outputs],
-            seen: vec![Seen::IDLE; sizes.channels],
+            seen: vec![ChannelState::IDLE; sizes.channels],
             risks: Window::IDLE,
             motors: vec![Motor::UNKNOWN; motors],
         }
@@ -200,7 +200,7 @@ impl OwnedMemory {
     ///
     /// # Errors
     /// As [`Monitor::new`].
-    pub fn monitor<'a>(&'a mut self, plan: &'a Plan<'a>) -> Result<Monitor<'a>, Refused> {
+    pub fn monitor<'a>(&'a mut self, plan: &'a Plan<'a>) -> Result<Monitor<'a>, SetupError> {
         Monitor::new(plan, lent!(self))
     }
 }

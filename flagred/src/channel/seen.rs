@@ -11,7 +11,7 @@ use crate::{
 
 /// The observations of one channel.
 #[derive(Debug, Clone)]
-pub struct Seen {
+pub struct ChannelState {
     window: Window,
     /// Used instead of the window if the channel is exponential.
     exponential: Exponential,
@@ -66,9 +66,9 @@ impl Bin {
     }
 }
 
-impl Seen {
+impl ChannelState {
     /// Memory for the observations of a channel, all zeros; see [`Window::IDLE`].
-    pub const IDLE: Seen = Seen {
+    pub const IDLE: ChannelState = ChannelState {
         window: Window::IDLE,
         exponential: Exponential::IDLE,
         last: None,
@@ -125,7 +125,7 @@ impl Seen {
 }
 
 /// Resets all channels, whatever the memory contained.
-pub(crate) fn restart(channels: &[Channel], seen: &mut [Seen]) {
+pub(crate) fn restart(channels: &[Channel], seen: &mut [ChannelState]) {
     for (channel, seen) in channels.iter().zip(seen) {
         seen.restart(channel.window_s);
     }
@@ -148,7 +148,11 @@ impl Now<'_> {
 }
 
 /// Records which signals of inputs with a value for missing signals are known, in the air and on the ground.
-pub(crate) fn note((channels, inputs): (&[Channel], &[Input]), seen: &mut [Seen], named: &[f64]) {
+pub(crate) fn note(
+    (channels, inputs): (&[Channel], &[Input]),
+    seen: &mut [ChannelState],
+    named: &[f64],
+) {
     for input in inputs.iter().filter(|input| input.if_missing.is_some()) {
         let place = input.channel;
         if let (Some(channel), Some(seen)) = (channels.get(place), seen.get_mut(place)) {
@@ -159,7 +163,7 @@ pub(crate) fn note((channels, inputs): (&[Channel], &[Input]), seen: &mut [Seen]
 }
 
 /// The value to assume for an input, if it has one and its signals have not been known yet.
-pub(crate) fn assumed(inputs: &[Input], seen: &[Seen], input: usize) -> Option<f64> {
+pub(crate) fn assumed(inputs: &[Input], seen: &[ChannelState], input: usize) -> Option<f64> {
     let Input {
         channel,
         if_missing,
@@ -171,7 +175,7 @@ pub(crate) fn assumed(inputs: &[Input], seen: &[Seen], input: usize) -> Option<f
 /// Adds a sample at `t_s`, which applies to the `held_s` seconds before, to all channels.
 pub(crate) fn push(
     channels: &[Channel],
-    seen: &mut [Seen],
+    seen: &mut [ChannelState],
     (t_s, held_s): (f64, f64),
     observed: &Now<'_>,
 ) {
@@ -207,13 +211,13 @@ pub(crate) fn push(
 /// The statistic of an input, and how much of its window is covered; `None` if nothing is known.
 pub(crate) fn value(
     (channels, inputs): (&[Channel], &[Input]),
-    seen: &[Seen],
+    seen: &[ChannelState],
     input: usize,
 ) -> Option<Observation> {
     let Input {
         channel, statistic, ..
     } = *inputs.get(input)?;
-    let Seen {
+    let ChannelState {
         window,
         exponential,
         last,

@@ -194,7 +194,7 @@ impl Reason {
                 "ArduPilot: set SRx_RC_CHAN of the port to 25; PX4: `mavlink stream -d PORT -s SERVO_OUTPUT_RAW_0 -r 25`; `flagred watch` without `--all` asks for them",
             ),
             Reason::LostInAir => {
-                Some("the log on board tells how the flight ended: `flagred assess`")
+                Some("the log on board shows how the flight ended: `flagred assess`")
             }
             Reason::SetBackInAir { .. } => Some(
                 "what came after is missing or uncertain: look for a restart of the autopilot, or for a damaged clock",

@@ -7,7 +7,7 @@ use fuzzy::{
 use super::*;
 use crate::{
     accumulator::AccumulatorSettings,
-    board::{OwnedMemory, Refused},
+    board::{OwnedMemory, SetupError},
     gap::GapSettings,
     profile::{ProfileInput, Sampling},
     source::{Motors, Signal, Source, Statistic},
@@ -477,7 +477,7 @@ fn a_profile_that_reads_no_motor_requires_no_motor() {
     );
     let plan = estimator.plan().unwrap();
     let refused = OwnedMemory::new(&plan, 0).monitor(&plan).map(|_| ());
-    assert_eq!(refused, Err(Refused::NoMotors));
+    assert_eq!(refused, Err(SetupError::NoMotors));
 }
 
 #[test]
@@ -522,7 +522,7 @@ fn a_motor_that_the_vehicle_lacks_is_reported_when_the_monitor_is_created() {
         let mut memory = OwnedMemory::new(&plan, motors);
         memory.monitor(&plan).map(|_| ())
     };
-    assert_eq!(on_board(4), Err(Refused::NoMotors));
+    assert_eq!(on_board(4), Err(SetupError::NoMotors));
     assert_eq!(on_board(5), Ok(()));
 }
 

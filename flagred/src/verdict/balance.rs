@@ -46,7 +46,7 @@ pub(super) struct Unbalanced {
 
 /// The results for one sample.
 #[derive(Default)]
-pub(super) struct Seen {
+pub(super) struct BalanceFindings {
     pub(super) weak: Option<Unbalanced>,
     pub(super) imbalance: Option<Unbalanced>,
 }
@@ -75,13 +75,13 @@ impl Balance {
         held_s: f64,
         limit: Limit,
         is_calm: bool,
-    ) -> Seen {
+    ) -> BalanceFindings {
         let limit = limit.value;
         let mean = motors.iter().map(|m| m.command).sum::<f64>() / motors.len() as f64;
         let load = self.load.known_after(LOAD_S);
         self.sinks = load.is_some_and(|load| mean < load / 2.0) && is_together(motors);
         if !mean.is_finite() {
-            return Seen::default();
+            return BalanceFindings::default();
         }
         self.load.add(mean, held_s, LOAD_S);
         for motor in motors.iter_mut() {
@@ -111,7 +111,7 @@ impl Balance {
                 .filter(|_| is_known)
                 .or_else(|| at_odds(motors, 2.0 * limit)),
         };
-        Seen { weak, imbalance }
+        BalanceFindings { weak, imbalance }
     }
 }
 

@@ -90,7 +90,7 @@ impl Notices {
         self.watches[1].push(t_s, Level::Warn, settings.reserve, reserve);
         let limit = settings.imbalance;
         let seen = limit.map(|limit| self.balance.push(motors, held_s, limit, is_calm));
-        let balance::Seen { weak, imbalance } = seen.unwrap_or_default();
+        let balance::BalanceFindings { weak, imbalance } = seen.unwrap_or_default();
         // A weak motor explains the imbalance.
         let imbalance = imbalance.filter(|_| self.watches[3].finding.is_none());
         self.watches[2].push(t_s, Level::Warn, limit, imbalance.map(Passed::of));

@@ -75,7 +75,7 @@ pub struct Followed {
 }
 
 /// State that is kept over a gap in the air: the trims, and the time since which an alarm is in doubt.
-type Kept = (Trims, Option<f64>);
+type AcrossGap = (Trims, Option<f64>);
 
 /// Follows flights with a profile and a rule set; `factors` are those of the motors, empty if they are unknown.
 pub fn follow(
@@ -89,7 +89,7 @@ pub fn follow(
     let mut troubles = Vec::new();
     let mut unbalanced = Vec::new();
     let mut air: Option<Air> = None;
-    let mut kept: Option<Kept> = None;
+    let mut kept: Option<AcrossGap> = None;
     let mut down_since_s = None;
     let mut before_s: Option<f64> = None;
     let mut lifted_s: Option<f64> = None;
@@ -231,7 +231,7 @@ struct OfAir {
 }
 
 impl Air {
-    fn new(take_off_s: f64, profile: &Profile, kept: Option<Kept>) -> Air {
+    fn new(take_off_s: f64, profile: &Profile, kept: Option<AcrossGap>) -> Air {
         let (trims, in_doubt_s) = kept.unwrap_or_default();
         Air {
             levels: Levels::new(),

@@ -20,7 +20,7 @@ pub struct Votes {
     pub(super) inputs: Vec<Input>,
     /// The common condition of all votes: inputs and terms.
     given: Vec<(usize, usize)>,
-    written: Vec<Written>,
+    written: Vec<FixedRule>,
     /// The peaks of the output's terms.
     pub(super) consequents: Vec<f64>,
 }
@@ -45,7 +45,7 @@ pub(super) struct Vote {
 
 /// A fixed rule.
 #[derive(Debug, Clone)]
-struct Written {
+struct FixedRule {
     condition: Vec<(usize, usize)>,
     consequent: usize,
     weight: f64,
@@ -147,7 +147,7 @@ impl Votes {
                 return Err(format!("no condition: {text}"));
             };
             if given.is_empty() {
-                votes.written.push(Written {
+                votes.written.push(FixedRule {
                     condition,
                     consequent,
                     weight,

@@ -9,12 +9,12 @@ use flagred_flightlog::mavlink::dialect::MavMessage;
 
 /// The messages of the other side.
 #[derive(Debug, Default)]
-pub struct Heard {
+pub struct Inbox {
     /// Its messages, each with its arrival time, system and component.
     pub messages: Vec<(Instant, u8, u8, MavMessage)>,
 }
 
-impl Heard {
+impl Inbox {
     /// The texts with their severity.
     pub fn texts(&self) -> Vec<(u8, String)> {
         let texts = self

@@ -390,7 +390,10 @@ fn an_ambiguous_geometry_is_refused_and_changes_nothing() {
     odd[0][2] = f64::NAN;
     with_monitor(&plan, known.len(), |monitor| {
         for wrong in [&alike, &odd, &known[1..].to_vec(), &vec![]] {
-            assert_eq!(monitor.set_geometry(wrong), Err(board::Refused::Geometry));
+            assert_eq!(
+                monitor.set_geometry(wrong),
+                Err(board::SetupError::Geometry)
+            );
         }
         let said = flight
             .iter()
@@ -408,10 +411,10 @@ fn a_storage_refuses_plans_of_other_sizes() {
     let mut storage = exported::flagred::Storage::<8>::new();
     assert!(storage.monitor(&exported::flagred::PLAN).is_ok());
     let other = storage.monitor(&exported::flagred_battery::PLAN);
-    assert_eq!(other.err(), Some(board::Refused::Memory));
+    assert_eq!(other.err(), Some(board::SetupError::Memory));
     let mut nothing = exported::flagred::Storage::<0>::new();
     let refused = nothing.monitor(&exported::flagred::PLAN);
-    assert_eq!(refused.err(), Some(board::Refused::NoMotors));
+    assert_eq!(refused.err(), Some(board::SetupError::NoMotors));
 }
 
 #[test]

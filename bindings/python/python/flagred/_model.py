@@ -20,7 +20,8 @@ Partition = Sequence[str] | Mapping[str, float]
 Steps = Mapping[str, float | None]
 Terms = Mapping[str, Mapping[str, Any]]
 
-_ENDINGS: dict[str, Literal["yaml", "fis", "fll", "fcl", "fml"]] = {
+_Format = Literal["yaml", "fis", "fll", "fcl", "fml", "rust", "c"]
+_ENDINGS: dict[str, _Format] = {
     ".yaml": "yaml",
     ".yml": "yaml",
     ".fis": "fis",
@@ -28,6 +29,9 @@ _ENDINGS: dict[str, Literal["yaml", "fis", "fll", "fcl", "fml"]] = {
     ".fcl": "fcl",
     ".fml": "fml",
     ".xml": "fml",
+    ".rs": "rust",
+    ".c": "c",
+    ".h": "c",
 }
 
 _EMPTY = "fuzzy: 1\nname: model\ninputs: {}\noutputs: {}\nrules: []\n"
@@ -239,7 +243,7 @@ class Model(RuleSet):
         return self._text()[0]
 
     def to_text(
-        self, format: Literal["yaml", "fis", "fll", "fcl", "fml"] = "yaml", *, lossy: bool = False
+        self, format: _Format = "yaml", *, lossy: bool = False
     ) -> str:
         """The rule set as text, as :meth:`save` writes it.
 
@@ -247,7 +251,7 @@ class Model(RuleSet):
         ----------
         format
             ``yaml``; ``fis`` for MATLAB and Octave; ``fll`` for fuzzylite; ``fcl`` for programs of IEC 61131-7; ``fml`` for
-            programs of IEEE 1855. ``flagred export`` of the command also writes C, Rust and Lua.
+            programs of IEEE 1855; ``rust`` and ``c`` for firmware. :meth:`Profile.to_code` also writes Lua.
         lossy
             Drop what the format cannot express, with a warning; results may differ.
 
@@ -283,7 +287,8 @@ class Model(RuleSet):
         Parameters
         ----------
         path
-            The file: ``.yaml``, ``.yml``, ``.fis``, ``.fll``, ``.fcl``, ``.fml`` or ``.xml``.
+            The file: ``.yaml``, ``.yml``, ``.fis``, ``.fll``, ``.fcl``, ``.fml``, ``.xml``, ``.rs``,
+            ``.c`` or ``.h``.
         lossy
             As for :meth:`to_text`.
 

@@ -95,7 +95,7 @@ impl Place<'_> {
         let means = |model: &fuzzy::Model| serde_json::to_value(model).ok();
         match read.is_some_and(|read| means(&read.model) == means(&wanted)) {
             true => Ok(edits),
-            false => Err("the number stands for others too, or is written in a way of its own; change it in the text".into()),
+            false => Err("the number is shared with other places or written in an unusual form; change it in the text".into()),
         }
     }
 }

@@ -42,7 +42,7 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
         let of_source = recipe(&input.source).filter(|_| input.ratio.is_none());
         let recipe = of_source.ok_or_else(|| {
             Failure::unreadable(format!(
-                "input `{}` cannot be told from a table of flights",
+                "input `{}` cannot be computed from a table of flights",
                 input.name
             ))
             .help("make its rows from flight logs")

@@ -14,7 +14,6 @@ use flagred::{
     estimator::Estimator,
     flight::Words,
     gap::FilledKnots,
-    plan::NoPlan,
     verdict::Measure,
 };
 use flagred_interchange::{Format, Losses};
@@ -97,23 +96,54 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         ));
     }
     let output = Files::reading(&loaded.files)?.output(&arguments.output, Replace::Yes)?;
-    let plan = loaded.estimator.plan().map_err(|error| {
-        let rules = &loaded.estimator.profile().rules;
-        Failure::unreadable(format!("rule set `{rules}`: {error}")).help(error.help())
-    })?;
-    let rules = &loaded.estimator.profile().rules;
-    let signals = loaded.estimator.profile().signals();
-    let words = FindingWords::of(&loaded.estimator);
-    let text = if arguments.rust {
-        rust::text(&plan, rules, &signals, &words)
-    } else if arguments.c {
-        c::text(&plan, rules, &signals, &words)
-    } else {
-        lua::text(&loaded.estimator, &plan)
-            .map_err(|refused| Failure::unreadable(refused.message).help(refused.help))?
+    let language = match (arguments.rust, arguments.c) {
+        (true, _) => Language::Rust,
+        (_, true) => Language::C,
+        _ => Language::Lua,
     };
-    output.write(&text)?;
+    output.write(&profile_code(&loaded.estimator, language)?)?;
     Ok(Exit::Clean)
+}
+
+/// The language of exported code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Language {
+    /// Constants for the crate `flagred` or `flagred-fuzzy`.
+    Rust,
+    /// Constants for `flagred.h`.
+    C,
+    /// A script for ArduPilot.
+    Lua,
+}
+
+/// Returns a profile and its rule set as code.
+pub(crate) fn profile_code(estimator: &Estimator, language: Language) -> Result<String, Failure> {
+    let profile = estimator.profile();
+    let plan = estimator.plan().map_err(|error| {
+        Failure::unreadable(format!("rule set `{}`: {error}", profile.rules)).help(error.help())
+    })?;
+    let signals = profile.signals();
+    let words = FindingWords::of(estimator);
+    match language {
+        Language::Rust => Ok(rust::text(&plan, &profile.rules, &signals, &words)),
+        Language::C => Ok(c::text(&plan, &profile.rules, &signals, &words)),
+        Language::Lua => lua::text(estimator, &plan)
+            .map_err(|refused| Failure::unreadable(refused.message).help(refused.help)),
+    }
+}
+
+/// As `flagred export` of a profile; the error has its help on a second line.
+pub fn export_profile(estimator: &Estimator, language: Language) -> Result<String, String> {
+    profile_code(estimator, language).map_err(|failure| failure.to_string())
+}
+
+/// As `flagred export` of a rule set, with the warnings; the error has its help on a second line.
+pub fn export_rules(
+    model: &fuzzy::Model,
+    language: Language,
+    lossy: bool,
+) -> Result<(String, Vec<String>), String> {
+    rules::code((model, &model.name), language, lossy).map_err(|failure| failure.to_string())
 }
 
 impl Arguments {
@@ -208,18 +238,6 @@ fn literals(words: &Words) -> [String; 4] {
         advice,
     } = words;
     [code, &brief.concat(), text, advice].map(|text| format!("{:?}", visible(text)))
-}
-
-/// Returns the exports of a profile in Rust and in C.
-pub(crate) fn texts(estimator: &Estimator) -> Result<[String; 2], NoPlan> {
-    let plan = estimator.plan()?;
-    let rules = &estimator.profile().rules;
-    let signals = estimator.profile().signals();
-    let words = FindingWords::of(estimator);
-    Ok([
-        rust::text(&plan, rules, &signals, &words),
-        c::text(&plan, rules, &signals, &words),
-    ])
 }
 
 /// The comment above the data.

@@ -14,9 +14,8 @@ use fuzzy::{
     model::{Model, Variable},
 };
 
-use super::{Arguments, bytes_of_rules, c, harmless, rust};
+use super::{Arguments, Language, bytes_of_rules, c, harmless, rust};
 use crate::{
-    diagnostics::refuse,
     failure::{Exit, Failure},
     output::{Files, Replace, say},
     rule_set,
@@ -28,42 +27,66 @@ const MOST_STACK_BYTES: usize = 1 << 20;
 /// Writes a rule set in Rust or C.
 pub(super) fn export(arguments: &Arguments, source: &Source) -> Result<Exit, Failure> {
     let file = &arguments.file;
-    let mut model = rule_set::engine(source, file)?.model().clone();
+    let model = rule_set::engine(source, file)?.model();
+    let output = Files::reading([Path::new(file)])?.output(&arguments.output, Replace::Yes)?;
+    let language = match arguments.rust {
+        true => Language::Rust,
+        false => Language::C,
+    };
+    let (text, warnings) = code((model, file), language, arguments.lossy)?;
+    for warning in warnings {
+        say(&format!("warning: {warning}"));
+    }
+    output.write(&text)?;
+    Ok(Exit::Clean)
+}
+
+/// Returns a rule set as code, with warnings about what was dropped. `name` is the rule set in messages.
+pub(super) fn code(
+    (model, name): (&Model, &str),
+    language: Language,
+    lossy: bool,
+) -> Result<(String, Vec<String>), Failure> {
+    let mut model = model.clone();
+    let mut warnings = Vec::new();
     for output in &mut model.outputs {
-        if let Some(sampling) = output.samples.take_if(|_| arguments.lossy) {
-            say(&format!(
-                "warning: output `{}` is exact, and not of {} samples",
+        if let Some(sampling) = output.samples.take_if(|_| lossy) {
+            warnings.push(format!(
+                "output `{}` is exact, and not of {} samples",
                 output.variable.name, sampling.samples
             ));
         }
     }
-    let engine = Engine::new(&model).map_err(|findings| refuse(&findings, file, source.text()))?;
+    let engine = Engine::new(&model)
+        .map_err(|findings| Failure::unusable(format!("`{name}`"), &findings))?;
     let model = &model;
-    let output = Files::reading([Path::new(file)])?.output(&arguments.output, Replace::Yes)?;
     let rules = plan::rules(&engine).map_err(|refused| {
         let sampled = model.outputs.iter().any(|output| output.samples.is_some());
         let help = match sampled {
             true => "`--lossy` leaves `samples` out: the value is exact then",
             false => refused.help(),
         };
-        Failure::unreadable(format!("`{file}`: {refused}")).help(help)
+        Failure::unreadable(format!("`{name}`: {refused}")).help(help)
     })?;
     let stack = stack_bytes(&rules);
-    if arguments.rust && stack > MOST_STACK_BYTES {
+    if language == Language::Rust && stack > MOST_STACK_BYTES {
         return Err(Failure::unreadable(format!(
-            "`{file}`: an evaluation takes {stack} bytes, which is too much for a stack"
+            "`{name}`: an evaluation takes {stack} bytes, which is too much for a stack"
         ))
         .help("in C the memory is lent"));
     }
-    let written = match arguments.rust {
-        true => rust::function(&rules, &heading(model, &rules, "--rust", stack)),
-        false => {
+    let text = match language {
+        Language::Rust => rust::function(&rules, &heading(model, &rules, "--rust", stack)),
+        Language::C => {
             let heading = heading(model, &rules, "--c", rules.bytes());
             c::rules(&rules, &model.name, &heading)
         }
+        Language::Lua => {
+            return Err(Failure::usage("a script for ArduPilot is a whole profile")
+                .help("export a profile as Lua; rule sets as Rust or C"));
+        }
     };
-    output.write(&written)?;
-    Ok(Exit::Clean)
+    Ok((text, warnings))
 }
 
 /// The comment above the data.

@@ -243,7 +243,7 @@ fn has_numbers(arguments: &Arguments, table: &Table) -> Result<(), Failure> {
     if table.len() == 0 || cells.any(|cell| matches!(cell, Cell::Number(_))) {
         return Ok(());
     }
-    let message = format!("`{}` holds no number", arguments.target);
+    let message = format!("`{}` contains no number", arguments.target);
     let first = column.first().map_or("", |column| table.text(0, *column));
     if first.starts_with(|c: char| c.is_ascii_digit()) {
         return Err(Failure::unreadable(message).help(Cell::problem(first.as_bytes())));

@@ -49,7 +49,7 @@ pub(super) fn words(
     left_out::rows(out, outcome.rows, &outcome.refused)?;
     writeln!(out, "columns     {} looked at", outcome.columns)?;
     for name in outcome.without_numbers.iter().take(SHOWN) {
-        writeln!(out, "            `{}` holds no number", visible(name))?;
+        writeln!(out, "            `{}` contains no number", visible(name))?;
     }
     let identified = &outcome.identified;
     let things = if arguments.clusters {
@@ -116,7 +116,7 @@ fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io
     if judged.without_value > 0 {
         writeln!(
             out,
-            "            {} rows without a value: no rule fires there; the mean stands for them",
+            "            {} rows without a value: no rule fires there; the mean is used instead",
             judged.without_value
         )?;
     }

@@ -204,7 +204,7 @@ fn monotone_help(outcome: &Outcome) -> Option<&'static str> {
     let holds = counterexamples(&outcome.claims, &model).is_ok_and(|found| found.is_empty());
     match (holds, outcome.learned.missing) {
         (true, _) => Some(
-            "the same rules hold it with `operators: {and: product, implication: product, aggregation: sum}`",
+            "the same rules satisfy it with `operators: {and: product, implication: product, aggregation: sum}`",
         ),
         (false, 0) => None,
         (false, _) => Some(

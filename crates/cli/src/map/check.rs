@@ -5,7 +5,7 @@ use std::{io::Write as _, path::Path};
 use flagred_authoring::slice::{Mapped, at};
 use fuzzy::drawing::{short, visible};
 
-use super::Evaluated;
+use super::MapSource;
 use crate::{
     failure::{Exit, Failure},
     output::Stdout,
@@ -24,7 +24,7 @@ struct Worst {
 }
 
 /// Compares each output for which the table has a column.
-pub(super) fn against(path: &Path, evaluated: &Evaluated) -> Result<Exit, Failure> {
+pub(super) fn against(path: &Path, evaluated: &MapSource) -> Result<Exit, Failure> {
     let table = Table::read(path, b',')?;
     let names: Vec<&str> = evaluated.engine.input_names().collect();
     let help = "`flagred map --csv` writes such a table";

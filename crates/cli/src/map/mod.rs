@@ -180,7 +180,7 @@ fn hold(text: &str) -> Result<(String, f64), String> {
 }
 
 /// A compiled rule set, with the filling of its gaps and the name of the filling's method.
-struct Evaluated {
+struct MapSource {
     engine: Engine,
     output: usize,
     filling: Option<(Filling, &'static str)>,
@@ -267,7 +267,7 @@ pub(crate) fn painted(cell: char, colour: Option<Colour>) -> String {
     }
 }
 
-fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
+fn evaluate(arguments: &Arguments) -> Result<MapSource, Failure> {
     let file = arguments.model.display().to_string();
     let built_in = built_in::profile_at(&arguments.model);
     let text = match built_in {
@@ -316,14 +316,14 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
             .map(|filling| (filling, method.name()))
             .map_err(|error| Failure::unreadable(format!("`{file}` cannot be mapped: {error}")))
     });
-    Ok(Evaluated {
+    Ok(MapSource {
         filling: filling.transpose()?,
         engine,
         output,
     })
 }
 
-impl Evaluated {
+impl MapSource {
     fn mapped(&self) -> Mapped<'_> {
         let filling = self.filling.as_ref();
         Mapped {

@@ -3,11 +3,11 @@
 use flagred_authoring::slice::at;
 use fuzzy::model::Variable;
 
-use super::{Evaluated, table};
+use super::{MapSource, table};
 use crate::failure::Failure;
 
 /// Returns a table of the output at this number of points.
-pub(super) fn table(evaluated: &Evaluated, points: u32) -> Result<String, Failure> {
+pub(super) fn table(evaluated: &MapSource, points: u32) -> Result<String, Failure> {
     let mapped = evaluated.mapped();
     let inputs = &evaluated.engine.model().inputs;
     let names = inputs.iter().map(|input| input.name.as_str());

@@ -3,7 +3,7 @@
 use flagred_authoring::slice::{self, POINTS};
 use fuzzy::drawing::{Axis, Scale, Slice, short};
 
-use super::{Arguments, AxisChoice, Evaluated};
+use super::{Arguments, AxisChoice, MapSource};
 use crate::failure::Failure;
 
 /// The chosen axes, each with the index of its input.
@@ -17,7 +17,7 @@ pub(super) struct Axes {
 }
 
 /// Determines the axes from the arguments.
-pub(super) fn axes(arguments: &Arguments, evaluated: &Evaluated) -> Result<Axes, Failure> {
+pub(super) fn axes(arguments: &Arguments, evaluated: &MapSource) -> Result<Axes, Failure> {
     let model = evaluated.engine.model();
     let unknown = |name: &str| {
         let inputs = model.inputs.iter().map(|input| input.name.as_str());
@@ -96,7 +96,7 @@ pub(super) fn axes(arguments: &Arguments, evaluated: &Evaluated) -> Result<Axes,
 /// Cuts the requested slice, and returns notes about choices that the arguments left open.
 pub(super) fn cut(
     arguments: &Arguments,
-    evaluated: &Evaluated,
+    evaluated: &MapSource,
 ) -> Result<(Slice, Vec<String>), Failure> {
     let model = evaluated.engine.model();
     let axes = axes(arguments, evaluated)?;

@@ -6,11 +6,11 @@ use fuzzy::{
     map::{DecisionMap, Grid},
 };
 
-use super::{Arguments, Evaluated, points_along};
+use super::{Arguments, MapSource, points_along};
 use crate::{failure::Failure, output};
 
 /// Returns every cell of the map over all inputs.
-pub(super) fn whole(arguments: &Arguments, evaluated: Evaluated) -> Result<String, Failure> {
+pub(super) fn whole(arguments: &Arguments, evaluated: MapSource) -> Result<String, Failure> {
     let points = match arguments.points {
         Some(points) => usize::from(points),
         None => points_along(evaluated.engine.model().inputs.len()),

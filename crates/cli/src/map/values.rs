@@ -3,7 +3,7 @@
 use flagred_authoring::slice::Mapped;
 use fuzzy::drawing::{map_text, values_text, visible};
 
-use super::{Arguments, Evaluated, painted, slice};
+use super::{Arguments, MapSource, painted, slice};
 use crate::{failure::Failure, output};
 
 /// Maximum number of slices: nobody would read more.
@@ -11,7 +11,7 @@ const MOST_SLICES: usize = 100;
 
 /// Returns the picture and the values of a map of one or two inputs. With more inputs, it returns the values of a slice at every
 /// combination of the peaks of the inputs that are not axes.
-pub(super) fn text(arguments: &Arguments, evaluated: &Evaluated) -> Result<String, Failure> {
+pub(super) fn text(arguments: &Arguments, evaluated: &MapSource) -> Result<String, Failure> {
     let axes = slice::axes(arguments, evaluated)?;
     let mapped = evaluated.mapped();
     let others = others(&mapped, &axes);

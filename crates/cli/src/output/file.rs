@@ -55,12 +55,12 @@ enum Identity {
 /// The files that a call reads and writes.
 #[derive(Default)]
 pub(crate) struct Files {
-    known: Vec<Known>,
+    known: Vec<ClaimedFile>,
     /// Whether an output is `-`.
     stdout_is_taken: bool,
 }
 
-struct Known {
+struct ClaimedFile {
     identity: Identity,
     /// The name of the file for messages.
     shown: String,
@@ -86,7 +86,7 @@ impl Files {
                     .ok()
                     .and_then(|metadata| identity(input, &metadata)),
             };
-            files.known.extend(identity.map(|identity| Known {
+            files.known.extend(identity.map(|identity| ClaimedFile {
                 identity,
                 shown: format!("`{}`", input.display()),
                 role: "read",
@@ -157,7 +157,7 @@ impl Files {
 
     fn claim(&mut self, identity: Identity, shown: String) -> Result<(), Failure> {
         if let Some(other) = self.known.iter().find(|known| known.identity == identity) {
-            let Known {
+            let ClaimedFile {
                 shown: other, role, ..
             } = other;
             let message = match shown == *other {
@@ -168,7 +168,7 @@ impl Files {
             };
             return Err(Failure::usage(message).help("name another file to write"));
         }
-        self.known.push(Known {
+        self.known.push(ClaimedFile {
             identity,
             shown,
             role: "written",

@@ -44,7 +44,7 @@ fn built_in(packed: &[u8]) -> Result<Page, Failure> {
     let unpacked = GzDecoder::new(packed).read_to_string(&mut html);
     unpacked.ok().and_then(|_| page(html)).ok_or_else(|| {
         Failure::usage("this `flagred` was built without the page of the studio").help(
-            "released programs have it; `web/build` makes it, and what is built next holds it",
+            "released programs have it; in a clone, run `web/build` and build the program again",
         )
     })
 }

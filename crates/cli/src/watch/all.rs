@@ -84,7 +84,7 @@ pub(super) fn run(
     }
     drop(sender);
     let printer = Printer::new(if face == Face::Screen { FRAMES } else { LINES });
-    let mut shown = Shown {
+    let mut shown = LiveOutput {
         face,
         printer,
         endpoints,
@@ -153,7 +153,7 @@ fn listen(
 fn follow<'e>(
     receiver: &Receiver<(usize, LinkItem)>,
     fleet: &mut Fleet<'e>,
-    shown: &mut Shown<'e>,
+    shown: &mut LiveOutput<'e>,
     start: Instant,
     stop: &AtomicBool,
 ) {
@@ -188,14 +188,14 @@ fn follow<'e>(
 }
 
 /// Prints events in the chosen form.
-struct Shown<'e> {
+struct LiveOutput<'e> {
     face: Face,
     printer: Printer,
     endpoints: &'e [Endpoint],
     estimator: &'e Estimator,
 }
 
-impl<'e> Shown<'e> {
+impl<'e> LiveOutput<'e> {
     fn start(&mut self, names: &[String]) {
         let profile = &self.estimator.profile().name;
         let text = match self.face {
@@ -358,7 +358,7 @@ impl<'e> Shown<'e> {
 }
 
 /// Restores the terminal, however the watch ends.
-impl Drop for Shown<'_> {
+impl Drop for LiveOutput<'_> {
     fn drop(&mut self) {
         if self.face == Face::Screen {
             self.printer.print(screen::LEAVE.to_owned());
@@ -399,7 +399,7 @@ mod tests {
             &[&calm[..], &[(2, true, AT_LIMITS), on_the_ground]].concat(),
         );
         let endpoints = ["udpin:0.0.0.0:14550".parse().unwrap()];
-        let shown = Shown {
+        let shown = LiveOutput {
             face: Face::Screen,
             printer: Printer::new(1),
             endpoints: &endpoints,

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::{
     lines::teller,
-    session::{Doubts, End, Event, Flown, Left, Lost, Session},
+    session::{Doubts, End, Event, FlightSummary, Lost, Session, StopReason},
 };
 use flagred_report::document::FindingDocument;
 
@@ -57,7 +57,7 @@ pub(crate) enum EventLine<'a> {
         #[serde(flatten)]
         flown: FlownLine<'a>,
         /// Why it is not followed.
-        why: Left,
+        why: StopReason,
     },
     /// The watch ended.
     Ended {
@@ -131,7 +131,7 @@ pub(crate) struct FlownLine<'a> {
 }
 
 impl<'a> FlownLine<'a> {
-    fn new(flown: &'a Flown) -> Self {
+    fn new(flown: &'a FlightSummary) -> Self {
         FlownLine {
             t_s: flown.t_s,
             verdict: &flown.verdict,
@@ -254,7 +254,7 @@ pub(crate) fn line<'a>(
                 flown: FlownLine::new(flown),
                 why: *why,
             },
-            End::Left(why) => EventLine::LeftInAir {
+            End::LeftInAir(why) => EventLine::LeftInAir {
                 flown: FlownLine::new(flown),
                 why: *why,
             },

@@ -9,7 +9,9 @@ use flagred_flightlog::{Vehicle, mavlink::Setup};
 
 use fuzzy::drawing::visible;
 
-use super::session::{Doubt, End, Event, Flown, Left, Lost, Session, Silent, Source, View};
+use super::session::{
+    Doubt, End, Event, FlightSummary, Lost, Session, Silent, Source, StopReason, View,
+};
 use flagred_report::{finding::Teller, words::effective_range};
 
 /// Seconds of the vehicle's clock between two lines with the risk.
@@ -56,7 +58,7 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
     match event {
         Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),
         Event::Locked { system, address } => format!(
-            "motor commands of vehicle {system} come{}: it is believed, and nobody else in its name",
+            "motor commands of vehicle {system} come{}: it is followed, other senders with its number are ignored",
             from(*address)
         ),
         Event::GivenUp { system } => {
@@ -73,11 +75,11 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             address,
         } => match what {
             Doubt::SecondSender => format!(
-                "something else{} speaks as vehicle {system}: it is not believed",
+                "something else{} sends as vehicle {system}: it is ignored",
                 from(*address)
             ),
             Doubt::OtherComponent => format!(
-                "component {component} of vehicle {system} sends parameters: they are not taken for those of the autopilot"
+                "component {component} of vehicle {system} sends parameters: they are not used as parameters of the autopilot"
             ),
             Doubt::ClockJump => format!(
                 "a time stamp of vehicle {system} jumps while its clock goes on: it is left out"
@@ -166,15 +168,17 @@ fn another_watch(component: Option<u8>, speaks: bool) -> String {
         false => "; `--send-anyway` sends both",
         true => "",
     };
-    format!("{what}: this watch says {so}{help}")
+    format!("{what}: this watch sends {so}{help}")
 }
 
-fn over(end: End, flown: &Flown) -> String {
+fn over(end: End, flown: &FlightSummary) -> String {
     let mut text = match end {
         End::Landed => format!("{}: the flight is over", flown.verdict),
         End::Lost(lost) => format!("{}: LOST IN THE AIR, {}", flown.verdict, cause_of(lost)),
-        End::Left(Left::WatchEnded) => format!("{}: the watch ends in the air", flown.verdict),
-        End::Left(Left::SetUpAnew) => format!(
+        End::LeftInAir(StopReason::WatchEnded) => {
+            format!("{}: the watch ends in the air", flown.verdict)
+        }
+        End::LeftInAir(StopReason::SetUpAnew) => format!(
             "{}: the flight so far; motors or limits became known late, the rest is assessed as a flight of its own",
             flown.verdict
         ),

@@ -374,7 +374,7 @@ impl Display {
             (
                 told.signed,
                 now.signed,
-                "signed packets are left out: without the key (`--key`) nobody can tell whether they are genuine",
+                "signed packets are left out: without the key (`--key`) they cannot be verified",
             ),
             (
                 told.unsigned,

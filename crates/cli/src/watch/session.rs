@@ -21,7 +21,7 @@ mod tracked;
 mod trust;
 
 use super::voice;
-pub(crate) use event::{End, Event, Flown, Left, Lost, Silent};
+pub(crate) use event::{End, Event, FlightSummary, Lost, Silent, StopReason};
 use flagred_report::finding::numbered;
 use history::Received;
 use speech::Speech;

@@ -135,7 +135,7 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
 /// its words. Without a finding, the alarm is still on because the motors have changed since it was raised.
 pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Words)>) -> String {
     if level > Level::Good && finding.is_none() {
-        return format!("{PREFIX}{level} stands: motors not as before");
+        return format!("{PREFIX}{level} stays: motors not as before");
     }
     let elevated = || ("elevated", update.elevated_risk_pct);
     let risk = || ("risk", update.risk.ok().map(|estimate| estimate.risk_pct));

@@ -11,7 +11,7 @@ use crate::{
     alarms::Verdicts,
     bootstrap::Interval,
     flight::Record,
-    scores::{APART, Evaluated, Scores},
+    scores::{APART, ProfileScores, Scores},
 };
 use profiles::{alarms, reliability, warnings};
 
@@ -83,7 +83,9 @@ pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
         let vehicles = first.by_vehicle.len();
         let share = percent(evaluation.critical, cases, 2);
         return vec![format!(
-            "{cases} flights of {vehicles} vehicles, {share} of them critical"
+            "{} of {}, {share} of them critical",
+            count(cases, "flight"),
+            count(vehicles, "vehicle")
         )];
     };
     let main = || evaluation.records.iter().filter(|r| r.kind != APART);
@@ -91,7 +93,12 @@ pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
     let vehicles = named.len();
     let hours = main().map(Record::air_s).sum::<f64>() / 3600.0;
     let mut lines = vec![
-        format!("{flights} flights of {vehicles} vehicles, {hours:.2} h in the air, {cases} steps"),
+        format!(
+            "{} of {}, {hours:.2} h in the air, {}",
+            count(flights, "flight"),
+            count(vehicles, "vehicle"),
+            count(cases, "step")
+        ),
         format!(
             "critical within {horizon_s} s: {} of all steps, {} of {} quiet ones (5 s without a critical error), {} of {} after 10 s of quiet",
             percent(evaluation.critical, cases, 2),
@@ -142,7 +149,7 @@ fn areas(evaluation: &Evaluation) -> Table {
         false => note,
     };
     columns.extend([column("PR area", 20), column("unknown", 0)]);
-    let row = |(name, estimator): (String, &Evaluated)| {
+    let row = |(name, estimator): (String, &ProfileScores)| {
         let all = &estimator.all;
         let roc = |scores: &Scores| {
             let interval = scores.intervals.map(|i| i.roc);
@@ -183,7 +190,7 @@ fn areas(evaluation: &Evaluation) -> Table {
 fn by(
     title: &str,
     evaluation: &Evaluation,
-    groups: fn(&Evaluated) -> &Vec<(String, Scores)>,
+    groups: fn(&ProfileScores) -> &Vec<(String, Scores)>,
 ) -> Option<Table> {
     let first = groups(evaluation.estimators.first()?);
     if first.len() < 2 {
@@ -252,6 +259,12 @@ fn verdicts(evaluation: &Evaluation) -> Option<Table> {
         rows: rows.collect(),
         notes: Vec::new(),
     })
+}
+
+/// A number of things, such as `1 flight` or `2 flights`.
+fn count(number: usize, thing: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} {thing}{plural}")
 }
 
 fn percent(part: usize, whole: usize, digits: usize) -> String {

@@ -3,7 +3,7 @@
 use super::{Table, column, number, percent, seen};
 use crate::{
     alarms::{Alarms, Figure, Needless, Upsets},
-    scores::Evaluated,
+    scores::ProfileScores,
     warnings::Warnings,
 };
 
@@ -102,7 +102,7 @@ fn needless(name: String, of: &Needless) -> Vec<String> {
 
 /// The quality of the warnings of a profile.
 pub(super) fn warnings(
-    profile: &Evaluated,
+    profile: &ProfileScores,
     all: &Warnings,
     by_kind: &[(String, Warnings)],
 ) -> Table {
@@ -152,7 +152,7 @@ fn warned(kind: String, of: &Warnings) -> Vec<String> {
 }
 
 /// How often cases with a risk were critical; `None` for scores that are not risks.
-pub(super) fn reliability(estimator: &Evaluated) -> Option<Table> {
+pub(super) fn reliability(estimator: &ProfileScores) -> Option<Table> {
     let bands = estimator.reliability.as_ref()?.iter();
     let rows = bands.map(|band| {
         let share = match band.predictions {

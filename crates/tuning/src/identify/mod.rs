@@ -224,10 +224,10 @@ struct Search<'a> {
 }
 
 /// A step: the changed input, its number of terms, and the error after it.
-type Taken = (usize, usize, f64);
+type SearchStep = (usize, usize, f64);
 
 impl Search<'_> {
-    fn run(&self) -> (Structure, Vec<Taken>) {
+    fn run(&self) -> (Structure, Vec<SearchStep>) {
         let mut best = Structure::Grid(Vec::new());
         let mut error = self.error(&best);
         let least_of_all = LEAST_GAIN_OF_ALL * error;

@@ -104,7 +104,7 @@ fn an_unknown_name_and_no_free_parameter_are_errors() {
     };
     assert_eq!(
         of(&["haet"], &[]).to_string(),
-        "the model has no variable and no term `haet`"
+        "the rule set has no variable and no term `haet`"
     );
     assert_eq!(of(&["heat"], &["heat"]), TuneError::NothingMoves);
 }

@@ -6,7 +6,7 @@ use flagred::{
     estimator::Estimator,
 };
 
-use super::{Refused, comment, limits::Size, number, observed::Script, template::Filling};
+use super::{Unsupported, comment, limits::Size, number, observed::Script, template::Filling};
 
 /// The signals that a script can read, by their names in logs.
 const SIGNALS: [(&str, &str); 4] = [
@@ -46,7 +46,7 @@ pub(super) fn fill(
     plan: &Plan<'_>,
     filling: &mut Filling,
     size: &mut Size,
-) -> Result<(), Refused> {
+) -> Result<(), Unsupported> {
     let names = estimator.profile().inputs.iter();
     let names: Vec<String> = names.map(|input| comment(&input.name)).collect();
     let signals = signals(&estimator.profile().signals())?;
@@ -203,25 +203,25 @@ fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
 }
 
 /// Refuses statistics that would visit all slots of a window at every call, which takes too long, and statistics that the script lacks.
-fn carried(channel: &Channel, statistic: Statistic) -> Result<(), Refused> {
+fn carried(channel: &Channel, statistic: Statistic) -> Result<(), Unsupported> {
     let what = match statistic {
         Statistic::Rate => "the statistic `rate`",
         Statistic::Percentile(_) => "the statistics `median` and `percentile`",
         _ if channel.exponential => "windows with a `time_constant_s`",
         _ => return Ok(()),
     };
-    Err(Refused::new(
+    Err(Unsupported::new(
         format!("a script on the autopilot cannot compute {what}"),
         "`export --rust` and `export --c` carry them",
     ))
 }
 
 /// Returns the expression that reads each signal of a profile.
-fn signals(names: &[&str]) -> Result<Vec<&'static str>, Refused> {
+fn signals(names: &[&str]) -> Result<Vec<&'static str>, Unsupported> {
     let read = |name: &&str| {
         let known = SIGNALS.iter().find(|(known, _)| known == name);
         known.map(|(_, read)| *read).ok_or_else(|| {
-            Refused::new(
+            Unsupported::new(
                 format!("a script on the autopilot cannot read the signal `{name}`"),
                 "it can read battery_v, battery_a, battery_used_mah and battery_remaining_pct, and all signals of the motors",
             )

@@ -64,21 +64,21 @@ const SCRIPT: [(&str, &str); 13] = [
 ];
 
 /// Why a profile cannot be exported as a script, with advice.
-pub(super) struct Refused {
+pub(super) struct Unsupported {
     pub(super) message: String,
     pub(super) help: &'static str,
 }
 
-impl Refused {
+impl Unsupported {
     fn new(message: String, help: &'static str) -> Self {
-        Refused { message, help }
+        Unsupported { message, help }
     }
 }
 
 /// Returns the script.
-pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Refused> {
+pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Unsupported> {
     if !plan.rules.stages.is_empty() {
-        return Err(Refused::new(
+        return Err(Unsupported::new(
             "a script on the autopilot cannot evaluate outputs that read other outputs".into(),
             "write rules whose conditions name inputs only; `export --rust` and `export --c` carry chains",
         ));

@@ -15,7 +15,7 @@ use fuzzy::{
     rule::{Condition, Hedge, Proposition},
 };
 
-use super::{Refused, comment, limits::Size, number, quoted, template::Filling};
+use super::{Unsupported, comment, limits::Size, number, quoted, template::Filling};
 
 /// Fills in the template's parts for the rules.
 pub(super) fn fill(
@@ -23,7 +23,7 @@ pub(super) fn fill(
     plan: &Plan<'_>,
     filling: &mut Filling,
     size: &mut Size,
-) -> Result<(), Refused> {
+) -> Result<(), Unsupported> {
     let model = estimator.model();
     let output_name = &estimator.profile().output;
     let index = plan.output as usize;
@@ -34,7 +34,7 @@ pub(super) fn fill(
         return Ok(());
     };
     if !plan.rules.table.blocks.is_empty() {
-        return Err(Refused::new(
+        return Err(Unsupported::new(
             "the rule set has activation methods or blocks with different operators, which the script does not have".into(),
             "the script has rules that all fire, with one AND and one OR",
         ));
@@ -184,7 +184,7 @@ fn fill_gaps(plan: &Plan<'_>, filling: &mut Filling) {
 }
 
 /// The coefficients of the closed form of an output.
-fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused> {
+fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Unsupported> {
     let range = output.first as usize..output.end as usize;
     let strengths = output.end_strength - output.first_strength;
     // A partition has one more strength, which stays 0: the last term has no neighbour to its right.
@@ -228,14 +228,14 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused>
             lines.push("}".into());
         }
         ClosedForm::WeightedAverage | ClosedForm::WeightedSum => {
-            return Err(Refused::new(
+            return Err(Unsupported::new(
                 "the output is a Takagi-Sugeno one, which the script does not have".into(),
                 "the script has the centroid, with `implication: product` and `aggregation: sum` or over a `partition` with \
                  minimum and maximum",
             ));
         }
         _ => {
-            return Err(Refused::new(
+            return Err(Unsupported::new(
                 "the output has neither the centroid of a sum of products nor that of minimum and maximum over a partition, which \
                  are all the script has"
                     .into(),
@@ -294,7 +294,7 @@ struct Script<'m> {
 }
 
 impl Script<'_> {
-    fn condition(&mut self, condition: &Condition) -> Result<String, Refused> {
+    fn condition(&mut self, condition: &Condition) -> Result<String, Unsupported> {
         match condition {
             Condition::Is(proposition) => Ok(self.proposition(proposition)),
             Condition::Not(inner) => Ok(format!("(1 - {})", self.condition(inner)?)),
@@ -327,7 +327,7 @@ impl Script<'_> {
         }
     }
 
-    fn conditions(&mut self, parts: &[Condition]) -> Result<Vec<String>, Refused> {
+    fn conditions(&mut self, parts: &[Condition]) -> Result<Vec<String>, Unsupported> {
         parts.iter().map(|part| self.condition(part)).collect()
     }
 
@@ -406,11 +406,13 @@ impl Script<'_> {
     }
 }
 
-fn operator(operator: &str, known: &'static str) -> Refused {
+fn operator(operator: &str, known: &'static str) -> Unsupported {
     let message = format!("the script does not have the rule set's operator for {operator}");
     match known {
-        "minimum and product" => Refused::new(message, "it has `and: minimum` and `and: product`"),
-        _ => Refused::new(
+        "minimum and product" => {
+            Unsupported::new(message, "it has `and: minimum` and `and: product`")
+        }
+        _ => Unsupported::new(
             message,
             "it has `or: maximum`, `or: probabilistic_sum` and `or: bounded_sum`",
         ),
@@ -418,12 +420,12 @@ fn operator(operator: &str, known: &'static str) -> Refused {
 }
 
 /// Returns the corners of a term as numbers for the script.
-fn corners(variable: &Variable, term: usize) -> Result<Vec<String>, Refused> {
+fn corners(variable: &Variable, term: usize) -> Result<Vec<String>, Unsupported> {
     let Some(term) = variable.terms.get(term) else {
         return Ok(Vec::new());
     };
     let mut corners = term.membership_function.corners().ok_or_else(|| {
-        Refused::new(
+        Unsupported::new(
             format!(
                 "term `{}` of input `{}` is curved, which the script does not have",
                 term.name, variable.name

@@ -130,7 +130,7 @@ pub(crate) enum Event {
     Ended { finding: Finding },
     /// A flight is over, or what was seen of it. Its line is called after its end.
     #[serde(skip)]
-    Over { end: End, flown: Flown },
+    Over { end: End, flown: FlightSummary },
 }
 
 /// A vehicle in an event.
@@ -161,7 +161,7 @@ pub(crate) enum End {
     /// The vehicle was in the air when contact was lost.
     Lost(Lost),
     /// The vehicle is still in the air and is received.
-    Left(Left),
+    LeftInAir(StopReason),
 }
 
 /// What was lost in the air.
@@ -177,7 +177,7 @@ pub(crate) enum Lost {
 /// Why a flight is not followed to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Left {
+pub(crate) enum StopReason {
     /// The watch ended.
     WatchEnded,
     /// Motors or limits became known too late to assess the flight so far anew: the rest is a flight of its own.
@@ -186,7 +186,7 @@ pub(crate) enum Left {
 
 /// A flight, or the part of it that was received.
 #[derive(Debug, Clone)]
-pub(crate) struct Flown {
+pub(crate) struct FlightSummary {
     /// The latest time of the vehicle's clock.
     pub(crate) t_s: Option<f64>,
     pub(crate) verdict: Verdict,

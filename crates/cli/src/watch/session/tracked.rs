@@ -13,7 +13,7 @@ use flagred_flightlog::{
 use fuzzy::drawing::number;
 
 use super::{
-    End, Event, Flown, Left, Lost, Out, Silent, Source,
+    End, Event, FlightSummary, Lost, Out, Silent, Source, StopReason,
     history::{History, Received},
 };
 
@@ -264,7 +264,7 @@ impl Tracked {
         ready(&setup, &self.telemetry, out);
         let mut watch = Watch::new(setup, assessor, now_s);
         let Some(flown) = self.history.whole() else {
-            let verdict = self.end_flight(End::Left(Left::SetUpAnew), out);
+            let verdict = self.end_flight(End::LeftInAir(StopReason::SetUpAnew), out);
             self.watch = Some(watch);
             return verdict;
         };
@@ -320,7 +320,7 @@ impl Tracked {
             _ if self.link_lost => End::Lost(Lost::Link),
             false => End::Landed,
             true if commands_lost => End::Lost(Lost::MotorCommands),
-            true => End::Left(Left::WatchEnded),
+            true => End::LeftInAir(StopReason::WatchEnded),
         };
         self.end_flight(end, out)
     }
@@ -420,9 +420,9 @@ impl Watch {
         };
         let verdict = match end {
             End::Lost(_) => seen.verdict.lost_in_air(),
-            End::Landed | End::Left(_) => seen.verdict,
+            End::Landed | End::LeftInAir(_) => seen.verdict,
         };
-        let flown = Flown {
+        let flown = FlightSummary {
             t_s,
             verdict: verdict.clone(),
             level_seen,

@@ -3,7 +3,7 @@
 local lately, trims, shifts = {}, {}, {} -- of each motor
 at_zero = {} -- for how long each motor is at zero, in s
 local lately_s, trim_s, load, load_s = 0.0, 0.0, 0.0, 0.0
-local imbalance_us, weak_us -- for how long the limits have been passed
+local imbalance_us, weak_us -- for how long the limits have been exceeded
 imbalance, imbalance_words = nil, nil -- in %, and what it is
 unbalanced, or_unbalanced = nil, nil -- the motor that is named, and the one that it may be as well
 weak, weak_motor, or_weak = nil, nil, nil -- in %, and as above
@@ -41,8 +41,8 @@ local function two_highest(list)
   return first, second
 end
 
--- The motor to name, and the other one that it may be: the highest one, where it is alone up there; otherwise the one that stopped
--- first; otherwise the highest one.
+-- The motor to name, and the other one that it may be: the highest one if it is well above the others; otherwise the one that
+-- stopped first; otherwise the highest one.
 local function culprit(list)
   local first, second = two_highest(list)
   local ahead = second and list[first] - list[second] or huge

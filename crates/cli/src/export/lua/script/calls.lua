@@ -47,7 +47,7 @@ local function update()
     say(level, risk, false)
   end
 -- @if notices
-  -- What is raised where the level stands already is told, too.
+  -- A notice that is raised at the current level is reported, too.
   if raised and level == before and flown_us and not down_us then
     say(level, risk, true)
   end
@@ -79,7 +79,7 @@ function protected()
   return protected, 1000
 end
 
--- The first call, when the memory of the loader is free again. What calls take for a moment must be left.
+-- The first call, when the memory of the loader is free again. Memory for the temporary values of a call must remain.
 function begin()
   begin = nil
   if not pcall(rep, " ", RESERVE_BYTES) then

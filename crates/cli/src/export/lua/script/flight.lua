@@ -48,7 +48,7 @@ local function rests()
     idle, lifted_us = nil, 0
     return false
   end
-  -- An alarm that stands is judged by the rules.
+  -- While an alarm is raised, the rules decide.
   falls = (fell or risk_level == GOOD) and lifted_us ~= nil and lifted_us >= 3000000
   if not idle then
     local is_trouble = since_high_us and since_high_us <= 2000000
@@ -81,7 +81,7 @@ local function settle()
   end
 end
 
--- Takes in the time and the motors; gives the risk in %, nil where it is unknown.
+-- Processes the time and the motors; returns the risk in %, nil if it is unknown.
 function fly()
   has_moved = false
   clock_us = clock_us + held_us

@@ -71,7 +71,7 @@ local function raise(level, of_elevated, risk)
   is_open = true
 end
 
--- A level reached now; gives what holds it.
+-- A level that is reached now; returns what holds it.
 local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, after_us, until_risk, until_elevated)
   local reached, of_elevated = is_reached(risk, risk_limit, elevated_limit)
   reached = reached and can_raise

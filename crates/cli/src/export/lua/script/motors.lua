@@ -3,7 +3,7 @@
 clock_us = 0
 held_us, held_s = 0, 0.0 -- since the last call
 bin, bin_us = 0, 0 -- the bin of commands, and the time into it
-has_moved = false -- whether this call has done one of the longer works
+has_moved = false -- whether this call has done one of the longer steps
 
 function later(us, by_us)
   return us < LONG_US and us + by_us or us

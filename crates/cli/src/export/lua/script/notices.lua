@@ -1,4 +1,4 @@
--- What is told beside the risk, as WARN until the flight ends.
+-- Notices besides the risk, as WARN until the flight ends.
 
 raised = false -- whether something was raised in this call
 

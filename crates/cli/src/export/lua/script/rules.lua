@@ -40,7 +40,7 @@ end
 
 -- @put terms
 
--- The risk by the rules in %; nil where none fires.
+-- The risk of the rules in %; nil if none fires.
 local function by_rules(x)
   coverage = 0.0
   for term = 1, OUTPUT_TERMS do

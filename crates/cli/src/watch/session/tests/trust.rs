@@ -138,7 +138,7 @@ fn a_second_sender_is_reported_once_and_ignored_until_the_first_is_silent() {
         matches!(
             event,
             Event::Over {
-                end: End::Left(Left::WatchEnded),
+                end: End::LeftInAir(StopReason::WatchEnded),
                 ..
             }
         )
