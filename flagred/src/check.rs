@@ -65,6 +65,7 @@ pub fn profile(
         for other in estimator.others() {
             let place = ["other_risks", &other.profile().output];
             thresholds(other, &place, &at, &mut found);
+            found.extend(dropped(&profile, other.profile(), &place, &at));
         }
         for input in &profile.inputs {
             found.extend(signal(input, estimator.engine().model(), signals, &at));
@@ -192,6 +193,33 @@ fn compile(
     };
     found.push(Diagnostic::error(code, place, error.to_string()).help(help));
     None
+}
+
+/// Finds levels of another risk without a threshold for the elevated risk, although the same level of the first risk has
+/// one: what a written level leaves out does not apply.
+fn dropped(first: &Profile, other: &Profile, place: &[&str], at: &Places) -> Vec<Diagnostic> {
+    let levels = [
+        ("warn", &first.verdict.warn, &other.verdict.warn),
+        ("fail", &first.verdict.fail, &other.verdict.fail),
+    ];
+    let dropped = levels.into_iter().filter_map(|(name, first, other)| {
+        let threshold = first.raise.elevated_risk_pct?;
+        let is_dropped = other.raise.elevated_risk_pct.is_none();
+        is_dropped.then(|| {
+            let message = format!("`{name}` has no `elevated_risk`, unlike `{name}` in `verdict`");
+            let help = format!(
+                "a written level replaces the whole level: write `elevated_risk: {}`, too",
+                shown(threshold)
+            );
+            Diagnostic::warning(
+                "missing-threshold",
+                at.of(&[place, &[name]].concat()),
+                message,
+            )
+            .help(help)
+        })
+    });
+    dropped.collect()
 }
 
 /// Finds thresholds that are never or always reached, and WARN above FAIL.

@@ -33,6 +33,8 @@ pub use serialize::{NamedStep, Steps, VerdictWord};
 
 /// The share of the time in the air for which the risk must be known for a verdict of GOOD.
 const KNOWN_SHARE: f64 = 0.5;
+/// From this share of the time in the air on, a reason counts as one for the whole flight.
+const WHOLE_SHARE: f64 = 0.95;
 
 /// The number of findings that are kept of a flight, the most severe ones.
 const MOST_FINDINGS: usize = 1000;
@@ -473,12 +475,17 @@ impl Flight {
             (None, None) => {
                 let longest = self.unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1));
                 Verdict::NotAvailable(match longest {
-                    Some((unknown, _)) => Reason::RiskUnknown {
+                    Some((unknown, total_s)) => Reason::RiskUnknown {
                         unknown: *unknown,
                         explanation: match unknown {
                             Unknown::OnGround => {
                                 "the motors idle for most of the time in the air".into()
                             }
+                            _ if *total_s < WHOLE_SHARE * summary.in_air_s => format!(
+                                "{} for {:.0} % of the time in the air",
+                                unknown.explain(profile),
+                                100.0 * total_s / summary.in_air_s
+                            ),
                             _ => unknown.explain(profile),
                         },
                         help: None,

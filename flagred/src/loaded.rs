@@ -79,8 +79,8 @@ impl<E> LoadError<E> {
 /// Loads a profile, given by the name of a shipped profile or by a file, with its rule set. `read` returns the content
 /// of a file.
 ///
-/// The name of a shipped profile takes precedence over a file of that name (`./flagred` is the file). The rule set of a
-/// file is searched for next to it first, and then among the shipped ones. A profile may come from an untrusted source:
+/// The name of a shipped profile or rule set takes precedence over a file of that name (`./flagred` is the file). Other
+/// rule sets are files next to the profile. A profile may come from an untrusted source:
 /// its rule set must be in its folder, or in the folder that `FLAGRED_RULES` names, and messages do not quote a file
 /// that is not a rule set.
 ///
@@ -249,6 +249,10 @@ pub fn rules<E>(
     folder: Option<&Path>,
     read: impl Fn(&Path) -> Result<String, E>,
 ) -> Result<(String, String), LoadError<E>> {
+    let mut shipped = shipped::RULE_SETS.iter();
+    if let Some(known) = shipped.find(|known| known.name == profile.rules) {
+        return Ok((known.file.to_owned(), known.text.to_owned()));
+    }
     let beside = folder.map(|folder| folder.join(&profile.rules));
     if let Some(path) = beside.filter(|path| path.is_file()) {
         if !is_allowed(&path, folder) {
@@ -261,18 +265,14 @@ pub fn rules<E>(
         let text = read(&path).map_err(LoadError::Read)?;
         return Ok((path.display().to_string(), text));
     }
-    let shipped = shipped::RULE_SETS
-        .iter()
-        .find(|known| known.name == profile.rules);
-    shipped
-        .map(|known| (known.file.to_owned(), known.text.to_owned()))
-        .ok_or_else(|| {
-            LoadError::unusable(format!(
-                "profile `{}` names the rule set `{}`, which is neither a file beside it nor built in",
-                profile.name, profile.rules
-            ))
-            .help(format!("built in are {}; a path starts at the folder of the profile", built_in()))
-        })
+    Err(LoadError::unusable(format!(
+        "profile `{}` names the rule set `{}`, which is neither a file beside it nor built in",
+        profile.name, profile.rules
+    ))
+    .help(format!(
+        "built in are {}; a path starts at the folder of the profile",
+        built_in()
+    )))
 }
 
 /// The names of the built-in rule sets.

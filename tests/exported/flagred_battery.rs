@@ -50,8 +50,8 @@ pub static CAUSES: [::flagred::board::Words<'static>; 33] = [
 #[allow(dead_code)]
 #[rustfmt::skip]
 pub static NOTICES: [::flagred::board::Words<'static>; 8] = [
-    ::flagred::board::Words { code: "risk_interpolated", brief: "interpolated", text: "No rule applies to what the motors did, so the risk is interpolated between rules.", advice: "Reduce speed or land until the risk falls." },
-    ::flagred::board::Words { code: "risk_interpolated", brief: "interpolated", text: "No rule applies to what the motors did, so the risk is interpolated between rules.", advice: "Reduce speed or land until the risk falls." },
+    ::flagred::board::Words { code: "risk_interpolated", brief: "interpolated", text: "No rule applies to this moment, so the risk is interpolated between rules.", advice: "Reduce speed or land until the risk falls." },
+    ::flagred::board::Words { code: "risk_interpolated", brief: "interpolated", text: "No rule applies to this moment, so the risk is interpolated between rules.", advice: "Reduce speed or land until the risk falls." },
     ::flagred::board::Words { code: "command_noise", brief: "command noise {peak} %", text: "The motor commands are noisy, by {peak} % of their range: vibration, or gains that are too high.", advice: "This alone is not a danger. Check propellers, mounts and filters after the flight." },
     ::flagred::board::Words { code: "low_thrust_reserve", brief: "thrust reserve {peak} %", text: "The motors ran close to full thrust: on average only {peak} % of their range was left, less than {threshold} %. Gusts and climbs need that reserve.", advice: "Land soon. Fly with less payload or a fresh battery." },
     ::flagred::board::Words { code: "imbalance", brief: "imbalance {peak} %, {motor}", text: "The motors share the load differently from earlier in the flight, by {peak} % of their range. The motor to check is {motor}, {side} its earlier share.", advice: "Land and check {motor}, and whether the load has shifted." },

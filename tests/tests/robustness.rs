@@ -6,7 +6,7 @@ use flagred::{estimator::Estimator, shipped};
 use flagred_evaluation::{Prediction, Ranking};
 use flagred_tests::{
     reference_data,
-    simulated::{self, AS_FLOWN, Replay, Simulated, WatchOutput, on_all_cores},
+    simulated::{self, AS_FLOWN, ProfileRun, Replay, Simulated, on_all_cores},
 };
 
 fn estimator() -> Estimator {
@@ -111,7 +111,7 @@ fn coarse_logs_wrong_limits_and_faults() {
             near,
             unknown,
         } = compare(&flights, &as_flown, &said);
-        let warned = |said: &WatchOutput| !said.warnings.is_empty();
+        let warned = |said: &ProfileRun| !said.warnings.is_empty();
         let pairs = as_flown.iter().zip(&said);
         let same = pairs.filter(|(a, b)| warned(a) == warned(b)).count();
         println!(
@@ -159,7 +159,7 @@ struct Compared {
     unknown: f64,
 }
 
-fn compare(flights: &[Simulated], as_flown: &[WatchOutput], said: &[WatchOutput]) -> Compared {
+fn compare(flights: &[Simulated], as_flown: &[ProfileRun], said: &[ProfileRun]) -> Compared {
     let mut predictions = Vec::new();
     let (mut change, mut known, mut near, mut unknown) = (0.0, 0.0, 0.0, 0.0);
     for (i, flight) in flights
@@ -197,7 +197,7 @@ fn compare(flights: &[Simulated], as_flown: &[WatchOutput], said: &[WatchOutput]
 }
 
 /// The time from the fault of a flight to the first warning, by kind of fault.
-fn faults(flights: &[Simulated], said: &[WatchOutput]) {
+fn faults(flights: &[Simulated], said: &[ProfileRun]) {
     println!(
         "faults: seconds from the fault to the warning, `-` where none came before the end of the judged time"
     );

@@ -81,8 +81,8 @@ impl<'a> Teller<'a> {
         match (*count, worst.is_of_risk()) {
             (1, true) => format!("{}: {text}", span(worst)),
             (count, true) => format!("{count} times, worst {}: {text}", span(worst)),
-            (1, false) => format!("from {:.1} s: {text}", worst.raised_s),
-            (count, false) => format!("{count} times, worst from {:.1} s: {text}", worst.raised_s),
+            (1, false) => format!("from {:.1} s: {text}", worst.from_s),
+            (count, false) => format!("{count} times, worst from {:.1} s: {text}", worst.from_s),
         }
     }
 

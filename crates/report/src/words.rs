@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use anstyle::{AnsiColor, Style};
 use flagred::{
     estimator::Estimator,
-    flight::{Assessment, Peak, Summary, Verdict},
+    flight::{Assessment, Finding, Peak, Summary, Verdict},
     profile::{Followed, Profile},
     verdict::Level,
 };
@@ -72,6 +72,11 @@ pub fn write(
     }
     if assessed.summary.assessed_s > 0.0 {
         indented(out, &summary(&assessed.summary, verbose))?;
+        for risk in &estimator.profile().other_risks {
+            if let Some(text) = highest_of(&risk.output, &assessed.findings) {
+                indented(out, &text)?;
+            }
+        }
         if verbose && let Some(text) = reliability(&assessed.summary, estimator.profile()) {
             indented(out, &text)?;
         }
@@ -83,7 +88,9 @@ pub fn write(
     };
     if verbose {
         for finding in &assessed.findings {
-            line(out, finding.severity, &teller.finding(finding))?;
+            let code = teller.words(finding).code;
+            let text = format!("{} [{code}]", teller.finding(finding));
+            line(out, finding.severity, &text)?;
             indented(out, &teller.words(finding).advice)?;
             indented(out, &teller.details(finding))?;
         }
@@ -313,6 +320,21 @@ pub fn conversion(name: &str, flight: &Flight) -> Vec<String> {
     damage.into_iter().chain(left_out).collect()
 }
 
+/// The highest value of another risk in its findings; `None` without any.
+fn highest_of(output: &str, findings: &[Finding]) -> Option<String> {
+    let of_risk = findings
+        .iter()
+        .filter(|finding| finding.risk_output.as_deref() == Some(output));
+    let highest = of_risk.max_by(|a, b| a.value_pct.total_cmp(&b.value_pct))?;
+    Some(format!(
+        "{}: highest {:.0} % between {:.1} and {:.1} s",
+        visible(output),
+        highest.value_pct,
+        highest.from_s,
+        highest.to_s
+    ))
+}
+
 fn summary(summary: &Summary, verbose: bool) -> String {
     let at = |peak: Option<Peak>| {
         peak.map_or("unknown".to_owned(), |peak| {
@@ -320,13 +342,10 @@ fn summary(summary: &Summary, verbose: bool) -> String {
         })
     };
     let share = |part: f64| 100.0 * part / summary.in_air_s;
-    let mut text = format!(
-        "risk: mean {}, highest {}",
-        summary
-            .risk_mean_pct
-            .map_or("unknown".to_owned(), |mean| format!("{mean:.0} %")),
-        at(summary.risk_max),
-    );
+    let mut text = match summary.risk_mean_pct {
+        Some(mean) => format!("risk: mean {mean:.0} %, highest {}", at(summary.risk_max)),
+        None => "risk: not judged at any time of the flight".to_owned(),
+    };
     if verbose {
         text += &format!("; elevated risk: highest {}", at(summary.elevated_risk_max));
     }

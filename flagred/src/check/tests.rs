@@ -225,3 +225,29 @@ fn an_input_that_raises_no_level_alone_is_reported_as_outvoted() {
         ("battery_risk", Level::Fail, 100.0)
     );
 }
+
+#[test]
+fn a_level_of_another_risk_without_elevated_risk_is_reported() {
+    let rules = RULES.replace(
+        "rules:\n  - IF margin",
+        "  torn: {range: [0, 100], partition: [low, high]}\nrules:\n  - IF battery IS empty THEN torn IS high\n  - IF margin",
+    );
+    let warnings = |verdict: &str, other: &str| {
+        let profile = PROFILE.replace("{risk: 60, until: {risk: 30}}", verdict);
+        let text = format!("{profile}other_risks: {{torn: {other}}}\n");
+        let (findings, _) = fit(&text, &rules);
+        let mut shown: Vec<String> = findings.0.iter().map(|one| one.to_string()).collect();
+        shown.retain(|one| one.contains("missing-threshold"));
+        shown
+    };
+    let with = "{risk: 60, elevated_risk: 50}";
+    let found = warnings(with, "{warn: {risk: 61}}");
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(
+        found[0].contains("`warn` has no `elevated_risk`, unlike `warn` in `verdict`")
+            && found[0].contains("write `elevated_risk: 50`"),
+        "{found:?}"
+    );
+    assert_eq!(warnings(with, "{}"), [""; 0]);
+    assert_eq!(warnings("{risk: 60}", "{warn: {risk: 61}}"), [""; 0]);
+}

@@ -155,14 +155,7 @@ impl Words {
             Measure::Risk | Measure::ElevatedRisk => (
                 "risk_interpolated",
                 ["interpolated", ""],
-                match profile.reads_motors() {
-                    true => {
-                        "No rule applies to what the motors did, so the risk is interpolated between rules."
-                    }
-                    false => {
-                        "No rule applies to the inputs, so the risk is interpolated between rules."
-                    }
-                },
+                "No rule applies to this moment, so the risk is interpolated between rules.",
                 advice(profile),
             ),
             Measure::CommandNoise => (
