@@ -164,7 +164,7 @@ fn the_address_for_the_browser_works_once() {
     );
     let second = studio.send(&request);
     assert_eq!(second.status, 404);
-    assert!(second.body.contains("opened already"), "{}", second.body);
+    assert!(second.body.contains("already opened"), "{}", second.body);
 }
 
 /// Any user of the machine can connect and send single bytes slowly.
