@@ -328,7 +328,8 @@ fn words_of_other_programs_are_answered_with_ours() {
     }
     let shapes = crate::model::MembershipFunction::FORMS.iter();
     let known: Vec<&str> = [
-        shapes.map(|form| form.name).collect(),
+        shapes.clone().map(|form| form.name).collect(),
+        shapes.flat_map(|form| form.names()).collect(),
         words(&super::words::CONJUNCTIONS),
         words(&super::words::DISJUNCTIONS),
         words(&super::words::AGGREGATIONS),
@@ -337,7 +338,18 @@ fn words_of_other_programs_are_answered_with_ours() {
         crate::rule::Hedge::ALL
             .map(crate::rule::Hedge::word)
             .to_vec(),
-        Vec::from(["piecewise", "and", "or", "implication", "aggregation"]),
+        super::allow::KEYS.to_vec(),
+        super::provenance::KEYS.to_vec(),
+        Vec::from([
+            "piecewise",
+            "and",
+            "or",
+            "implication",
+            "aggregation",
+            "fuzzy",
+        ]),
+        // Profiles are read with the same table.
+        Vec::from(["flagred", "mean", "std", "if_missing"]),
     ]
     .concat();
     for (word, meanings) in crate::foreign::WORDS {
