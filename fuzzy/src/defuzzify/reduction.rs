@@ -17,7 +17,7 @@
 //! If the lower set is empty, the centroid of a narrow set anywhere inside the upper one is possible: the interval is the
 //! support of the upper set.
 
-use alloc::vec::Vec;
+use alloc::{boxed::Box, vec::Vec};
 
 use super::curves::Curves;
 use super::piece::{Integrals, Piece, unit};
@@ -34,7 +34,7 @@ const MOST_STEPS: usize = 250;
 #[derive(Debug, Clone)]
 pub(crate) enum Reduction {
     /// The centroid of a fuzzy set.
-    Set(Set),
+    Set(Box<Set>),
     /// The centroid of singletons.
     Singletons(Vec<Singleton>, Joint),
     /// Takagi-Sugeno: the weighted average of numbers.
@@ -109,13 +109,14 @@ impl Reduction {
             let terms: Vec<Term> = terms.iter().map(|term| term.only(bound)).collect();
             Curves::new(&terms, low, high)
         };
-        Reduction::Set(Set {
+        let set = Set {
             low,
             high,
             joint,
             lower: curves(Bound::Lower),
             upper: curves(Bound::Upper),
-        })
+        };
+        Reduction::Set(Box::new(set))
     }
 
     /// Returns the maximum number of cuts of an evaluation, not counting those of its activations.

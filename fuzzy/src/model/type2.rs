@@ -7,7 +7,7 @@ use crate::rule::{Condition, Hedge, Proposition};
 
 /// The lower membership function of an interval type-2 term.
 ///
-/// # Example: between `Some(lower degree)` and the upper degree, any degree is possible
+/// # Example: the degree of 27 lies between 0.5 and 0.7
 /// ```
 /// use fuzzy::model::{Lower, MembershipFunction, Term};
 ///
