@@ -26,10 +26,7 @@ use nom::{
 };
 
 use super::{DEEPEST_NESTING, Expression, Formula, LONGEST, Operation, Variable, code};
-use crate::{
-    diagnostic::{Diagnostic, suggest},
-    table::Hedge,
-};
+use crate::diagnostic::{Diagnostic, suggest};
 
 /// Functions of other programs, with the equivalent operations.
 const OTHER_NAMES: [(&str, Operation); 11] = [
@@ -374,6 +371,9 @@ fn quoted(rest: &str, quote: char) -> Step<'_, String> {
     wrong(rest, Wrong::Quote)
 }
 
+/// Hedges of rules, which a formula does not have.
+const HEDGES: [&str; 4] = ["very", "somewhat", "extremely", "seldom"];
+
 /// The suggestion for a choice between two values.
 const IF: &str =
     "a comparison is 1 or 0: for a if c is true, else b, write `(c) * a + (1 - (c)) * b`";
@@ -441,7 +441,7 @@ impl Mistake<'_> {
                         "write the right side only, or `==` to compare"
                     }
                     "?" | ":" => IF,
-                    _ if Hedge::ALL.iter().any(|hedge| Some(hedge.word()) == before) => {
+                    _ if before.is_some_and(|word| HEDGES.contains(&word)) => {
                         "a formula has no hedges: write one in a rule, `IF input IS very term`"
                     }
                     "=" | "===" => "write `==` to compare",
