@@ -9,11 +9,14 @@ use std::{
 use flagred_authoring::kind;
 use flagred_report::diagnostics::{self, Style};
 use fuzzy::{
-    diagnostic::{Diagnostic, Findings},
+    diagnostic::{Diagnostic, Findings, nearest},
     yaml::LARGEST_BYTES,
 };
 
-use crate::failure::{Failure, cannot_read};
+use crate::{
+    built_in,
+    failure::{Failure, cannot_read},
+};
 
 /// Draws findings with their source lines. `colored` text goes through `anstream`, which removes colours that a terminal lacks.
 pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: bool) -> String {
@@ -75,7 +78,14 @@ pub(crate) fn read_bytes(file: fs::File, shown: &str) -> Result<Vec<u8>, Failure
 
 /// Reports a rule set or profile that cannot be read or is too large.
 fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
-    let bytes = bytes.map_err(|error| cannot_read(shown, &error))?;
+    let bytes = bytes.map_err(|error| {
+        let failure = cannot_read(shown, &error);
+        let near = nearest(shown, built_in::profile_names());
+        match near.filter(|_| error.kind() == io::ErrorKind::NotFound) {
+            Some(name) => failure.help(format!("did you mean the built-in `{name}`?")),
+            None => failure,
+        }
+    })?;
     match bytes.len() > LARGEST_BYTES {
         true => {
             if flagred_flightlog::kind_of(&bytes) == Some("a flight log") {

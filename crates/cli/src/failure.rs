@@ -3,12 +3,7 @@
 use std::{fmt, io, io::Write, path::Path};
 
 use clap::error::{ContextKind, ContextValue};
-use fuzzy::{
-    diagnostic::nearest,
-    drawing::{visible, visible_lines},
-};
-
-use crate::built_in;
+use fuzzy::drawing::{visible, visible_lines};
 
 /// The result of a command that completed. For several inputs the last variant in this order counts, so that a finding is never hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -163,11 +158,9 @@ pub(crate) fn cannot_read(shown: &str, error: &io::Error) -> Failure {
         }
         _ => {
             let failure = Failure::unreadable(format!("`{shown}` cannot be read: {error}"));
-            let built_in = built_in::profile_names();
-            failure.help(match nearest(shown, built_in) {
-                Some(name) => format!("did you mean the built-in `{name}`?"),
-                None if shown.contains('*') => "no file matches this pattern".to_owned(),
-                None => "check the path".to_owned(),
+            failure.help(match shown.contains('*') {
+                true => "no file matches this pattern",
+                false => "check the path",
             })
         }
     }
