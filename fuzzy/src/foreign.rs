@@ -96,7 +96,7 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("mfs", &["terms"]),
     ("membershipfunctions", &["terms"]),
     ("universe", &["range"]),
-    ("version", &["fuzzy", "flagred"]),
+    ("version", &["fuzzy"]),
     ("cmd", &["command"]),
     ("reason", &["because"]),
     ("default", &["when_no_rule_fires", "if_missing"]),

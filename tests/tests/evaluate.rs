@@ -289,7 +289,7 @@ fn a_file_that_is_not_a_flight_does_not_stop_the_others() {
     );
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(
-        text.starts_with("1 flights of 1 vehicles, 0.02 h in the air, 91 steps"),
+        text.starts_with("1 flight of 1 vehicle, 0.02 h in the air, 91 steps"),
         "{text}"
     );
     assert!(

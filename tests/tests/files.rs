@@ -280,7 +280,7 @@ fn a_full_disk_leaves_the_old_file_and_exits_with_2() {
             writing.arguments
         );
         assert!(
-            told.contains("cannot be written") && told.contains("make room"),
+            told.contains("cannot be written") && told.contains("free some disk space"),
             "{told}"
         );
         assert!(

@@ -114,11 +114,11 @@ fn impossible_limits_are_refused() {
     for (header, said) in [
         (
             "# effective_low: -3\n# effective_high: 7\n",
-            "`effective_low` is -3, not in 0 to 1",
+            "`effective_low` is -3, outside 0 to 1",
         ),
         (
             "# pwm_low_us: -50000\n# pwm_high_us: 2000\n",
-            "line 1: `pwm_low_us` is -50000, not in 500 to 2500",
+            "line 1: `pwm_low_us` is -50000, outside 500 to 2500",
         ),
         (
             "# pwm_low_us: 1000\n# pwm_high_us: 1e308\n",

@@ -254,7 +254,7 @@ fn completions_are_offered() {
                 "{word} of {offered:?} in {text}"
             );
         }
-        assert!(offered.len() < 50, "{offered:?}");
+        assert!(offered.len() < 60, "{offered:?}");
     }
     editor.end();
 }

@@ -345,7 +345,7 @@ fn map_values_prints_a_table_for_each_slice() {
     insta::assert_snapshot!(text);
     let (_, _, notes) = map(&[&model, "--points", "3"]);
     assert!(
-        notes.contains("`noise` is held") && !notes.contains("spare"),
+        notes.contains("`noise` is fixed") && !notes.contains("spare"),
         "{notes}"
     );
     let (_, text, _) = map(&[PAPER, "--values", "--points", "26"]);

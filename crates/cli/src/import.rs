@@ -36,7 +36,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let text = read_text(&arguments.file)?;
     let file = arguments.file.display().to_string();
     let Some(format) = Format::of(&text) else {
-        if let Some(finding) = fuzzy::yaml::foreign(&text) {
+        let advice = advice(&arguments.file, &text);
+        if let (None, Some(finding)) = (advice, fuzzy::yaml::foreign(&text)) {
             return Err(refuse(
                 &Findings::locate(vec![finding], &text),
                 &file,
@@ -44,7 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             ));
         }
         let failure = Failure::unreadable(format!("`{file}` is not a FIS, FLL, FCL or FML file"));
-        return Err(failure.help_if(advice(&arguments.file, &text)));
+        return Err(failure.help_if(advice));
     };
     let losses = match arguments.lossy {
         true => Losses::Accept,

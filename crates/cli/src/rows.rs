@@ -262,6 +262,12 @@ pub(crate) fn columns(
     for table in tables {
         let table = table?;
         let columns = format.columns(names, &table.header)?;
+        let optional = |name: Option<&str>| {
+            name.map(|name| table.header.require(name, "or leave that option out"))
+                .transpose()
+        };
+        let weight = optional(weight)?;
+        let group = optional(group)?;
         if let Some((output, inputs)) = columns.split_last()
             && inputs.contains(output)
         {
@@ -269,12 +275,6 @@ pub(crate) fn columns(
             let message = format!("column `{column}` is both an input and the output");
             return Err(Failure::usage(message).help("correct `--column`"));
         }
-        let optional = |name: Option<&str>| {
-            name.map(|name| table.header.require(name, "or leave that option out"))
-                .transpose()
-        };
-        let weight = optional(weight)?;
-        let group = optional(group)?;
         for row in 0..table.len() {
             let mut bad = Vec::new();
             let mut number = |column: usize| {
@@ -320,24 +320,18 @@ pub(crate) fn columns(
     Ok(data)
 }
 
-/// Refuses rows with a value outside the range of its input or, if `and_output`, of the output.
-pub(crate) fn in_range(read: Data, model: &Model, and_output: bool) -> Data {
+/// Refuses rows with the value of an input outside its range.
+pub(crate) fn in_range(read: Data, model: &Model) -> Data {
     let Data { rows, mut refused } = read;
-    let inputs = model.inputs.len();
-    let variables: Vec<&Variable> = model.measured_variables().collect();
-    let is_outside = |(column, (value, variable)): &(usize, (&f64, &&Variable))| {
-        let is_checked = and_output || *column < inputs;
-        is_checked && !(variable.low..=variable.high).contains(*value)
-    };
+    let is_outside =
+        |(value, input): &(&f64, &Variable)| !(input.low..=input.high).contains(*value);
     let mut kept = Vec::with_capacity(rows.len());
     for (row, place) in rows {
-        let mut values = row.values.iter().zip(&variables).enumerate();
-        match values.find(is_outside) {
+        // The output, which comes last, may be outside: constants then stop at the end of its range.
+        match row.values.iter().zip(&model.inputs).find(is_outside) {
             None => kept.push((row, place)),
-            Some((_, (value, variable))) => {
-                let Variable {
-                    name, low, high, ..
-                } = variable;
+            Some((value, input)) => {
+                let (name, low, high) = (&input.name, input.low, input.high);
                 refused.push(format!(
                     "{place}, column `{name}`: {value} is outside the range from {low} to {high}"
                 ));

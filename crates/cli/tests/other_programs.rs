@@ -73,7 +73,7 @@ fn features_that_a_format_lacks_are_refused_or_reported() {
     assert!(refused.stdout.is_empty());
     let told = text(&refused.stderr);
     assert!(
-        told.contains("error[blocks]: the rules stand in blocks")
+        told.contains("error[blocks]: the rules are in blocks")
             && told.contains("\n  help: `--lossy`"),
         "{told}"
     );

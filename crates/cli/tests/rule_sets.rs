@@ -110,7 +110,7 @@ fn utf_16_is_read_and_latin_1_is_reported() {
         said.contains("Latin-1, where the byte is `\u{fc}`"),
         "{said}"
     );
-    assert!(check(b"\xff\xfea").1.contains("is not UTF-16"));
+    assert!(check(b"\xff\xfea").1.contains("is not valid UTF-16"));
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn explain_names_missing_inputs() {
         ),
         (
             &["margin=much", "spread=0"],
-            "`much` is not a finite number",
+            "the value of `margin` is not a finite number: `much`",
         ),
         (&["margin"], "write `margin=VALUE spread=VALUE`"),
     ] {

@@ -314,7 +314,11 @@ mod tests {
             let set = parameters(&[("MOT_SPIN_MIN", low), ("MOT_SPIN_MAX", high)]);
             let range = effective_range(&set);
             assert_eq!((range.low, range.high), (0.0, 1.0));
-            assert!(range.source.contains("are no limits"), "{}", range.source);
+            assert!(
+                range.source.contains("are not valid limits"),
+                "{}",
+                range.source
+            );
         }
     }
 

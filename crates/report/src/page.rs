@@ -85,7 +85,7 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
     html! {
         h1 { (together(subjects)) }
         p.soft {
-            "All curves have the same time scale, " (minutes(longest_s, 0)) " min since take-off. "
+            "All curves have the same time scale, " (minutes(longest_s, 0)) " min. "
             code { "flagred assess LOG --html FILE" } " writes the whole report of one flight."
         }
         .scroll { table {

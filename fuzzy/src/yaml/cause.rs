@@ -158,10 +158,10 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     if rest.starts_with(['[', '{']) && is_key(key) && before.ends_with(' ') {
         let at = before.trim_end().len() - key.len();
         let end = rest.find([']', '}', '\n']).map_or(0, |end| end + 1);
-        let shown = rest.get(..end)?.trim_end();
-        let message = format!("a colon is missing after `{key}`");
+        rest.get(..end)?;
+        let message = String::from("a colon is missing before a bracket");
         let finding = Diagnostic::error("yaml-syntax", at..at + key.len(), message);
-        return Some(finding.help(format!("write `{key}: {}`", shown)));
+        return Some(finding.help("write `key: [value, value]`"));
     }
     // For example `unit:°C` in the line above.
     let above = before.get(..start)?.trim_end();
@@ -173,9 +173,10 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
         return None;
     }
     let at = at + line.len() - content.len();
-    let message = format!("a space is missing after the colon of `{key}`");
+    // Without words of the text, which may be of any file.
+    let message = String::from("a space is missing after a colon");
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
-    Some(finding.help(format!("write `{key}: {value}`")))
+    Some(finding.help("write `key: value`"))
 }
 
 /// Adds to the help of a rule that ends too early that the rest of its line is a comment.

@@ -152,11 +152,11 @@ fn bad_names_ranges_and_rules_are_refused() {
     assert!(refused(|d| add_term(d, 0, "a b")).contains("not a name"));
     assert_eq!(
         refused(|d| add_term(d, 0, "cold")),
-        "there is a `cold` already"
+        "the name `cold` is already used"
     );
     assert_eq!(
         refused(|d| add_variable(d, "fan", (0.0, 1.0), false)),
-        "there is a `fan` already"
+        "the name `fan` is already used"
     );
     assert!(refused(|d| add_variable(d, "noise", (1.0, 0.0), false)).contains("smaller one first"));
     assert!(!refused(|d| add_rule(d, "IF heat")).is_empty());

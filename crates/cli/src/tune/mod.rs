@@ -238,7 +238,7 @@ fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
 /// Returns the usable rows as columns, and the reasons why other rows cannot be used.
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
     let read = rows::read(&arguments.rows, model)?;
-    let read = rows::in_range(read, model, !arguments.beyond_range);
+    let read = rows::in_range(read, model);
     let (data, refused) = rows::in_columns(read, model.inputs.len(), arguments.loss());
     if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
         let failure = rows::refuse(&refused, "used");
