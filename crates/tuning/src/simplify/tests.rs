@@ -274,7 +274,7 @@ fn wrong_settings_and_models_are_errors() {
             .unwrap_err()
             .to_string()
     };
-    assert_eq!(error(-1.0), "the tolerance -1 is not a number from 0");
+    assert_eq!(error(-1.0), "the tolerance is -1; it must be at least 0");
     assert_eq!(error(f64::NAN), "the tolerance NaN is not a number from 0");
     let settings = SimplifySettings::default();
     let mut none = table("", "slow");
