@@ -91,7 +91,7 @@ return load_all, 1000
 -- clock_us = 0
 -- held_us, held_s = 0, 0.0 -- since the last call
 -- bin, bin_us = 0, 0 -- the bin of commands, and the time into it
--- has_moved = false -- whether this call has done one of the longer works
+-- has_moved = false -- whether this call has done one of the longer steps
 -- 
 -- function later(us, by_us)
 --   return us < 1000000000 and us + by_us or us
@@ -775,7 +775,7 @@ return load_all, 1000
 -- local AREAS = {5.0, 5.0, 5.0, 5.0, 5.0}
 -- local MOMENTS = {-225.0, -125.0, 0.0, 125.0, 225.0}
 -- 
--- -- The risk by the rules in %; nil where none fires.
+-- -- The risk of the rules in %; nil if none fires.
 -- local function by_rules(x)
 --   coverage = 0.0
 --   for term = 1, OUTPUT_TERMS do
@@ -978,7 +978,7 @@ return load_all, 1000
 --   is_open = true
 -- end
 -- 
--- -- A level reached now; gives what holds it.
+-- -- A level that is reached now; returns what holds it.
 -- local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, after_us, until_risk, until_elevated)
 --   local reached, of_elevated = is_reached(risk, risk_limit, elevated_limit)
 --   reached = reached and can_raise
@@ -1060,7 +1060,7 @@ return load_all, 1000
 --   reached_at[2], reached_at[3] = nil, nil
 -- end
 -- 
--- -- What is told beside the risk, as WARN until the flight ends.
+-- -- Notices besides the risk, as WARN until the flight ends.
 -- 
 -- raised = false -- whether something was raised in this call
 -- 
@@ -1114,7 +1114,7 @@ return load_all, 1000
 -- local lately, trims, shifts = {}, {}, {} -- of each motor
 -- at_zero = {} -- for how long each motor is at zero, in s
 -- local lately_s, trim_s, load, load_s = 0.0, 0.0, 0.0, 0.0
--- local imbalance_us, weak_us -- for how long the limits have been passed
+-- local imbalance_us, weak_us -- for how long the limits have been exceeded
 -- imbalance, imbalance_words = nil, nil -- in %, and what it is
 -- unbalanced, or_unbalanced = nil, nil -- the motor that is named, and the one that it may be as well
 -- weak, weak_motor, or_weak = nil, nil, nil -- in %, and as above
@@ -1152,8 +1152,8 @@ return load_all, 1000
 --   return first, second
 -- end
 -- 
--- -- The motor to name, and the other one that it may be: the highest one, where it is alone up there; otherwise the one that stopped
--- -- first; otherwise the highest one.
+-- -- The motor to name, and the other one that it may be: the highest one if it is well above the others; otherwise the one that
+-- -- stopped first; otherwise the highest one.
 -- local function culprit(list)
 --   local first, second = two_highest(list)
 --   local ahead = second and list[first] - list[second] or huge
@@ -1334,7 +1334,7 @@ return load_all, 1000
 --     idle, lifted_us = nil, 0
 --     return false
 --   end
---   -- An alarm that stands is judged by the rules.
+--   -- While an alarm is raised, the rules decide.
 --   falls = (fell or risk_level == 0) and lifted_us ~= nil and lifted_us >= 3000000
 --   if not idle then
 --     local is_trouble = since_high_us and since_high_us <= 2000000
@@ -1365,7 +1365,7 @@ return load_all, 1000
 --   end
 -- end
 -- 
--- -- Takes in the time and the motors; gives the risk in %, nil where it is unknown.
+-- -- Processes the time and the motors; returns the risk in %, nil if it is unknown.
 -- function fly()
 --   has_moved = false
 --   clock_us = clock_us + held_us
@@ -1473,7 +1473,7 @@ return load_all, 1000
 --   if level ~= before and flown_us and not down_us then
 --     say(level, risk, false)
 --   end
---   -- What is raised where the level stands already is told, too.
+--   -- A notice that is raised at the current level is reported, too.
 --   if raised and level == before and flown_us and not down_us then
 --     say(level, risk, true)
 --   end
@@ -1504,7 +1504,7 @@ return load_all, 1000
 --   return protected, 1000
 -- end
 -- 
--- -- The first call, when the memory of the loader is free again. What calls take for a moment must be left.
+-- -- The first call, when the memory of the loader is free again. Memory for the temporary values of a call must remain.
 -- function begin()
 --   begin = nil
 --   if not pcall(rep, " ", 3000) then

@@ -1,5 +1,5 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4360 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123344 bytes of memory.
+// 4360 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123360 bytes of memory.
 
 /// The memory of a monitor for this number of motors.
 #[allow(dead_code)]

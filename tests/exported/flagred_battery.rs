@@ -1,5 +1,5 @@
 // The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 9780 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72264 bytes of memory.
+// 9780 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72280 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
 /// The memory of a monitor for this number of motors.

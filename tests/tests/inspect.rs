@@ -134,7 +134,7 @@ fn impossible_limits_are_refused() {
         ),
         (
             "# pwm_high_us: 2000\n",
-            "line 1: `pwm_high_us` has no `pwm_low_us`",
+            "line 1: `pwm_high_us` is given without `pwm_low_us`",
         ),
         (
             "# effective_low: 0.95\n# effective_high: 0.15\n",
@@ -146,7 +146,7 @@ fn impossible_limits_are_refused() {
         ),
         (
             "# effective_low: 0.15\n",
-            "line 1: `effective_low` has no `effective_high`",
+            "line 1: `effective_low` is given without `effective_high`",
         ),
     ] {
         let (code, _, stderr) = inspect(&[], &format!("{header}t_s,pwm1\n0,2000\n"));

@@ -262,7 +262,7 @@ fn the_advice_for_mistakes_works() {
         (
             "explain temperature=20 humidity=3 fan.yaml",
             2,
-            "the rule set comes first",
+            "name the rule set first",
         ),
         (
             "explain fan.yaml temperature=20 humidity=3 --delimiter ;",

@@ -275,7 +275,10 @@ fn wrong_settings_and_models_are_errors() {
             .to_string()
     };
     assert_eq!(error(-1.0), "the tolerance is -1; it must be at least 0");
-    assert_eq!(error(f64::NAN), "the tolerance NaN is not a number from 0");
+    assert_eq!(
+        error(f64::NAN),
+        "the tolerance is NaN; it must be at least 0"
+    );
     let settings = SimplifySettings::default();
     let mut none = table("", "slow");
     none.rules.clear();
