@@ -1,6 +1,10 @@
 //! Rules in a file: `- IF ... THEN ...`, or a mapping that also contains the provenance of the rule.
 
-use alloc::{format, string::ToString, vec::Vec};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
 use core::ops::Range;
 
 use super::{RuleSpans, Spans, optional_text};

@@ -3,7 +3,9 @@
 use alloc::string::String;
 
 use super::{Activation, MembershipFunction, Model, Output, Rule, Term, Variable, concludes};
-use crate::rule::{Condition, Hedge, Proposition};
+#[cfg(feature = "check")]
+use crate::rule::Condition;
+use crate::rule::{Hedge, Proposition};
 
 /// The lower membership function of an interval type-2 term.
 ///

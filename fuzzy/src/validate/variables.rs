@@ -1,6 +1,6 @@
 //! Validation of inputs and outputs: ranges, membership functions, and the kinds of terms that an output supports.
 
-use alloc::{collections::BTreeSet, format, string::String};
+use alloc::{collections::BTreeSet, format, string::String, vec::Vec};
 use core::ops::Range;
 
 use super::{MOST_FINDINGS, Validator, or};
