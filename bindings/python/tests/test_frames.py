@@ -57,7 +57,7 @@ def test_polars():
     assert np.array_equal(MODEL(frame["service"], frame["food"]), EXPECTED, equal_nan=True)
     with pytest.raises(flagred.DataError, match="collect it first"):
         MODEL(frame.lazy())
-    with pytest.raises(flagred.DataError, match="column `food` holds .*, not numbers"):
+    with pytest.raises(flagred.DataError, match="column `food` contains .*, not numbers"):
         MODEL(frame.with_columns(food=polars.lit("much")))
     with pytest.raises(flagred.DataError, match="did you mean `foods`"):
         MODEL(frame.rename({"food": "foods"}))

@@ -231,7 +231,7 @@ def test_identifying_refuses_unusable_data():
         flagred.identify(rows, "mpg", inputs=["colour"])
     with pytest.raises(flagred.DataError, match="`antecedents` is `grid`"):
         flagred.identify(cars(), "mpg", antecedents="grid")
-    with pytest.raises(flagred.DataError, match="no input tells more"):
+    with pytest.raises(flagred.DataError, match="no input predicts the output better"):
         flagred.identify({"a": np.arange(50.0) % 2, "b": np.zeros(50)}, "b")
 
 
@@ -299,7 +299,7 @@ rules:
     step = tuned.model.to_dict()["provenance"][-1]
     assert (step["command"], step["rows"], step["seed"]) == ("flagred.tune", len(HEAT), 0)
     assert step["loss"]["after"] == pytest.approx(tuned.after, rel=1e-5, abs=1e-12)
-    assert len(step["moved"]) == len(tuned.moved) > 0 and "in 3 parts" in step["note"]
+    assert len(step["moved"]) == len(tuned.moved) > 0 and "in 3 folds" in step["note"]
     # Only numbers changed, so comments stay.
     assert "# sensor 1" in tuned.model.text and "# quiet" in tuned.model.text
     assert not [finding for finding in tuned.model.check() if finding.code == "edited-since"]
@@ -330,7 +330,7 @@ def test_terms_from_data_by_c_means():
         (lambda: flagred.c_means([1, 1], 2), "there are 1"),
         (lambda: flagred.c_means([1, 2], 2, fuzzifier=1), "`fuzzifier` is 1"),
         (lambda: found.partition(["a", "b", "c"]), "several columns"),
-        (lambda: flagred.c_means([1, 2, 3], 2).partition(["a"]), "2 clusters, and 1 names"),
+        (lambda: flagred.c_means([1, 2, 3], 2).partition(["a"]), "2 clusters but 1 name"),
     ):
         with pytest.raises(flagred.DataError, match=message):
             call()

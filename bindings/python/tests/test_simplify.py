@@ -53,7 +53,7 @@ def test_rows_are_added_to_the_points(fan):
 
 
 def test_mistakes_are_reported(fan):
-    with pytest.raises(flagred.DataError, match="tolerance -1"):
+    with pytest.raises(flagred.DataError, match="tolerance is -1"):
         flagred.simplify(fan, tolerance=-1)
     with pytest.raises(flagred.DataError, match="there are no rows"):
         flagred.simplify(fan, rows_only=True)

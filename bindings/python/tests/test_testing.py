@@ -29,7 +29,7 @@ def test_a_snapshot_is_written_and_compared(tmp_path: Path, monkeypatch: pytest.
         assert_map(model, path)
     monkeypatch.setenv("FLAGRED_UPDATE", "1")
     assert_map(model, path, points=5)
-    with pytest.raises(flagred.DataError, match="no snapshot"):
+    with pytest.raises(flagred.DataError, match="are not a valid snapshot"):
         assert_map(model, path, points=1000)
     monkeypatch.delenv("FLAGRED_UPDATE")
     assert len(path.read_text().splitlines()) == 26

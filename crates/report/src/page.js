@@ -114,7 +114,7 @@ for (const map of maps) {
 for (const panel of panels) panel.fold?.addEventListener("toggle", () => now.textContent && show(panels[0]));
 document.addEventListener("input", ({ target }) => {
   const wanted = target.value.toLowerCase();
-  for (const row of target.closest(".searched").querySelectorAll("tr")) row.hidden = !row.textContent.toLowerCase().includes(wanted);
+  for (const row of target.closest(".searched")?.querySelectorAll("tr") ?? []) row.hidden = !row.textContent.toLowerCase().includes(wanted);
 });
 addEventListener("keydown", (event) => {
   const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
