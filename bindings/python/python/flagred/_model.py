@@ -20,8 +20,7 @@ Partition = Sequence[str] | Mapping[str, float]
 Steps = Mapping[str, float | None]
 Terms = Mapping[str, Mapping[str, Any]]
 
-_Format = Literal["yaml", "fis", "fll", "fcl", "fml", "rust", "c"]
-_ENDINGS: dict[str, _Format] = {
+_ENDINGS: dict[str, Literal["yaml", "fis", "fll", "fcl", "fml", "rust", "c"]] = {
     ".yaml": "yaml",
     ".yml": "yaml",
     ".fis": "fis",
@@ -243,7 +242,7 @@ class Model(RuleSet):
         return self._text()[0]
 
     def to_text(
-        self, format: _Format = "yaml", *, lossy: bool = False
+        self, format: Literal["yaml", "fis", "fll", "fcl", "fml", "rust", "c"] = "yaml", *, lossy: bool = False
     ) -> str:
         """The rule set as text, as :meth:`save` writes it.
 
