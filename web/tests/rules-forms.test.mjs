@@ -41,7 +41,7 @@ test('names are changed everywhere', async (t) => {
   await page.getByLabel('Name of term dry of moisture').waitFor();
   await page.getByLabel('Name of term dry of moisture').fill('damp');
   await page.getByLabel('Name of term dry of moisture').press('Enter');
-  await page.getByText('there is a `damp` already').waitFor();
+  await page.getByText('the name `damp` is already used').waitFor();
   assert.equal(await page.getByLabel('Name of term dry of moisture').inputValue(), 'dry');
 });
 
