@@ -12,11 +12,7 @@ use alloc::{
     vec::Vec,
 };
 
-use fuzzy::{
-    Findings, Source,
-    diagnostic::nearest,
-    tree::{Node, Value},
-};
+use fuzzy::{Findings, Source, diagnostic::nearest, tree::Value};
 
 use crate::{check, estimator::Estimator, profile::Profile, shipped};
 
@@ -265,19 +261,18 @@ pub fn rules<E>(
     if let Some(known) = shipped.find(|known| known.name == profile.rules) {
         return Ok((known.file.to_owned(), known.text.to_owned()));
     }
-    let beside = folder.map(|folder| folder.join(&profile.rules));
-    if let Some(path) = beside.filter(|path| path.is_file()) {
-        if !is_allowed(&path, folder) {
+    let path = folder.map(|folder| folder.join(&profile.rules));
+    if let Some(path) = path.as_ref().filter(|path| path.is_file()) {
+        if !is_allowed(path, folder) {
             return Err(LoadError::unusable(format!(
                 "profile `{}` names the rule set `{}`, which is not in the profile's folder",
                 profile.name, profile.rules
             ))
             .help("move the rule set there, or allow its folder with FLAGRED_RULES=FOLDER"));
         }
-        let text = read(&path).map_err(LoadError::Read)?;
+        let text = read(path).map_err(LoadError::Read)?;
         return Ok((path.display().to_string(), text));
     }
-    let path = folder.map(|folder| folder.join(&profile.rules));
     if path.is_some_and(|path| path.is_dir() && is_allowed(&path, folder)) {
         return Err(LoadError::unusable(format!(
             "profile `{}` names the rule set `{}`, which is a folder",
@@ -327,16 +322,17 @@ pub fn is_meant_as_rules(text: &str) -> bool {
 /// outputs of a rule set. A text that is not valid YAML yet is searched for the key.
 #[doc(hidden)] // For the programs of this repository.
 pub fn is_profile(source: &Source) -> bool {
-    let Ok(Value::Mapping(pairs)) = source.tree().map(|tree| &tree.value) else {
+    let tree = source.tree();
+    let Some(tree) = tree
+        .ok()
+        .filter(|tree| matches!(tree.value, Value::Mapping(_)))
+    else {
         return source
             .text()
             .lines()
             .any(|line| line.starts_with("flagred:"));
     };
-    let has = |name: &str| {
-        let is = |key: &Node| matches!(&key.value, Value::Scalar(key) if key.text == name);
-        pairs.iter().any(|(key, _)| is(key))
-    };
+    let has = |name: &str| tree.child(name).is_some();
     let settings = [
         "verdict",
         "elevated_risk",

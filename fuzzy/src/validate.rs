@@ -162,8 +162,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
 /// Returns a finding if the model exceeds a limit. The analysis of larger models takes minutes, and they are never
 /// intended.
 fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    let variables = || model.inputs.iter().chain(outputs.clone());
+    let variables = || model.variables();
     let all_spans = || spans.inputs.iter().chain(&spans.outputs);
     let refuse = |here: Option<Range<usize>>, count: usize, most: usize, what: &str| {
         (count > most).then(|| {

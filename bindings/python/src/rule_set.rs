@@ -265,9 +265,7 @@ impl RuleSet {
     /// Returns the names of the terms of a variable.
     fn _term_names(&self, variable: &str) -> Vec<String> {
         self.model(|model| {
-            let outputs = model.outputs.iter().map(|output| &output.variable);
-            let mut variables = model.inputs.iter().chain(outputs);
-            let terms = variables.find(|known| known.name == variable);
+            let terms = model.variables().find(|known| known.name == variable);
             let terms = terms.into_iter().flat_map(|variable| &variable.terms);
             terms.map(|term| term.name.clone()).collect()
         })
@@ -466,7 +464,7 @@ impl RuleSet {
     /// threads
     ///     The number of threads; by default the number of cores.
     /// fixed
-    ///     Inputs with a fixed value, by their names. The others are the axes.
+    ///     Inputs with a fixed value, by their names. The axes are the inputs without one.
     ///
     /// Returns
     /// -------

@@ -204,7 +204,7 @@ fn rounded(loss: f64) -> f64 {
     format!("{loss:.5e}").parse().unwrap_or(loss)
 }
 
-/// The usable rows as columns, and the reasons why others are not usable.
+/// The usable rows as columns, and for each row that is not usable the reason.
 fn data(model: &Model, rows: Vec<Row>, loss: Loss) -> (Data, Vec<String>) {
     let mut data = Data {
         inputs: vec![Vec::with_capacity(rows.len()); model.inputs.len()],

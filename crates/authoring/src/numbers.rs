@@ -17,7 +17,11 @@ use crate::Edit;
 pub(crate) fn of_model(text: &str, document: &Document, wanted: &Model) -> Option<Vec<Edit>> {
     let mut edits = Vec::new();
     let spans = document.spans.inputs.iter().chain(&document.spans.outputs);
-    let pairs = variables(&document.model).zip(variables(wanted)).zip(spans);
+    let pairs = document
+        .model
+        .variables()
+        .zip(wanted.variables())
+        .zip(spans);
     for ((before, after), spans) in pairs {
         edits.extend(of_terms(text, before, spans, &after.terms)?);
     }
@@ -36,11 +40,6 @@ pub(crate) fn of_model(text: &str, document: &Document, wanted: &Model) -> Optio
         });
     }
     Some(edits)
-}
-
-fn variables(model: &Model) -> impl Iterator<Item = &Variable> {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    model.inputs.iter().chain(outputs)
 }
 
 /// The edits that change the numbers of a variable in a text to those of other terms. `None` if a number that differs

@@ -98,7 +98,9 @@ impl<'t> Changes<'t> {
             }
             // A rule with keys in the text whose model has no keys but the rule itself.
             (Value::Mapping(there), _, Value::Scalar(_)) => {
-                let (_, rule) = there.iter().find(|(key, _)| name(key) == Some("rule"))?;
+                let (_, rule) = there
+                    .iter()
+                    .find(|(key, _)| key.as_text() == Some("rule"))?;
                 let only = there.len() == 1;
                 only.then(|| self.replace(rule.span.clone(), yaml::to_line(after)))
             }
@@ -118,7 +120,9 @@ impl<'t> Changes<'t> {
         after: &[(Node, Node)],
     ) -> Option<()> {
         fn value<'n>(entries: &'n [(Node, Node)], key: &Node) -> Option<&'n Node> {
-            let found = entries.iter().find(|(other, _)| name(other) == name(key));
+            let found = entries
+                .iter()
+                .find(|(other, _)| other.as_text() == key.as_text());
             found.map(|(_, value)| value)
         }
         let gone = |key: &Node| value(before, key).is_some() && value(after, key).is_none();
@@ -252,13 +256,6 @@ impl<'t> Changes<'t> {
 fn end(text: &str, node: &Node) -> usize {
     let written = text.get(node.span.clone()).unwrap_or("");
     node.span.start + written.trim_end().len()
-}
-
-fn name(key: &Node) -> Option<&str> {
-    match &key.value {
-        Value::Scalar(scalar) => Some(&scalar.text),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -87,7 +87,7 @@ pub fn add_variable(
     let text = document.text();
     let tree = tree(document)?;
     let key = if is_output { "outputs" } else { "inputs" };
-    let all = child(tree, key).ok_or(UNREADABLE)?;
+    let all = tree.child(key).ok_or(UNREADABLE)?;
     let is_list = matches!(all.value, Value::List(_));
     let edit = match (is_list, is_flow(text, all)) {
         (true, _) => return Err(format!("`{key}` is a list; add the variable in the text")),
@@ -135,10 +135,10 @@ pub fn add_term(document: &Document, variable: usize, name: &str) -> Result<Vec<
     }
     let text = document.text();
     let node = variable_node(document, rules, variable).ok_or(UNREADABLE)?;
-    if child(node, "steps").is_some() {
+    if node.child("steps").is_some() {
         return Err("a term of `steps` needs a limit; add it in the text".into());
     }
-    if let Some(list) = child(node, "partition") {
+    if let Some(list) = node.child("partition") {
         let is_list = matches!(list.value, Value::List(_));
         if is_list {
             let edit = inserted(text, list, len(list), name).ok_or(UNREADABLE)?;
@@ -156,7 +156,7 @@ pub fn add_term(document: &Document, variable: usize, name: &str) -> Result<Vec<
         let change = Change::Added(Part::Term(variable, at));
         return verified(document, rules, vec![edit.ok_or(UNREADABLE)?], change);
     }
-    let terms = child(node, "terms").ok_or(UNREADABLE)?;
+    let terms = node.child("terms").ok_or(UNREADABLE)?;
     if matches!(terms.value, Value::List(_)) {
         return Err("the terms are a list; add the term in the text".into());
     }
@@ -205,7 +205,7 @@ pub fn add_rule(document: &Document, rule: &str) -> Result<Vec<Edit>, String> {
     let (text, tree) = (document.text(), tree(document)?);
     let item = scalar(rule);
     let at = rules.model.rules.len();
-    let edit = match child(tree, "rules") {
+    let edit = match tree.child("rules") {
         Some(list) if len(list) > 0 => inserted(text, list, len(list), &item),
         Some(empty) => {
             // The list is `[]`, or nothing follows the key.
@@ -247,7 +247,7 @@ pub fn change_rule(document: &Document, rule: usize, to: &str) -> Result<Vec<Edi
         .get(rule)
         .ok_or("there is no such rule")?;
     let words = match &node.value {
-        Value::Mapping(_) => child(node, "rule").ok_or(UNREADABLE)?,
+        Value::Mapping(_) => node.child("rule").ok_or(UNREADABLE)?,
         _ => node,
     };
     let edit = Edit {
@@ -266,7 +266,7 @@ pub fn remove(document: &Document, part: Part) -> Result<Vec<Edit>, String> {
     let (text, tree) = (document.text(), tree(document)?);
     let edit = match part {
         Part::Rule(rule) => {
-            let list = child(tree, "rules").ok_or(UNREADABLE)?;
+            let list = tree.child("rules").ok_or(UNREADABLE)?;
             match key_end(tree, "rules") {
                 // A key without a value is not a list, so an empty list is written.
                 Some(key) if len(list) == 1 && !is_flow(text, list) => removed(text, list, rule)
@@ -300,7 +300,7 @@ pub fn remove(document: &Document, part: Part) -> Result<Vec<Edit>, String> {
                     }
                 ));
             }
-            let all = child(tree, key).ok_or(UNREADABLE)?;
+            let all = tree.child(key).ok_or(UNREADABLE)?;
             removed(text, all, index).map(|edit| vec![edit])
         }
         Part::Term(variable, term) => {
@@ -310,7 +310,7 @@ pub fn remove(document: &Document, part: Part) -> Result<Vec<Edit>, String> {
             let name = &known.terms.get(term).ok_or("there is no such term")?.name;
             unused(rules, &known.name, Some(name))?;
             let node = variable_node(document, rules, variable).ok_or(UNREADABLE)?;
-            let fewest = match child(node, "terms") {
+            let fewest = match node.child("terms") {
                 Some(_) => 1,
                 None => 2,
             };
@@ -320,7 +320,7 @@ pub fn remove(document: &Document, part: Part) -> Result<Vec<Edit>, String> {
             }
             let terms = ["terms", "partition", "steps"]
                 .into_iter()
-                .find_map(|key| child(node, key));
+                .find_map(|key| node.child(key));
             removed(text, terms.ok_or(UNREADABLE)?, term).map(|edit| vec![edit])
         }
     };
@@ -468,35 +468,21 @@ fn unused(rules: &Partial, variable: &str, term: Option<&str>) -> Result<(), Str
     }
 }
 
-fn child<'n>(node: &'n Node, key: &str) -> Option<&'n Node> {
-    let Value::Mapping(pairs) = &node.value else {
-        return None;
-    };
-    let is_it = |name: &Node| matches!(&name.value, Value::Scalar(scalar) if scalar.text == key);
-    pairs
-        .iter()
-        .find(|(name, _)| is_it(name))
-        .map(|(_, value)| value)
-}
-
 /// The position after the colon of a key.
 fn key_end(node: &Node, key: &str) -> Option<usize> {
     let Value::Mapping(pairs) = &node.value else {
         return None;
     };
-    let is_it = |name: &Node| matches!(&name.value, Value::Scalar(scalar) if scalar.text == key);
-    pairs
-        .iter()
-        .find(|(name, _)| is_it(name))
-        .map(|(name, _)| name.span.end + 1)
+    let pair = pairs.iter().find(|(name, _)| name.as_text() == Some(key));
+    pair.map(|(name, _)| name.span.end + 1)
 }
 
 fn variable_node<'d>(document: &'d Document, rules: &Partial, variable: usize) -> Option<&'d Node> {
     let tree = document.source().tree().ok()?;
     let inputs = rules.model.inputs.len();
     let (all, index) = match variable.checked_sub(inputs) {
-        None => (child(tree, "inputs")?, variable),
-        Some(output) => (child(tree, "outputs")?, output),
+        None => (tree.child("inputs")?, variable),
+        Some(output) => (tree.child("outputs")?, output),
     };
     match &all.value {
         Value::Mapping(pairs) => pairs.get(index).map(|(_, node)| node),
@@ -506,7 +492,7 @@ fn variable_node<'d>(document: &'d Document, rules: &Partial, variable: usize) -
 }
 
 fn rule_nodes(document: &Document) -> Result<&[Node], String> {
-    match child(tree(document)?, "rules").map(|list| &list.value) {
+    match tree(document)?.child("rules").map(|list| &list.value) {
         Some(Value::List(items)) => Ok(items),
         _ => Err(UNREADABLE.into()),
     }

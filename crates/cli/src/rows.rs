@@ -131,8 +131,8 @@ impl Claims {
     /// Returns an error for claims about inputs that the rule set does not have.
     pub(crate) fn check_inputs(&self, model: &Model) -> Result<(), Failure> {
         let names = || model.inputs.iter().map(|input| input.name.as_str());
-        let claims = self.rising.iter().chain(&self.falling);
-        let mut inputs = claims.map(|claim| claim.split(':').next().unwrap_or(claim));
+        let claims = self.monotone()?;
+        let mut inputs = claims.iter().map(|claim| &claim.input);
         match inputs.find(|input| !names().any(|name| name == *input)) {
             None => Ok(()),
             Some(input) => {

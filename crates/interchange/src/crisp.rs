@@ -8,8 +8,7 @@ use fuzzy::{
 
 /// Notes about the variables whose steps are written as rectangles.
 pub(crate) fn written(model: &Model) -> Vec<Diagnostic> {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    let noted = model.inputs.iter().chain(outputs).filter_map(|variable| {
+    let noted = model.variables().filter_map(|variable| {
         let first = *variable.step_limits()?.first()?;
         let message = format!("the steps of `{}` are written as rectangles", variable.name);
         let help = format!(

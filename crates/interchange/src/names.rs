@@ -79,9 +79,10 @@ pub(crate) fn one(name: &str, allowed: &Allowed, paper: &mut Paper) -> String {
 pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Model {
     let mut model = model.clone();
     let mut variables: BTreeMap<String, (String, BTreeMap<String, String>)> = BTreeMap::new();
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    let before = model.inputs.iter().chain(outputs);
-    let before: Vec<&str> = before.map(|variable| variable.name.as_str()).collect();
+    let before: Vec<&str> = model
+        .variables()
+        .map(|variable| variable.name.as_str())
+        .collect();
     let mut names = allowed.names(&before).into_iter();
     let mut rename = |variable: &mut Variable| {
         let name = names.next().unwrap_or_default();

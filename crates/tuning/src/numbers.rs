@@ -49,9 +49,8 @@ pub(crate) fn moved(before: &Model, after: &Model) -> Vec<Moved> {
 
 /// The first number that differs although `settings` do not allow it to change.
 pub fn moved_although_fixed(before: &Model, after: &Model, settings: &Settings) -> Option<Moved> {
-    let outputs = before.outputs.iter().map(|output| &output.variable);
     let (mut movable, mut fixed) = (BTreeSet::new(), BTreeSet::new());
-    for variable in before.inputs.iter().chain(outputs) {
+    for variable in before.variables() {
         for term in &variable.terms {
             let names = match settings.may_move(&variable.name, &term.name) {
                 true => &mut movable,

@@ -256,8 +256,7 @@ impl Parameters {
 
 /// Whether a name in [`Settings::only`] or [`Settings::fix`] is a variable or a term.
 fn is_known(model: &Model, name: &str) -> bool {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    model.inputs.iter().chain(outputs).any(|variable| {
+    model.variables().any(|variable| {
         let is_term = |term: &Term| name.split_once('.') == Some((&variable.name, &term.name));
         variable.name == name || variable.terms.iter().any(is_term)
     })

@@ -69,7 +69,7 @@ fn edited(text: &str, tree: &Node, changes: &[(&str, String)]) -> Option<String>
     if changes.is_empty() {
         return Some(text.to_owned());
     }
-    let Some(verdict) = get(tree, "verdict") else {
+    let Some(verdict) = tree.child("verdict") else {
         let all = [("verdict", format!("{{{}}}", pairs(changes).join(", ")))];
         let (at, first) = added(text, tree, &all)?;
         return Some([text.get(..at)?, &first, text.get(at..)?].concat());
@@ -77,7 +77,7 @@ fn edited(text: &str, tree: &Node, changes: &[(&str, String)]) -> Option<String>
     let mut missing = Vec::new();
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
     for (key, value) in changes {
-        match get(verdict, key) {
+        match verdict.child(key) {
             Some(node) => {
                 let old = text.get(node.span.clone())?;
                 // A block ends with the line break before the next key.
@@ -99,15 +99,6 @@ fn edited(text: &str, tree: &Node, changes: &[(&str, String)]) -> Option<String>
         changed.replace_range(span, &with);
     }
     Some(changed)
-}
-
-fn get<'a>(mapping: &'a Node, key: &str) -> Option<&'a Node> {
-    let Value::Mapping(pairs) = &mapping.value else {
-        return None;
-    };
-    let is_key = |node: &Node| matches!(&node.value, Value::Scalar(name) if name.text == key);
-    let pair = pairs.iter().find(|(name, _)| is_key(name));
-    pair.map(|(_, value)| value)
 }
 
 /// The text that inserts keys at the start of a mapping, and its position.

@@ -172,8 +172,7 @@ fn rounded(degree: f64) -> f64 {
 /// Returns whether a formula has a finite value at any of many points that are spread over the ranges of the variables.
 fn has_a_value(model: &Model, formula: &Formula) -> bool {
     const POINTS: u32 = 500;
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    let variables: Vec<&Variable> = model.inputs.iter().chain(outputs).collect();
+    let variables: Vec<&Variable> = model.variables().collect();
     (0..=POINTS).any(|point| {
         // The additive recurrence with the golden ratio; each variable has another multiple of it.
         let value = |name: &str| {

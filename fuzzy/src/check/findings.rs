@@ -268,8 +268,7 @@ impl At<'_> {
 
     fn side(&self, side: &super::Side) -> String {
         // An output that rules read is an input of these rules.
-        let outputs = self.model.outputs.iter().map(|output| &output.variable);
-        let mut variables = self.model.inputs.iter().chain(outputs);
+        let mut variables = self.model.variables();
         let input = variables.find(|input| input.name == side.input);
         let (low, high) = input.map_or((f64::NAN, f64::NAN), |input| (input.low, input.high));
         let name = &side.input;

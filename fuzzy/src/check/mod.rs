@@ -11,7 +11,7 @@ use crate::{
     Engine,
     diagnostic::{Diagnostic, Findings, suggest},
     model::{
-        Model, Variable,
+        Model,
         chain::{Stage, stages},
         document::{Document, Spans},
     },
@@ -186,7 +186,7 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
         unused: terms::unused(model),
         unreachable: terms::unreachable(model, &never_firing),
         never_firing,
-        equal_terms: all_variables(model).flat_map(terms::equal).collect(),
+        equal_terms: model.variables().flat_map(terms::equal).collect(),
         holes: holes.collect(),
         reach,
         reach_complete,
@@ -283,11 +283,6 @@ fn against_trend(stage: &Stage<'_>) -> Vec<AgainstTrend> {
         }
     }
     found
-}
-
-fn all_variables(model: &Model) -> impl Iterator<Item = &Variable> {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    model.inputs.iter().chain(outputs)
 }
 
 /// Returns the uncovered boxes of all outputs: first those in which no rule fires at all, then those in which no rule

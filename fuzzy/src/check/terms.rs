@@ -102,8 +102,7 @@ pub(super) fn unused(model: &Model) -> Vec<TermOf> {
         }
     }
     let mut found = Vec::new();
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    for variable in model.inputs.iter().chain(outputs) {
+    for variable in model.variables() {
         if !named.contains(variable.name.as_str()) {
             found.push(TermOf {
                 variable: variable.name.clone(),
@@ -129,9 +128,8 @@ fn term_of(variable: &Variable, term: &Term) -> TermOf {
 
 /// Returns the terms that are 0 on the whole range of their variable, and the output terms for which no rule can fire.
 pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
     let mut found = Vec::new();
-    for variable in model.inputs.iter().chain(outputs) {
+    for variable in model.variables() {
         let terms = outside(variable).into_iter();
         found.extend(terms.filter_map(|i| Some(term_of(variable, variable.terms.get(i)?))));
     }

@@ -138,8 +138,7 @@ pub fn variables_text(
     paint: impl Fn(char, Option<Colour>) -> String,
 ) -> String {
     let mut text = format!("{}\n", visible(&model.name));
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    for variable in model.inputs.iter().chain(outputs) {
+    for variable in model.variables() {
         text += &format!(
             "\n{}\n",
             visible(&titled(&variable.name, variable.unit.as_deref()))

@@ -19,7 +19,7 @@ const TERMS: [&str; 2] = ["terms", "steps"];
 pub(super) fn to_mappings<'t>(tree: &'t Node, findings: &mut Vec<Diagnostic>) -> Cow<'t, Node> {
     let has_lists = ["inputs", "outputs", "blocks"]
         .into_iter()
-        .any(|key| child(tree, key).is_some_and(|part| has_list(key, part)));
+        .any(|key| tree.child(key).is_some_and(|part| has_list(key, part)));
     if !has_lists {
         return Cow::Borrowed(tree);
     }
@@ -55,7 +55,7 @@ fn has_list(key: &str, part: &Node) -> bool {
     match &part.value {
         Value::List(_) => true,
         Value::Mapping(entries) if key != "blocks" => entries.iter().any(|(_, variable)| {
-            let mut terms = TERMS.into_iter().filter_map(|key| child(variable, key));
+            let mut terms = TERMS.into_iter().filter_map(|key| variable.child(key));
             terms.any(|terms| matches!(terms.value, Value::List(_)))
         }),
         _ => false,
@@ -76,13 +76,13 @@ fn changed(mut tree: Node, change: &mut impl FnMut(&str, &mut Node)) -> Node {
                 Value::Mapping(entries) => {
                     let entries = entries.iter_mut();
                     entries
-                        .map(|(name, one)| (named(text(name)), one))
+                        .map(|(name, one)| (named(name.as_text()), one))
                         .collect()
                 }
                 Value::List(items) => {
                     let items = items.iter_mut();
                     items
-                        .map(|one| (named(child(one, NAME).and_then(text)), one))
+                        .map(|one| (named(one.child(NAME).and_then(Node::as_text)), one))
                         .collect()
                 }
                 Value::Scalar(_) => Vec::new(),
@@ -126,7 +126,7 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
             continue;
         };
         let mut own = fields.clone();
-        match own.iter().position(|(key, _)| text(key) == Some(NAME)) {
+        match own.iter().position(|(key, _)| key.as_text() == Some(NAME)) {
             Some(name) => {
                 let (_, name) = own.remove(name);
                 entries.push((name, with(item, Value::Mapping(own))));
@@ -136,7 +136,7 @@ fn mapping(what: &str, list: &Node, findings: &mut Vec<Diagnostic>) -> Option<No
                 let finding = Diagnostic::error("missing-key", item.span.clone(), message);
                 // `- heat: {range: [0, 40]}` is a mapping with one entry.
                 let only = match own.as_slice() {
-                    [(key, value)] if is_mapping(value) => text(key).map(|key| (key, value)),
+                    [(key, value)] if is_mapping(value) => key.as_text().map(|key| (key, value)),
                     _ => None,
                 };
                 findings.push(match only {
@@ -162,7 +162,7 @@ fn dashes(what: &str, items: &[Node]) -> Option<(Vec<(Node, Node)>, Diagnostic)>
             [(name, value), own @ ..]
                 if value.is_null()
                     && !own.is_empty()
-                    && own.iter().all(|(key, _)| text(key) != Some(NAME)) =>
+                    && own.iter().all(|(key, _)| key.as_text() != Some(NAME)) =>
             {
                 Some((name.clone(), with(item, Value::Mapping(own.to_vec()))))
             }
@@ -175,7 +175,7 @@ fn dashes(what: &str, items: &[Node]) -> Option<(Vec<(Node, Node)>, Diagnostic)>
     let message = format!("the names of {what} begin with `-`");
     let help = format!(
         "remove the `-`, and indent the keys below the name: `{}:`",
-        text(name).unwrap_or_default()
+        name.as_text().unwrap_or_default()
     );
     let finding = Diagnostic::error("wrong-type", name.span.clone(), message);
     Some((entries, finding.help(help)))
@@ -189,25 +189,12 @@ fn with(node: &Node, value: Value) -> Node {
     }
 }
 
-fn text(key: &Node) -> Option<&str> {
-    match &key.value {
-        Value::Scalar(scalar) => Some(&scalar.text),
-        _ => None,
-    }
-}
-
-fn child<'a>(node: &'a Node, key: &str) -> Option<&'a Node> {
-    let Value::Mapping(entries) = &node.value else {
-        return None;
-    };
-    let mut found = entries.iter().filter(|(known, _)| text(known) == Some(key));
-    found.next().map(|(_, value)| value)
-}
-
 fn entries_mut(node: &mut Node) -> impl Iterator<Item = (Option<&str>, &mut Node)> {
     let entries = match &mut node.value {
         Value::Mapping(entries) => entries.as_mut_slice(),
         _ => &mut [],
     };
-    entries.iter_mut().map(|(key, value)| (text(key), value))
+    entries
+        .iter_mut()
+        .map(|(key, value)| (key.as_text(), value))
 }

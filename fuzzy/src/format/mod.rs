@@ -22,6 +22,7 @@ mod rules;
 mod schema;
 mod shapes;
 mod steps;
+mod terms;
 #[cfg(test)]
 mod tests;
 mod variables;
@@ -256,30 +257,27 @@ fn outputs_among_inputs(fields: &Fields<'_>) -> Option<Diagnostic> {
         let Value::Mapping(pairs) = &variable.value else {
             return false;
         };
-        pairs.iter().any(|(key, _)| match &key.value {
-            Value::Scalar(key) => {
-                let key = key.text.as_str();
+        pairs
+            .iter()
+            .filter_map(|(key, _)| key.as_text())
+            .any(|key| {
                 variables::OUTPUT_KEYS.contains(&key) && !variables::INPUT_KEYS.contains(&key)
-            }
-            _ => false,
-        })
+            })
     };
     let (inputs, outputs) = (variables("inputs"), variables("outputs"));
     let (name, _) = inputs.iter().find(keys_of_outputs)?;
-    let Value::Scalar(scalar) = &name.value else {
-        return None;
-    };
+    let text = name.as_text()?;
     let all_exchanged = inputs.iter().all(|input| keys_of_outputs(&input))
         && !outputs.is_empty()
         && !outputs.iter().any(|output| keys_of_outputs(&output));
     let help = match () {
         () if fields.get("outputs").is_none() && !fields.misspells("outputs") => {
-            format!("write a line `outputs:` above `{}:`", scalar.text)
+            format!("write a line `outputs:` above `{text}:`")
         }
         () if all_exchanged => "exchange the keys `inputs` and `outputs`".into(),
         () => return None,
     };
-    let message = format!("input `{}` has keys of outputs", scalar.text);
+    let message = format!("input `{text}` has keys of outputs");
     Some(Diagnostic::error("unknown-key", name.span.clone(), message).help(help))
 }
 

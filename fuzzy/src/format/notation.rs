@@ -2,7 +2,7 @@
 
 use alloc::{format, string::String, vec::Vec};
 
-use super::{TermSpans, VariableSpans, variables::unread};
+use super::{TermSpans, VariableSpans, terms::unread};
 use crate::{
     diagnostic::Diagnostic,
     model::{Defuzzifier, Term, Variable},
@@ -23,12 +23,7 @@ pub(super) fn bare_numbers(
     };
     let numbers = pairs
         .iter()
-        .filter_map(|(key, value)| match (&key.value, &value.value) {
-            (Value::Scalar(name), Value::Scalar(number)) => number
-                .as_number()
-                .map(|_| (key, name.text.as_str(), number.text.as_str())),
-            _ => None,
-        });
+        .filter_map(|(key, value)| Some((key, key.as_text()?, value.as_number_text()?)));
     let numbers: Vec<(&Node, &str, &str)> = numbers.collect();
     if entry.key != "terms" || numbers.is_empty() || numbers.len() != pairs.len() {
         return false;
@@ -69,12 +64,7 @@ pub(super) fn bare_numbers(
 pub(super) fn peaks_in_list(items: &[Node]) -> Option<String> {
     let peaks = items.iter().map(|item| match &item.value {
         Value::Mapping(pairs) => match pairs.as_slice() {
-            [(key, value)] => match (&key.value, &value.value) {
-                (Value::Scalar(name), Value::Scalar(peak)) => {
-                    Some(format!("{}: {}", name.text, peak.text))
-                }
-                _ => None,
-            },
+            [(key, value)] => Some(format!("{}: {}", key.as_text()?, value.as_text()?)),
             _ => None,
         },
         _ => None,

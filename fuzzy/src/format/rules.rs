@@ -39,14 +39,14 @@ pub(super) fn read(
     for (i, item) in items.iter().enumerate() {
         // A rule in several entries is reported at its first one.
         let last = i.checked_sub(1).and_then(|last| items.get(last));
-        if continues(item) && last.and_then(written).is_some() {
+        if continues(item) && last.and_then(Node::as_text).is_some() {
             spans.rules_unread = true;
             continue;
         }
         let rest = items.iter().skip(i + 1).take_while(|item| continues(item));
-        let parts: Vec<&str> = match written(item) {
+        let parts: Vec<&str> = match item.as_text() {
             Some(first) => core::iter::once(first)
-                .chain(rest.filter_map(written))
+                .chain(rest.filter_map(Node::as_text))
                 .collect(),
             None => Vec::new(),
         };
@@ -81,17 +81,11 @@ const HELP: &str = "write `IF input IS term THEN output IS term`, or remove the 
 
 const BEATEN: &str = "{term: high, degree: 0.4, support: 3}";
 
-/// Returns the text of an entry, if it is one.
-fn written(item: &Node) -> Option<&str> {
-    match &item.value {
-        Value::Scalar(scalar) => Some(scalar.text.as_str()),
-        _ => None,
-    }
-}
-
 /// Returns whether an entry begins with a word that cannot begin a rule, so that it belongs to the one before it.
 fn continues(item: &Node) -> bool {
-    let first = written(item).and_then(|text| text.split_whitespace().next());
+    let first = item
+        .as_text()
+        .and_then(|text| text.split_whitespace().next());
     first.is_some_and(|first| {
         ["AND", "OR", "THEN", "WITH"]
             .iter()
@@ -104,7 +98,7 @@ fn of_parts(fields: &Fields<'_>) -> Option<String> {
     let part = |name: &str| {
         let mut unknown = fields.unknown();
         let entry = unknown.find(|entry| entry.key.eq_ignore_ascii_case(name))?;
-        written(entry.value)
+        entry.value.as_text()
     };
     Some(format!("IF {} THEN {}", part("if")?, part("then")?))
 }

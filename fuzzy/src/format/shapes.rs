@@ -173,10 +173,7 @@ fn other_parameters(form: &Form, fields: &Fields<'_>) -> Diagnostic {
     let numbers = fields
         .entries()
         .iter()
-        .filter_map(|entry| match &entry.value.value {
-            Value::Scalar(scalar) => scalar.as_number().map(|_| scalar.text.as_str()),
-            _ => None,
-        });
+        .filter_map(|entry| entry.value.as_number_text());
     let numbers: Vec<&str> = numbers.collect();
     let help = match numbers.len() == names.len() {
         true if form.as_list() => format!("write `{}: [{}]`", form.name, numbers.join(", ")),
@@ -221,16 +218,10 @@ fn points(
 ) -> Option<MembershipFunction> {
     let items = node.items(&format!("the points of {term}"), POINTS_HELP, findings)?;
     if let Some(first) = items.first()
-        && items
-            .iter()
-            .all(|item| matches!(&item.value, Value::Scalar(_)))
+        && items.iter().all(|item| item.as_text().is_some())
     {
         // For example `[30, 0, 50, 1, 70, 0]`.
-        let numbers = items.iter().filter_map(|item| match &item.value {
-            Value::Scalar(scalar) => scalar.as_number().map(|_| scalar.text.as_str()),
-            _ => None,
-        });
-        let numbers: Vec<&str> = numbers.collect();
+        let numbers: Vec<&str> = items.iter().filter_map(Node::as_number_text).collect();
         let (pairs, rest) = numbers.as_chunks::<2>();
         let help = match rest.is_empty() && numbers.len() == items.len() {
             true => {

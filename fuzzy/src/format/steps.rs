@@ -2,7 +2,7 @@
 
 use alloc::{format, vec::Vec};
 
-use super::{TermSpans, VariableSpans, variables::unread};
+use super::{TermSpans, VariableSpans, terms::unread};
 use crate::{
     diagnostic::{Diagnostic, Severity},
     model::{Variable, between_limits},

@@ -1,24 +1,20 @@
 //! Reading inputs and outputs: ranges, partitions, terms.
 
-use alloc::{
-    collections::BTreeMap,
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use alloc::{collections::BTreeMap, format, string::String, vec::Vec};
 use core::ops::Range;
 
 use super::{
     TermSpans, VariableSpans,
     notation::{bare_numbers, colons_without_space, likely_defuzzifier, meant_by, peaks_in_list},
-    optional_text, shapes, steps,
+    optional_text, steps,
+    terms::{terms, unread},
     words::{AGGREGATIONS, DEFUZZIFIERS},
 };
 use crate::{
     diagnostic::{Diagnostic, all_of, duplicate},
     model::{
-        Defuzzifier, Lower, MembershipFunction, NoRuleFires, Output, Sampling, SamplingRule, Term,
-        Variable, between_peaks, even_peaks,
+        Defuzzifier, NoRuleFires, Output, Sampling, SamplingRule, Variable, between_peaks,
+        even_peaks,
     },
     tree::{Entry, Fields, Node, Value},
 };
@@ -189,29 +185,20 @@ fn no_rule_fires(
         ("error", NoRuleFires::Error),
         ("previous", NoRuleFires::Previous(None)),
     ];
-    if let Value::Scalar(scalar) = &node.value
-        && scalar.as_number().is_some()
-    {
+    if let Some(number) = node.as_number_text() {
         findings.push(
             node.unexpected(&format!("`undefined`, `error` or a mapping for {key}"))
-                .help(format!("write `{{value: {}}}`", scalar.text)),
+                .help(format!("write `{{value: {number}}}`")),
         );
         return None;
     }
     let before = findings.len();
     let found = node.choice(&key, &words, findings);
     if let Some(finding) = findings.get_mut(before) {
-        finding.help = Some(match &node.value {
-            Value::Scalar(scalar) => match meant_by(&scalar.text) {
-                Some(help) => help,
-                None => finding
-                    .help
-                    .take()
-                    .filter(|help| help.starts_with("did you mean"))
-                    .unwrap_or_else(|| NO_RULE_HELP.into()),
-            },
-            _ => NO_RULE_HELP.into(),
-        });
+        let suggested = finding.help.take();
+        let suggested = suggested.filter(|help| help.starts_with("did you mean"));
+        let meant = node.as_text().and_then(meant_by).or(suggested);
+        finding.help = Some(meant.unwrap_or_else(|| NO_RULE_HELP.into()));
     }
     found
 }
@@ -260,7 +247,8 @@ fn variable(
                 _ => terms,
             };
             let is_weighted = fields.get("defuzzifier").is_some_and(|node| {
-                matches!(&node.value, Value::Scalar(word) if word.text.starts_with("weighted"))
+                node.as_text()
+                    .is_some_and(|word| word.starts_with("weighted"))
             });
             if !bare_numbers(
                 what,
@@ -396,12 +384,9 @@ fn partition(
                         .iter()
                         .take_while(|one| one.key_span != entry.key_span)
                         .last();
-                    let whole = whole.map(|one| &one.value.value);
-                    finding.help = Some(match whole {
-                        Some(Value::Scalar(whole)) => {
-                            format!("write a decimal point: `{}.{}`", whole.text, entry.key)
-                        }
-                        _ => "a decimal point is written as `.`: `20.5`".into(),
+                    finding.help = Some(match whole.and_then(|one| one.value.as_text()) {
+                        Some(whole) => format!("write a decimal point: `{whole}.{}`", entry.key),
+                        None => "a decimal point is written as `.`: `20.5`".into(),
                     });
                 }
             }
@@ -512,154 +497,4 @@ fn rising(
         last = Some((name, peak));
     }
     findings.len() == before
-}
-
-/// Returns a term whose membership function cannot be read. Its name is known, so that rules that use it are not
-/// reported.
-pub(super) fn unread(name: &str) -> Term {
-    Term {
-        name: String::from(name),
-        membership_function: MembershipFunction::Constant { value: 1.0 },
-        height: 1.0,
-        lower: None,
-    }
-}
-
-/// Reads `{low: {triangle: [0, 1, 2], height: 0.8}}`.
-fn terms(
-    what: &str,
-    node: &Node,
-    variable: &mut Variable,
-    spans: &mut VariableSpans,
-    findings: &mut Vec<Diagnostic>,
-) {
-    let help =
-        "write `terms: {low: {triangle: [0, 1, 2]}}`, or `partition: [low, high]` for even spacing";
-    let Some(entries) = node.entries(what, "term", help, findings) else {
-        return;
-    };
-    spans.terms_unread = false;
-    for entry in &entries {
-        let mut here = TermSpans {
-            name: entry.key_span.clone(),
-            ..TermSpans::default()
-        };
-        let term = term(what, entry, &mut here, findings);
-        here.unread = term.is_none();
-        variable
-            .terms
-            .push(term.unwrap_or_else(|| unread(entry.key)));
-        spans.terms.push(here);
-    }
-}
-
-fn term(
-    what: &str,
-    entry: &Entry<'_>,
-    spans: &mut TermSpans,
-    findings: &mut Vec<Diagnostic>,
-) -> Option<Term> {
-    let term = format!("term `{}` of {what}", entry.key);
-    let Value::Mapping(pairs) = &entry.value.value else {
-        let expected = format!("a membership function for {term}");
-        let finding = entry.value.unexpected(&expected);
-        findings.push(finding.help(match &entry.value.value {
-            Value::List(items) if items.len() == 4 => "name it: `{trapezoid: [0, 1, 2, 3]}`",
-            Value::List(_) => "name it: `{triangle: [0, 1, 2]}`",
-            Value::Scalar(scalar) if scalar.as_number().is_some() => {
-                "numbers alone are peaks: `partition: {low: 0, high: 10}` in place of `terms`; a term is a membership function: `{triangle: [0, 1, 2]}`"
-            }
-            _ => "write one: `{triangle: [0, 1, 2]}`",
-        }));
-        return None;
-    };
-    // The valid keys depend on the membership function, so all keys are accepted here and checked there.
-    let keys = keys_of(pairs);
-    let fields = entry.fields(&term, &keys, TERM_HELP, findings)?;
-    let name = entry.key.to_string();
-    if ["upper", "lower"].iter().any(|key| keys.contains(key)) {
-        return interval(&term, name, &fields, spans, findings);
-    }
-    let (membership_function, height) = function(&term, &fields, spans, findings)?;
-    Some(Term {
-        name,
-        membership_function,
-        height,
-        lower: None,
-    })
-}
-
-/// The form of a term.
-const TERM_HELP: &str = "write one: `{triangle: [0, 1, 2]}`";
-
-fn keys_of(pairs: &[(Node, Node)]) -> Vec<&str> {
-    let keys = pairs.iter().filter_map(|(key, _)| match &key.value {
-        Value::Scalar(scalar) => Some(scalar.text.as_str()),
-        _ => None,
-    });
-    keys.collect()
-}
-
-/// Reads `{triangle: [0, 1, 2], height: 0.8}`: a membership function and its height.
-fn function(
-    what: &str,
-    fields: &Fields<'_>,
-    spans: &mut TermSpans,
-    findings: &mut Vec<Diagnostic>,
-) -> Option<(MembershipFunction, f64)> {
-    let height = fields.get("height").map_or(Some(1.0), |node| {
-        spans.height = node.span.clone();
-        node.finite(&format!("the height of {what}"), findings)
-    });
-    let membership_function = shapes::read(what, fields, spans, findings);
-    Some((membership_function?, height?))
-}
-
-/// Reads `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3], height: 0.8}}`: an interval type-2 term.
-fn interval(
-    term: &str,
-    name: String,
-    fields: &Fields<'_>,
-    spans: &mut TermSpans,
-    findings: &mut Vec<Diagnostic>,
-) -> Option<Term> {
-    const HELP: &str = "write both membership functions: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3]}}`";
-    let mut others = fields.entries().iter();
-    let other = others.find(|entry| !["upper", "lower"].contains(&entry.key));
-    if let Some(other) = other {
-        let message = format!("{term} has `{}` beside `upper` and `lower`", other.key);
-        let help = "`upper` and `lower` each contain a membership function and its height: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3], height: 0.8}}`";
-        let finding = Diagnostic::error("unknown-key", other.key_span.clone(), message);
-        findings.push(finding.help(help));
-    }
-    let upper = fields.require("upper", HELP, findings);
-    let lower = fields.require("lower", HELP, findings);
-    let mut lower_spans = TermSpans {
-        name: spans.name.clone(),
-        ..TermSpans::default()
-    };
-    let mut read = |which: &str, node: Option<&Node>, spans: &mut TermSpans| {
-        let what = format!("the {which} membership function of {term}");
-        let node = node?;
-        let Value::Mapping(pairs) = &node.value else {
-            findings.push(node.unexpected(&what).help(HELP));
-            return None;
-        };
-        let fields = node.fields(&what, &keys_of(pairs), HELP, findings)?;
-        function(&what, &fields, spans, findings)
-    };
-    let upper = read("upper", upper, spans);
-    let lower = read("lower", lower, &mut lower_spans);
-    spans.names.extend(lower_spans.names.iter().cloned());
-    spans.lower = Some(lower_spans.into());
-    let ((membership_function, height), lower) = (upper?, lower?);
-    other.is_none().then_some(Term {
-        name,
-        membership_function,
-        height,
-        lower: Some(Lower {
-            membership_function: lower.0,
-            height: lower.1,
-        }),
-    })
 }

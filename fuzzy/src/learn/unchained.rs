@@ -5,7 +5,7 @@ use alloc::{collections::BTreeSet, string::String, vec::Vec};
 use super::{LearnError, Refusal, check};
 use crate::{
     engine::Engine,
-    model::{Model, Rule, Variable},
+    model::{Model, Rule},
 };
 
 /// The last output of a chain as a model of its own. The outputs that it reads are inputs of this model; their values
@@ -78,7 +78,7 @@ impl Unchained {
         let own = of_outputs(&model.rules, is_of_target);
 
         let read = read_by(&own, &before);
-        let variables = variables(&before).enumerate();
+        let variables = before.variables().enumerate();
         let (picks, inputs) = variables
             .filter(|(_, variable)| read.contains(&variable.name))
             .map(|(index, variable)| (index, variable.clone()))
@@ -159,11 +159,6 @@ fn of_outputs(rules: &[Rule], is_kept: impl Fn(&String) -> bool) -> Vec<Rule> {
     }
     rules.retain(|rule| !rule.rule.consequents.is_empty());
     rules
-}
-
-fn variables(model: &Model) -> impl Iterator<Item = &Variable> {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    model.inputs.iter().chain(outputs)
 }
 
 /// Returns the names of the learner's inputs for an output with these rules.

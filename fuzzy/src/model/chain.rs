@@ -107,6 +107,12 @@ impl Model {
         }
     }
 
+    /// Returns all variables: the inputs, then those of the outputs.
+    pub fn variables(&self) -> impl Iterator<Item = &Variable> + Clone {
+        let outputs = self.outputs.iter().map(|output| &output.variable);
+        self.inputs.iter().chain(outputs)
+    }
+
     /// Returns the variables whose values are measured in data: the inputs, then the measured output.
     pub fn measured_variables(&self) -> impl Iterator<Item = &Variable> {
         let output = self.measured_output();

@@ -122,16 +122,13 @@ impl Model {
     /// Returns whether a term of an input or output has a lower membership function: an interval type-2 rule set.
     #[must_use]
     pub fn has_type2_terms(&self) -> bool {
-        let outputs = self.outputs.iter().map(|output| &output.variable);
-        let mut variables = self.inputs.iter().chain(outputs);
-        variables.any(Variable::has_type2_terms)
+        self.variables().any(Variable::has_type2_terms)
     }
 
     /// Returns the term that a proposition names, if it is a type-2 term.
     pub(crate) fn type2_term(&self, proposition: &Proposition) -> Option<&Term> {
-        let outputs = self.outputs.iter().map(|output| &output.variable);
-        let mut variables = self.inputs.iter().chain(outputs);
-        let variable = variables.find(|v| v.name == proposition.variable.text)?;
+        let name = &proposition.variable.text;
+        let variable = self.variables().find(|known| known.name == *name)?;
         let name = &proposition.term.as_ref()?.text;
         let term = variable.terms.iter().find(|term| term.name == *name)?;
         term.lower.is_some().then_some(term)

@@ -143,6 +143,34 @@ impl Node {
         }
     }
 
+    /// Returns the text of a scalar.
+    #[must_use]
+    pub fn as_text(&self) -> Option<&str> {
+        match &self.value {
+            Value::Scalar(scalar) => Some(&scalar.text),
+            _ => None,
+        }
+    }
+
+    /// Returns the text of a number, as it is written.
+    #[must_use]
+    pub fn as_number_text(&self) -> Option<&str> {
+        match &self.value {
+            Value::Scalar(scalar) => scalar.as_number().map(|_| scalar.text.as_str()),
+            _ => None,
+        }
+    }
+
+    /// Returns the value of a key of a mapping.
+    #[must_use]
+    pub fn child(&self, key: &str) -> Option<&Node> {
+        let Value::Mapping(pairs) = &self.value else {
+            return None;
+        };
+        let pair = pairs.iter().find(|(name, _)| name.as_text() == Some(key));
+        pair.map(|(_, value)| value)
+    }
+
     /// Returns whether the value is null.
     #[must_use]
     pub fn is_null(&self) -> bool {

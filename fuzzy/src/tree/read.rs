@@ -375,13 +375,9 @@ impl Node {
             return is_list
                 .then(|| format!("separate the numbers by commas: `[{}]`", numbers.join(", ")));
         }
-        let number = |node: &Node| match &node.value {
-            Value::Scalar(scalar) => scalar.as_number().map(|_| scalar.text.clone()),
-            _ => None,
-        };
         let mut adjoining = items.windows(2).filter_map(|pair| match pair {
             [whole, part] if part.span.start == whole.span.end + 1 => {
-                let (whole, part) = (number(whole)?, number(part)?);
+                let (whole, part) = (whole.as_number_text()?, part.as_number_text()?);
                 let is_part = part.bytes().all(|c| c.is_ascii_digit());
                 // Three digits after a comma are thousands, rather than a fraction.
                 let is_thousands = part.len() == 3 && (1..=3).contains(&whole.len());

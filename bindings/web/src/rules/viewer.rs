@@ -105,9 +105,10 @@ fn words(hedges: &[Hedge], term: Option<&str>) -> String {
 
 /// The curve of a proposition with hedges.
 fn hedged(model: &Model, one: &Proposition) -> Vec<f64> {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    let mut variables = model.inputs.iter().chain(outputs);
-    let Some(variable) = variables.find(|known| known.name == one.variable.text) else {
+    let Some(variable) = model
+        .variables()
+        .find(|known| known.name == one.variable.text)
+    else {
         return Vec::new();
     };
     if one.hedges.is_empty() {

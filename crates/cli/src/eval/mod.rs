@@ -98,7 +98,7 @@ struct Plan {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model, &arguments.points])?;
     let output = files.output(&arguments.output, Replace::Yes)?;
-    if is_table(&arguments.model) && !is_table(&arguments.points) {
+    if table::is_table(&arguments.model) && !table::is_table(&arguments.points) {
         let (model, points) = (arguments.model.display(), arguments.points.display());
         let message = format!("`{model}` is a table, but the rule set comes first");
         return Err(Failure::usage(message).help(format!("flagred eval {points} {model}")));
@@ -169,15 +169,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Exit::Clean
     } else {
         Exit::Findings
-    })
-}
-
-fn is_table(path: &Path) -> bool {
-    let extension = path.extension();
-    extension.is_some_and(|found| {
-        ["csv", "tsv"]
-            .iter()
-            .any(|known| found.eq_ignore_ascii_case(known))
     })
 }
 

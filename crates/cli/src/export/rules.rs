@@ -29,11 +29,7 @@ pub(super) fn export(arguments: &Arguments, source: &Source) -> Result<Exit, Fai
     let file = &arguments.file;
     let model = rule_set::engine(source, file)?.model();
     let output = Files::reading([Path::new(file)])?.output(&arguments.output, Replace::Yes)?;
-    let language = match arguments.rust {
-        true => Language::Rust,
-        false => Language::C,
-    };
-    let (text, warnings) = code((model, file), language, arguments.lossy)?;
+    let (text, warnings) = code((model, file), arguments.language(), arguments.lossy)?;
     for warning in warnings {
         say(&format!("warning: {warning}"));
     }

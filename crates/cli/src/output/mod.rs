@@ -83,7 +83,8 @@ pub(crate) fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<Pat
     }
 }
 
-fn has_ending(path: &Path, extensions: &[&str]) -> bool {
+/// Returns whether the extension of a path is one of these, in small or capital letters.
+pub(crate) fn has_ending(path: &Path, extensions: &[&str]) -> bool {
     let ending = path.extension();
     ending.is_some_and(|ending| extensions.iter().any(|e| ending.eq_ignore_ascii_case(e)))
 }

@@ -314,9 +314,7 @@ fn failure(name: &str, model: &Model, error: &TuneError) -> Failure {
     };
     match error {
         TuneError::Unknown { name: unknown } => {
-            let outputs = model.outputs.iter().map(|output| &output.variable);
-            let variables = model.inputs.iter().chain(outputs);
-            let names = variables.flat_map(|variable| {
+            let names = model.variables().flat_map(|variable| {
                 let terms = variable.terms.iter();
                 let terms = terms.map(|term| format!("{}.{}", variable.name, term.name));
                 std::iter::once(variable.name.clone()).chain(terms)

@@ -49,9 +49,7 @@ pub(crate) fn parts(model: &Model, condition: &Condition) -> Option<Vec<Part>> {
 
 /// An input, or an output that rules read.
 pub(crate) fn variable<'m>(model: &'m Model, name: &str) -> Option<&'m Variable> {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    let mut variables = model.inputs.iter().chain(outputs);
-    variables.find(|variable| variable.name == name)
+    model.variables().find(|variable| variable.name == name)
 }
 
 /// Joins parts to an antecedent. Without parts it is always true: `variable IS any`.

@@ -107,11 +107,11 @@ fn input(
         .fields(&what, &keys, &source_help(entry), found)?;
     // For example `{motor_margin: mean}`.
     for entry in fields.unknown() {
-        if let Value::Scalar(word) = &entry.value.value
-            && keys.contains(&word.text.as_str())
+        if let Some(word) = entry.value.as_text()
+            && keys.contains(&word)
             && let Some(finding) = found.iter_mut().find(|one| one.span == entry.key_span)
         {
-            finding.help = Some(format!("exchange them: `{{{}: {}}}`", word.text, entry.key));
+            finding.help = Some(format!("exchange them: `{{{word}: {}}}`", entry.key));
         }
     }
     let given: Vec<&str> = statistics
@@ -150,10 +150,7 @@ fn input(
                 && word.as_number().is_none()
             {
                 let message = format!("`{key}` takes a number, and `of` the signal");
-                let number = fields.get("of").and_then(|node| match &node.value {
-                    Value::Scalar(number) => number.as_number().map(|_| number.text.as_str()),
-                    _ => None,
-                });
+                let number = fields.get("of").and_then(Node::as_number_text);
                 let example = if *key == "percentile" { "95" } else { "0.1" };
                 let number = number.unwrap_or(example);
                 let help = format!("write `{{{key}: {number}, of: {}}}`", word.text);
@@ -264,12 +261,7 @@ fn other(node: &Node, entry: &Entry, entries: &[Entry], found: &mut Found) -> Op
             found,
         )?
         .text;
-    let is_ratio = |other: &Entry| match &other.value.value {
-        Value::Mapping(pairs) => pairs
-            .iter()
-            .any(|(key, _)| matches!(&key.value, Value::Scalar(key) if key.text == "per")),
-        _ => false,
-    };
+    let is_ratio = |other: &Entry| other.value.child("per").is_some();
     let message = match entries.iter().find(|other| other.key == *name) {
         Some(other) if other.key != entry.key && !is_ratio(other) => return Some(name.clone()),
         Some(_) => format!("`{name}` is a ratio itself"),
@@ -336,10 +328,7 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         .filter(|key| fields.get(key).is_some())
         .collect();
     if let ["motor"] = given.as_slice() {
-        let number = match fields.get("motor").map(|node| &node.value) {
-            Some(Value::Scalar(number)) => number.text.as_str(),
-            _ => "1",
-        };
+        let number = fields.get("motor").and_then(Node::as_text).unwrap_or("1");
         let help = format!("name a signal of motors: `{{motor: {number}, of: motor_command}}`");
         fields.require("of", &help, found)?;
     }

@@ -4,7 +4,7 @@ use alloc::format;
 
 use fuzzy::{
     diagnostic::Diagnostic,
-    tree::{Fields, Node, Value},
+    tree::{Fields, Node},
 };
 
 use super::{Bounds, Found, number};
@@ -116,10 +116,7 @@ pub(super) fn level(
 
 /// The number that an author wrote in place of a mapping, for its example; else another number.
 fn number_or<'n>(node: &'n Node, other: &'n str) -> &'n str {
-    match &node.value {
-        Value::Scalar(scalar) if scalar.as_number().is_some() => &scalar.text,
-        _ => other,
-    }
+    node.as_number_text().unwrap_or(other)
 }
 
 fn threshold(fields: &Fields, what: &str, found: &mut Found) -> Threshold {

@@ -1,0 +1,159 @@
+//! Terms in a file: membership functions with heights, and interval type-2 terms.
+
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+
+use super::{TermSpans, VariableSpans, shapes};
+use crate::{
+    diagnostic::Diagnostic,
+    model::{Lower, MembershipFunction, Term, Variable},
+    tree::{Entry, Fields, Node, Value},
+};
+
+const TERM_HELP: &str = "write one: `{triangle: [0, 1, 2]}`";
+
+/// Reads `{low: {triangle: [0, 1, 2], height: 0.8}}`.
+pub(super) fn terms(
+    what: &str,
+    node: &Node,
+    variable: &mut Variable,
+    spans: &mut VariableSpans,
+    findings: &mut Vec<Diagnostic>,
+) {
+    let help =
+        "write `terms: {low: {triangle: [0, 1, 2]}}`, or `partition: [low, high]` for even spacing";
+    let Some(entries) = node.entries(what, "term", help, findings) else {
+        return;
+    };
+    spans.terms_unread = false;
+    for entry in &entries {
+        let mut here = TermSpans {
+            name: entry.key_span.clone(),
+            ..TermSpans::default()
+        };
+        let term = term(what, entry, &mut here, findings);
+        here.unread = term.is_none();
+        variable
+            .terms
+            .push(term.unwrap_or_else(|| unread(entry.key)));
+        spans.terms.push(here);
+    }
+}
+
+fn term(
+    what: &str,
+    entry: &Entry<'_>,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Term> {
+    let term = format!("term `{}` of {what}", entry.key);
+    let Value::Mapping(pairs) = &entry.value.value else {
+        let expected = format!("a membership function for {term}");
+        let finding = entry.value.unexpected(&expected);
+        findings.push(finding.help(match &entry.value.value {
+            Value::List(items) if items.len() == 4 => "name it: `{trapezoid: [0, 1, 2, 3]}`",
+            Value::List(_) => "name it: `{triangle: [0, 1, 2]}`",
+            Value::Scalar(scalar) if scalar.as_number().is_some() => {
+                "numbers alone are peaks: `partition: {low: 0, high: 10}` in place of `terms`; a term is a membership function: `{triangle: [0, 1, 2]}`"
+            }
+            _ => TERM_HELP,
+        }));
+        return None;
+    };
+    // The valid keys depend on the membership function, so all keys are accepted here and checked there.
+    let keys = keys_of(pairs);
+    let fields = entry.fields(&term, &keys, TERM_HELP, findings)?;
+    let name = entry.key.to_string();
+    if ["upper", "lower"].iter().any(|key| keys.contains(key)) {
+        return interval(&term, name, &fields, spans, findings);
+    }
+    let (membership_function, height) = function(&term, &fields, spans, findings)?;
+    Some(Term {
+        name,
+        membership_function,
+        height,
+        lower: None,
+    })
+}
+
+fn keys_of(pairs: &[(Node, Node)]) -> Vec<&str> {
+    pairs.iter().filter_map(|(key, _)| key.as_text()).collect()
+}
+
+/// Reads `{triangle: [0, 1, 2], height: 0.8}`: a membership function and its height.
+fn function(
+    what: &str,
+    fields: &Fields<'_>,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<(MembershipFunction, f64)> {
+    let height = fields.get("height").map_or(Some(1.0), |node| {
+        spans.height = node.span.clone();
+        node.finite(&format!("the height of {what}"), findings)
+    });
+    let membership_function = shapes::read(what, fields, spans, findings);
+    Some((membership_function?, height?))
+}
+
+/// Reads `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3], height: 0.8}}`: an interval type-2 term.
+fn interval(
+    term: &str,
+    name: String,
+    fields: &Fields<'_>,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Term> {
+    const HELP: &str = "write both membership functions: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3]}}`";
+    let mut others = fields.entries().iter();
+    let other = others.find(|entry| !["upper", "lower"].contains(&entry.key));
+    if let Some(other) = other {
+        let message = format!("{term} has `{}` beside `upper` and `lower`", other.key);
+        let help = "`upper` and `lower` each contain a membership function and its height: `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3], height: 0.8}}`";
+        let finding = Diagnostic::error("unknown-key", other.key_span.clone(), message);
+        findings.push(finding.help(help));
+    }
+    let upper = fields.require("upper", HELP, findings);
+    let lower = fields.require("lower", HELP, findings);
+    let mut lower_spans = TermSpans {
+        name: spans.name.clone(),
+        ..TermSpans::default()
+    };
+    let mut read = |which: &str, node: Option<&Node>, spans: &mut TermSpans| {
+        let what = format!("the {which} membership function of {term}");
+        let node = node?;
+        let Value::Mapping(pairs) = &node.value else {
+            findings.push(node.unexpected(&what).help(HELP));
+            return None;
+        };
+        let fields = node.fields(&what, &keys_of(pairs), HELP, findings)?;
+        function(&what, &fields, spans, findings)
+    };
+    let upper = read("upper", upper, spans);
+    let lower = read("lower", lower, &mut lower_spans);
+    spans.names.extend(lower_spans.names.iter().cloned());
+    spans.lower = Some(lower_spans.into());
+    let ((membership_function, height), lower) = (upper?, lower?);
+    other.is_none().then_some(Term {
+        name,
+        membership_function,
+        height,
+        lower: Some(Lower {
+            membership_function: lower.0,
+            height: lower.1,
+        }),
+    })
+}
+
+/// Returns a term whose membership function cannot be read. Its name is known, so that rules that use it are not
+/// reported.
+pub(super) fn unread(name: &str) -> Term {
+    Term {
+        name: String::from(name),
+        membership_function: MembershipFunction::Constant { value: 1.0 },
+        height: 1.0,
+        lower: None,
+    }
+}
