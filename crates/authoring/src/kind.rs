@@ -71,13 +71,17 @@ const STARTS: [(&[u8], Kind); 8] = [
     ),
 ];
 
+/// Returns whether bytes begin with a byte order mark of UTF-16.
+pub fn is_utf16(bytes: &[u8]) -> bool {
+    matches!(bytes.get(..2), Some([0xff, 0xfe] | [0xfe, 0xff]))
+}
+
 /// Returns the kind of bytes that are not text; `None` for text and for unknown bytes.
 pub fn binary(bytes: &[u8]) -> Option<Kind> {
     if let Some((_, kind)) = STARTS.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Some(*kind);
     }
-    let has_mark = matches!(bytes.get(..2), Some([0xff, 0xfe] | [0xfe, 0xff]));
-    if has_mark || !bytes.contains(&0) {
+    if is_utf16(bytes) || !bytes.contains(&0) {
         return None;
     }
     // In UTF-16, one byte of each ASCII letter is 0.

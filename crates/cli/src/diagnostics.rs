@@ -110,11 +110,6 @@ pub(crate) fn text(bytes: Vec<u8>, shown: &str) -> Result<String, Failure> {
     decoded(bytes).map_err(|error| error.failure(shown))
 }
 
-/// Returns whether bytes begin with a byte order mark of UTF-16.
-pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
-    matches!(bytes.get(..2), Some([0xff, 0xfe] | [0xfe, 0xff]))
-}
-
 /// The reason why bytes are not valid text.
 struct NoText {
     /// The line with the first invalid byte, and that byte; `None` in UTF-16.

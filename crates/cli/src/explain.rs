@@ -16,7 +16,7 @@ use crate::{
     failure::{Exit, Failure},
     output::{self, Files, print},
     rule_set,
-    table::Format,
+    table::{Format, is_table},
 };
 
 #[derive(clap::Args)]
@@ -117,10 +117,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let engine = rule_set::load(&arguments.model)?;
     let model = engine.model();
-    let is_table = |path: &PathBuf| {
-        path.extension()
-            .is_some_and(|it| it == "csv" || it == "tsv")
-    };
     if let (None, Some(path)) = (
         &arguments.rows,
         arguments.output.as_ref().filter(|it| is_table(it)),

@@ -96,12 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         ));
     }
     let output = Files::reading(&loaded.files)?.output(&arguments.output, Replace::Yes)?;
-    let language = match (arguments.rust, arguments.c) {
-        (true, _) => Language::Rust,
-        (_, true) => Language::C,
-        _ => Language::Lua,
-    };
-    output.write(&profile_code(&loaded.estimator, language)?)?;
+    output.write(&profile_code(&loaded.estimator, arguments.language())?)?;
     Ok(Exit::Clean)
 }
 
@@ -154,15 +149,26 @@ impl Arguments {
             Some(Format::Fll) => ("FLL", &["fll"]),
             Some(Format::Fcl) => ("FCL", &["fcl"]),
             Some(Format::Fml) => ("FML", &["xml", "fml"]),
-            None if self.rust => ("Rust", &["rs"]),
-            None if self.c => ("C", &["h", "c"]),
-            None => ("Lua", &["lua"]),
+            None => match self.language() {
+                Language::Rust => ("Rust", &["rs"]),
+                Language::C => ("C", &["h", "c"]),
+                Language::Lua => ("Lua", &["lua"]),
+            },
         };
         let text = self.output.to_string_lossy();
         let checked = output::path_of(&text, &format!("the output is {what}"), endings);
         checked.map(drop).map_err(|wrong| {
             Failure::usage(format!("`{text}` has the extension of another format")).help(wrong)
         })
+    }
+
+    /// Returns the language, if no other program's format was chosen.
+    fn language(&self) -> Language {
+        match (self.rust, self.c) {
+            (true, _) => Language::Rust,
+            (_, true) => Language::C,
+            _ => Language::Lua,
+        }
     }
 
     /// Returns the other program's format, if one was chosen.

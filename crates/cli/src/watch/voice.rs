@@ -23,8 +23,8 @@ pub(crate) const NOBODY: u8 = 255;
 /// Maximum length of a STATUSTEXT.
 const TEXT: usize = 50;
 
-/// The first byte of `custom_mode` in the heartbeats of a watch. The others are its running time in tenths of a second: of two
-/// watches of one vehicle, the one with the longer running time sends the warnings.
+/// The first byte of `custom_mode` in the heartbeats of a watch. The other three bytes are the running time of the watch in tenths
+/// of a second. If two watches follow one vehicle, the one that has run longer sends the warnings.
 const WATCH: u32 = 0xf1 << 24;
 const AGE: u32 = (1 << 24) - 1;
 

@@ -16,7 +16,7 @@ fn is_curly(c: char) -> bool {
     matches!(c, '\u{2018}'..='\u{201f}')
 }
 
-/// The first number with a comma inside, if others are separated by blanks: `1,5` of `[1,5 0]`.
+/// The first number that contains a comma, if the numbers of the list are separated by blanks: `1,5` in `[1,5 0]`.
 fn decimal_comma(parameters: &str) -> Option<&str> {
     let inner = parameters
         .trim()

@@ -192,7 +192,7 @@ def _to_act_on(found: Sequence[Change], news: News, at: Mapping[str, str]) -> st
 
 
 def _compared(vehicles: Sequence[Row]) -> str:
-    """The number of vehicles with enough flights to find a change; changes of the others are unknown."""
+    """The number of vehicles with enough flights to find a change. Changes of all other vehicles are unknown."""
     count = sum(row["days"] >= LEAST_DAYS for row in vehicles)
     if count == len(vehicles) > 0:
         return ""

@@ -19,8 +19,8 @@ use template::Filling;
 /// The key of the script's parameter table. No script that ships with ArduPilot uses it.
 const PARAMETER_TABLE: u8 = 157;
 
-/// The parts in the order of compilation. Parts that run only once come first and are freed before the others are compiled; the
-/// parts that need the least memory to compile come last, when the most memory is in use.
+/// The parts of the script, in the order in which they are compiled. Parts that run only once come first, and their memory is
+/// freed afterwards. Parts that need the least memory to compile come last, when the most memory is in use.
 const PARTS: [(&str, &str); 15] = [
     ("motors", include_str!("script/motors.lua")),
     ("setup", include_str!("script/setup.lua")),

@@ -1,0 +1,111 @@
+//! The numbers in the cells of a table.
+
+use fuzzy::diagnostic::quoted;
+
+/// The number in a cell, if any.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Cell {
+    /// A finite number.
+    Number(f64),
+    /// Empty, `NA`, `NaN` or `#N/A`, as spreadsheets write it.
+    Unknown,
+    /// Any other text.
+    Bad,
+}
+
+impl Cell {
+    pub(crate) fn of(text: &[u8]) -> Cell {
+        let text = text.trim_ascii();
+        // Numbers contain only ASCII characters.
+        let number = str::from_utf8(text)
+            .ok()
+            .and_then(|text| text.parse::<f64>().ok());
+        match number {
+            Some(number) if number.is_finite() => Cell::Number(number),
+            Some(number) if number.is_nan() => Cell::Unknown,
+            None if text.is_empty() || text == b"NA" || text == b"#N/A" => Cell::Unknown,
+            _ => Cell::Bad,
+        }
+    }
+
+    /// Explains why a cell is [`Cell::Bad`].
+    pub(crate) fn problem(text: &[u8]) -> String {
+        let text = String::from_utf8_lossy(text.trim_ascii());
+        let shown = quoted(&text);
+        match text.parse::<f64>() {
+            Ok(_) => format!("`{shown}` is not a finite number"),
+            Err(_) if text.is_empty() => "the cell is empty".to_owned(),
+            Err(_) => match advice(&text) {
+                Some(advice) => format!("`{shown}` is not a number: {advice}"),
+                None => format!("`{shown}` is not a number"),
+            },
+        }
+    }
+}
+
+/// Returns advice for a number with a decimal comma, separators of thousands or a unit.
+fn advice(text: &str) -> Option<String> {
+    if let Some((whole, thousands)) = text.split_once(',')
+        && thousands.len() == 3
+    {
+        let joined = format!("{whole}{thousands}");
+        if joined.parse::<f64>().is_ok() {
+            return Some(format!(
+                "write `{joined}`, or `{whole}.{thousands}` if the comma is a decimal mark"
+            ));
+        }
+    }
+    if text.contains(',') && text.replacen(',', ".", 1).parse::<f64>().is_ok() {
+        return Some("the decimal mark is a point".to_owned());
+    }
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)))?;
+    let (number, unit) = text.split_at_checked(end)?;
+    let is_unit = !unit.contains(|c: char| c.is_ascii_digit());
+    (number.parse::<f64>().is_ok() && is_unit).then(|| format!("write `{number}`, without a unit"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_is_a_number_or_an_error_with_a_reason() {
+        for (text, cell) in [
+            ("1.5", Cell::Number(1.5)),
+            (" -2e-3\t", Cell::Number(-0.002)),
+            ("", Cell::Unknown),
+            ("  ", Cell::Unknown),
+            ("NA", Cell::Unknown),
+            ("nan", Cell::Unknown),
+            ("NaN", Cell::Unknown),
+            ("#N/A", Cell::Unknown),
+            ("na", Cell::Bad),
+            ("inf", Cell::Bad),
+            ("1e999", Cell::Bad),
+            ("20,5", Cell::Bad),
+            ("much", Cell::Bad),
+        ] {
+            assert_eq!(Cell::of(text.as_bytes()), cell, "{text}");
+        }
+        for (text, problem) in [
+            ("1e999", "`1e999` is not a finite number"),
+            (
+                "20,5",
+                "`20,5` is not a number: the decimal mark is a point",
+            ),
+            (
+                "1,000",
+                "`1,000` is not a number: write `1000`, or `1.000` if the comma is a decimal mark",
+            ),
+            (
+                "15.48 %",
+                "`15.48 %` is not a number: write `15.48`, without a unit",
+            ),
+            ("2-3", "`2-3` is not a number"),
+            ("a,b", "`a,b` is not a number"),
+            (" much ", "`much` is not a number"),
+        ] {
+            assert_eq!(Cell::problem(text.as_bytes()), problem);
+        }
+    }
+}
