@@ -726,7 +726,7 @@ return load_all, 1000
 -- 
 -- fired = {} -- the firing strengths of rules
 -- local coverage = 0.0 -- the largest firing strength
--- local strengths, degrees = {}, {} -- of output terms, and of terms of inputs
+-- local strengths, degrees = {}, {} -- of output terms, and of terms in conditions
 -- is_filled = false
 -- 
 -- -- Along the corners x1, degree 1, x2, degree 2 and so on.
@@ -744,18 +744,18 @@ return load_all, 1000
 --   return corners[count]
 -- end
 -- 
--- local function fire(rule, term, strength)
+-- local function add(rule, term, strength)
 --   if strength < 1e-12 then
 --     strength = 0.0
 --   end
---   fired[rule] = strength
 --   strengths[term] = strengths[term] + strength
+--   fired[rule] = strength
 --   if strength > coverage then
 --     coverage = strength
 --   end
 -- end
 -- 
--- -- The corners of the terms of inputs: value, degree, value, degree and so on.
+-- -- The corners of the terms that conditions name: value, degree, value, degree and so on.
 -- local TERMS = {
 --   {0.0, 0.0, 0.35, 1.0}, -- at_limit much
 --   {0.01, 0.0, 0.036, 1.0}, -- unsteady_now violent
@@ -781,7 +781,7 @@ return load_all, 1000
 --   for term = 1, OUTPUT_TERMS do
 --     strengths[term] = 0.0
 --   end
---   local d = degrees
+--   local d, area, moment = degrees
 --   d[1] = along(TERMS[1], x[5]) -- at_limit much
 --   d[2] = along(TERMS[2], x[1]) -- unsteady_now violent
 --   d[3] = along(TERMS[3], x[5]) -- at_limit none
@@ -795,29 +795,29 @@ return load_all, 1000
 --   d[11] = along(TERMS[11], x[4]) -- swing_per_room moderate
 --   d[12] = along(TERMS[12], x[4]) -- swing_per_room large
 --   -- IF at_limit IS much THEN risk IS very_high
---   fire(1, 5, d[1])
+--   add(1, 5, d[1])
 --   -- IF unsteady_now IS violent AND at_limit IS none THEN risk IS very_high
---   fire(2, 5, d[2] * d[3])
+--   add(2, 5, d[2] * d[3])
 --   -- IF unsteady_lately IS calm AND at_limit IS none THEN risk IS very_low WITH 0.66
---   fire(3, 1, 0.66 * d[4] * d[3])
+--   add(3, 1, 0.66 * d[4] * d[3])
 --   -- IF unsteady_lately IS gusty AND at_limit IS none THEN risk IS low WITH 0.23
---   fire(4, 2, 0.23 * d[5] * d[3])
+--   add(4, 2, 0.23 * d[5] * d[3])
 --   -- IF unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_high WITH 0.66
---   fire(5, 5, 0.66 * d[6] * d[3])
+--   add(5, 5, 0.66 * d[6] * d[3])
 --   -- IF throttle_activity IS steady AND at_limit IS none THEN risk IS low WITH 0.33
---   fire(6, 2, 0.33 * d[7] * d[3])
+--   add(6, 2, 0.33 * d[7] * d[3])
 --   -- IF throttle_activity IS moving AND at_limit IS none THEN risk IS high WITH 0.23
---   fire(7, 4, 0.23 * d[8] * d[3])
+--   add(7, 4, 0.23 * d[8] * d[3])
 --   -- IF throttle_activity IS surging AND at_limit IS none THEN risk IS very_high WITH 0.46
---   fire(8, 5, 0.46 * d[9] * d[3])
+--   add(8, 5, 0.46 * d[9] * d[3])
 --   -- IF swing_per_room IS small AND at_limit IS none THEN risk IS very_low WITH 0.66
---   fire(9, 1, 0.66 * d[10] * d[3])
+--   add(9, 1, 0.66 * d[10] * d[3])
 --   -- IF swing_per_room IS moderate AND at_limit IS none THEN risk IS medium WITH 0.66
---   fire(10, 3, 0.66 * d[11] * d[3])
+--   add(10, 3, 0.66 * d[11] * d[3])
 --   -- IF swing_per_room IS large AND at_limit IS none THEN risk IS very_high WITH 0.66
---   fire(11, 5, 0.66 * d[12] * d[3])
---   local area, moment = 0.0, 0.0
---   for term = 1, OUTPUT_TERMS do
+--   add(11, 5, 0.66 * d[12] * d[3])
+--   area, moment = 0.0, 0.0
+--   for term = 1, 5 do
 --     area = area + strengths[term] * AREAS[term]
 --     moment = moment + strengths[term] * MOMENTS[term]
 --   end
@@ -827,7 +827,7 @@ return load_all, 1000
 --   return nil -- no rule fires
 -- end
 -- 
--- local point = {} -- the inputs of the rules, in their order
+-- local point = {} -- the inputs of the rules, in their order, then outputs that others read
 -- 
 -- function estimate()
 --   point[1] = max(0.0, min(0.5, value[1]))
@@ -935,9 +935,12 @@ return load_all, 1000
 --   end
 --   local most, rule = -huge, nil
 --   for i = 1, #CAUSES do
---     local raises = (fired[i] or 0.0) * CAUSES[i][1] * (CAUSES[i][2] - risk / 2)
---     if (fired[i] or 0.0) > 0 and raises > most then
---       most, rule = raises, i
+--     local about, strength = CAUSES[i], fired[i] or 0.0
+--     if about and about[1] > 0 and strength > 0 then
+--       local raises = strength * about[1] * (about[2] - risk / 2)
+--       if raises > most then
+--         most, rule = raises, i
+--       end
 --     end
 --   end
 --   return rule

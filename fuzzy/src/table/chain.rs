@@ -93,13 +93,13 @@ impl Conjunctions {
 
 /// The relation of a stage to the whole rule set.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place<'a> {
+pub struct Place<'a> {
     /// The outputs that the stage reads. Their values follow those of the inputs.
-    pub(crate) reads: &'a [u32],
+    pub reads: &'a [u32],
     /// The index in the model of each output of the stage.
-    pub(crate) outputs: &'a [u32],
+    pub outputs: &'a [u32],
     /// The index in the model of each rule of the stage.
-    pub(crate) rules: &'a [u32],
+    pub rules: &'a [u32],
 }
 
 /// The stages of a rule set in the order of evaluation.
@@ -134,8 +134,8 @@ pub enum Sought {
 }
 
 impl<'a> Chain<'a> {
-    /// Iterates over the stages with their relation to the rule set. It ends at the first damaged stage.
-    fn parts(self) -> impl Iterator<Item = (Table<'a>, Place<'a>)> {
+    /// Iterates over the tables of the stages, with the relation of each to the rule set. It ends at the first damaged stage.
+    pub fn parts(self) -> impl Iterator<Item = (Table<'a>, Place<'a>)> {
         let mut first = Ends::default();
         let mut places = self.places;
         self.stages.iter().map_while(move |stage| {

@@ -81,7 +81,7 @@ pub use activation::{Activation, Comparison, LEAST_STRENGTH};
 pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
 pub use blocks::{Block, Method};
-pub use chain::{Chain, Ends, Sought, Stage, Values};
+pub use chain::{Chain, Ends, Place, Sought, Stage, Values};
 pub use check::Damaged;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
 pub(crate) use closed::{centroid, finite};

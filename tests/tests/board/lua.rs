@@ -479,6 +479,77 @@ fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
     );
 }
 
+/// The rules of the paper for `strain`, which `risk` reads, partly through `trouble`; with minimum and maximum over
+/// partitions, and with sums of products.
+#[test]
+fn the_script_evaluates_outputs_that_read_other_outputs() {
+    let folder = Folder::new();
+    let paper = include_str!("../../../rules/flagred-paper.yaml");
+    let (head, rules) = paper.split_once("outputs:\n").unwrap();
+    let (risk, rules) = rules.split_once("operators:").unwrap();
+    let rules = rules.replace("risk IS", "strain IS");
+    let (operators, rules) = rules.split_once('\n').unwrap();
+    let strain = risk.replace("  risk:", "  strain:");
+    let trouble = "  trouble: {range: [0, 1], partition: [none, some, much], when_no_rule_fires: {value: 0.1}}\n";
+    // Not read, so not in the script.
+    let unread = "  comfort: {range: [0, 1], terms: {good: {gaussian: {mean: 1, sd: 0.3}}}}\n";
+    let more = "
+  - IF strain IS NOT very_low AND spread IS NOT low THEN trouble IS some
+  - IF strain IS high OR strain IS very very_high THEN trouble IS much
+  - IF margin IS high THEN trouble IS none AND comfort IS good WITH 0.5
+  - IF strain IS very_low THEN risk IS very_low
+  - IF strain IS low THEN risk IS low
+  - IF strain IS medium AND trouble IS NOT much THEN risk IS medium
+  - IF trouble IS much AND strain IS high THEN risk IS high
+  - IF trouble IS somewhat much AND strain IS very_high THEN risk IS very_high
+";
+    let profile = include_str!("../../../rules/profiles/flagred-paper.yaml");
+    let profile = profile
+        .replace("rules: flagred-paper ", "rules: chained.yaml ")
+        .replace(
+            "{risk: 67, elevated_risk: 50,",
+            "{risk: 25, elevated_risk: 50,",
+        );
+    let file = folder.file("profile.yaml", &profile);
+    let profile: flagred::profile::Profile = profile.parse().unwrap();
+    let vehicle = Vehicle::named("HEXA/X");
+    let records = eventful(&vehicle);
+    let sums = "{and: product, or: probabilistic_sum, implication: product, aggregation: sum}";
+    for operators in [operators.trim(), sums] {
+        let text = format!(
+            "{head}outputs:\n{risk}{trouble}{strain}{unread}operators: {operators}\n{}{more}",
+            rules.trim_end()
+        );
+        folder.file("chained.yaml", &text);
+        let model: fuzzy::Model = text.parse().unwrap();
+        let estimator = Estimator::new(&profile, &model).unwrap();
+        let script = script(&file, &folder);
+        let written = std::fs::read_to_string(&script).unwrap();
+        assert!(!written.contains("comfort IS good THEN") && written.contains("LEADS"));
+        let expected = by_the_monitor(&estimator, &vehicle, &records);
+        let run = run(&script, &vehicle, &records, &[]);
+        let (risk, elevated) = differ(&expected, &run.logged, operators);
+        eprintln!(
+            "{operators}: {} risks, {risk:.4} %, elevated {elevated:.4} %, instructions {:?}",
+            expected.len(),
+            run.instructions
+        );
+        assert!(
+            risk <= TOLERANCE_PCT && elevated <= TOLERANCE_PCT,
+            "{operators}: {risk} {elevated}"
+        );
+        run.assert_within_budget(operators);
+        let found: Vec<String> = run.texts.lines().skip(1).map(in_short).collect();
+        let told = told_by_the_assessor(&estimator, &vehicle, &records);
+        assert_eq!(told, found, "{operators}");
+        // The cause of the risk is the cause of the strain that it reads.
+        assert!(
+            found.iter().any(|told| told.contains("WARN, limit")),
+            "{found:?}"
+        );
+    }
+}
+
 /// 36 minutes in microseconds exceed a 32-bit integer; a 32-bit float has 24 bits.
 #[test]
 #[ignore = "takes half a minute"]

@@ -4,10 +4,13 @@
 //! other parts follow it as comments, which the loader compiles one by one. Numbers are rounded to 32 bits, the precision of the
 //! autopilot's Lua.
 
+mod cause;
+mod condition;
 mod frames;
 mod inputs;
 mod limits;
 mod observed;
+mod output;
 mod rules;
 mod template;
 
@@ -77,12 +80,6 @@ impl Unsupported {
 
 /// Returns the script.
 pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Unsupported> {
-    if !plan.rules.stages.is_empty() {
-        return Err(Unsupported::new(
-            "a script on the autopilot cannot evaluate outputs that read other outputs".into(),
-            "write rules whose conditions name inputs only; `export --rust` and `export --c` support chains",
-        ));
-    }
     let mut filling = Filling::default();
     let origin = super::origin(plan, &estimator.profile().rules, "--lua");
     filling.put("heading", vec![format!("-- {}", comment(&origin))]);

@@ -4,6 +4,12 @@
 CAUSES = {
 -- @put causes
 }
+-- @if leads
+-- For a cause that is the value of another output: the rules of that output, and how much each contributes.
+local LEADS = {
+-- @put leads
+}
+-- @end
 warn_risk, fail_risk = WARN_RISK, FAIL_RISK -- parameters may change them
 risk_level = GOOD -- of the risk alone
 local reached_at = {} -- since when the thresholds of each level are reached
@@ -22,11 +28,26 @@ local function find_cause(risk)
   end
   local most, rule = -huge, nil
   for i = 1, #CAUSES do
-    local raises = (fired[i] or 0.0) * CAUSES[i][1] * (CAUSES[i][2] - risk / 2)
-    if (fired[i] or 0.0) > 0 and raises > most then
-      most, rule = raises, i
+    local about, strength = CAUSES[i], fired[i] or 0.0
+    if about and about[1] > 0 and strength > 0 then
+      local raises = strength * about[1] * (about[2] - risk / 2)
+      if raises > most then
+        most, rule = raises, i
+      end
     end
   end
+-- @if leads
+  while rule and CAUSES[rule][6] do
+    local leads = LEADS[CAUSES[rule][6]]
+    most, rule = 0.0, nil
+    for i = 1, #leads, 2 do
+      local share = (fired[leads[i]] or 0.0) * leads[i + 1]
+      if share > most then
+        most, rule = share, leads[i]
+      end
+    end
+  end
+-- @end
   return rule
 end
 

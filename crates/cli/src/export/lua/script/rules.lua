@@ -2,7 +2,7 @@
 
 fired = {} -- the firing strengths of rules
 local coverage = 0.0 -- the largest firing strength
-local strengths, degrees = {}, {} -- of output terms, and of terms of inputs
+local strengths, degrees = {}, {} -- of output terms, and of terms in conditions
 is_filled = false
 
 -- Along the corners x1, degree 1, x2, degree 2 and so on.
@@ -19,23 +19,34 @@ local function along(corners, x)
   end
   return corners[count]
 end
+-- @if maxima
 
 local function fire(rule, term, strength)
   if strength < LEAST_STRENGTH then
     strength = 0.0
   end
-  fired[rule] = strength
--- @if sums
-  strengths[term] = strengths[term] + strength
--- @else
   if strength > strengths[term] then
     strengths[term] = strength
   end
--- @end
+  fired[rule] = strength
   if strength > coverage then
     coverage = strength
   end
 end
+-- @end
+-- @if sums
+
+local function add(rule, term, strength)
+  if strength < LEAST_STRENGTH then
+    strength = 0.0
+  end
+  strengths[term] = strengths[term] + strength
+  fired[rule] = strength
+  if strength > coverage then
+    coverage = strength
+  end
+end
+-- @end
 -- @put operators
 
 -- @put terms
@@ -47,7 +58,6 @@ local function by_rules(x)
     strengths[term] = 0.0
   end
 -- @put rules
--- @put defuzzify
 end
 -- @if filled
 
@@ -82,7 +92,7 @@ local function filled(x, axis, knot)
 end
 -- @end
 
-local point = {} -- the inputs of the rules, in their order
+local point = {} -- the inputs of the rules, in their order, then outputs that others read
 
 function estimate()
 -- @put point

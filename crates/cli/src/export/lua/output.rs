@@ -1,0 +1,138 @@
+//! The closed forms of outputs: their coefficients, and the code that computes the values.
+
+use flagred::board::table::{ClosedForm, Moment, Output, Table};
+
+use super::{Unsupported, number};
+
+/// The coefficients of the terms of all outputs, at the indices of their firing strengths.
+#[derive(Default)]
+pub(super) struct Coefficients {
+    areas: Vec<String>,
+    moments: Vec<String>,
+    parts: Vec<String>,
+}
+
+impl Coefficients {
+    /// Adds an output of a table, whose strengths begin at `first`. Returns the number of its strengths.
+    pub(super) fn add(
+        &mut self,
+        table: &Table<'_>,
+        (name, output): (&str, &Output),
+        first: usize,
+    ) -> Result<usize, Unsupported> {
+        let range = output.first as usize..output.end as usize;
+        let strengths = (output.end_strength - output.first_strength) as usize;
+        match output.form() {
+            ClosedForm::Moments => {
+                let moments = table.moments.get(range).unwrap_or_default();
+                // Rounding errors are set to 0.
+                let moment = |m: &Moment| {
+                    if m.moment.abs() < 1e-9 { 0.0 } else { m.moment }
+                };
+                self.areas.resize(first, "0.0".into());
+                self.areas.extend(moments.iter().map(|m| number(m.area)));
+                self.moments.resize(first, "0.0".into());
+                let moments = moments.iter().map(|m| number(moment(m)));
+                self.moments.extend(moments);
+                Ok(strengths)
+            }
+            ClosedForm::Partition => {
+                let pairs = table.pairs.get(range).unwrap_or_default();
+                // A partition has one more strength, which stays 0: the last term has no neighbour to its right.
+                let strengths = strengths.min(2 * pairs.len());
+                let sides = pairs.iter().flat_map(|pair| [(pair, 0), (pair, 1)]);
+                self.parts.resize(first, "  false,".into());
+                for (pair, side) in sides.take(strengths) {
+                    let [a, b] = pair.area.map(|of| of[side]);
+                    let [c, d, e] = pair.moment.map(|of| of[side]);
+                    let all = [a, b, c, d, e, pair.width[side], pair.middle[side]].map(number);
+                    self.parts.push(format!("  {{{}}},", all.join(", ")));
+                }
+                Ok(strengths)
+            }
+            ClosedForm::WeightedAverage | ClosedForm::WeightedSum => Err(Unsupported::new(
+                format!(
+                    "output `{name}` is a Takagi-Sugeno output, which the script does not support"
+                ),
+                "the script supports the centroid, with `implication: product` and `aggregation: sum` or over a `partition` with \
+                 minimum and maximum",
+            )),
+            _ => Err(Unsupported::new(
+                format!(
+                    "output `{name}` has neither the centroid of a sum of products nor that of minimum and maximum over a partition; the script supports no others"
+                ),
+                "choose `implication: product` and `aggregation: sum`, or a `partition` with minimum and maximum, and the centroid",
+            )),
+        }
+    }
+
+    /// Returns the lines of the script with all coefficients.
+    pub(super) fn lines(&self) -> Vec<String> {
+        let Coefficients {
+            areas,
+            moments,
+            parts,
+        } = self;
+        let mut lines = Vec::new();
+        if !areas.is_empty() {
+            lines.push("-- The areas of the output's terms, and their moments about the middle of its range.".into());
+            lines.push(format!("local AREAS = {{{}}}", areas.join(", ")));
+            lines.push(format!("local MOMENTS = {{{}}}", moments.join(", ")));
+        }
+        if !parts.is_empty() {
+            lines.push("-- The output's terms: area = a h + b h^2, moment about the middle of the range = c h + d h^2 + e h^3 at".into());
+            lines.push(
+                "-- firing strength h; width and middle of the overlap with the next term.".into(),
+            );
+            lines.push("local PARTS = {".into());
+            lines.extend_from_slice(parts);
+            lines.push("}".into());
+        }
+        lines
+    }
+}
+
+/// Returns the code for the value of an output from `strengths` strengths that begin at `first`. The value is stored in
+/// `x[place]`; that of the risk, without a place, is returned.
+pub(super) fn defuzzify(
+    output: &Output,
+    (first, strengths): (usize, usize),
+    place: Option<usize>,
+) -> Vec<String> {
+    let sum = match output.form() {
+        ClosedForm::Partition => {
+            "    local part, h = PARTS[term], strengths[term]
+    local v = min(h, strengths[term + 1] or 0.0, 0.5)
+    local common = part[6] * (v * (1 - v))
+    area = area + h * (part[1] + h * part[2]) - common
+    moment = moment + h * (part[3] + h * (part[4] + h * part[5])) - part[7] * common"
+        }
+        _ => {
+            "    area = area + strengths[term] * AREAS[term]
+    moment = moment + strengths[term] * MOMENTS[term]"
+        }
+    };
+    let middle = output.low + 0.5 * (output.high - output.low);
+    let value = format!(
+        "max({}, min({}, {} + moment / area))",
+        number(output.low),
+        number(output.high),
+        number(middle)
+    );
+    let fallback = number(output.default_value);
+    let end = match place {
+        None => format!(
+            "  if area > 0 then\n    return {value}\n  end\n  return {fallback} -- no rule fires"
+        ),
+        Some(place) if output.default_value.is_nan() => format!(
+            "  if area <= 0 then\n    coverage = 0.0\n    return nil -- no rule fires\n  end\n  x[{place}] = {value}"
+        ),
+        Some(place) => format!("  x[{place}] = area > 0 and {value} or {fallback}"),
+    };
+    let text = format!(
+        "  area, moment = 0.0, 0.0\n  for term = {}, {} do\n{sum}\n  end\n{end}",
+        first + 1,
+        first + strengths
+    );
+    text.lines().map(str::to_owned).collect()
+}
