@@ -337,8 +337,7 @@ impl Follower {
         self.alert.level().max(noticed).max(doubted)
     }
 
-    /// Keeps the level above GOOD after an alarm, until the motors have worked as before for as long as a level is
-    /// held.
+    /// After an alarm, keeps the level above GOOD until the motors have worked as before the alarm for `clear_after_s`.
     fn doubt(&mut self, t_s: f64) {
         let is_alarm = self.alert.level() > Level::Good;
         let clear_after_s = self.settings.verdict.clear_after_s;
@@ -447,7 +446,8 @@ impl Follower {
         level.filter(|level| *level > Level::Good)
     }
 
-    /// Resets the state after a flight or a gap. A gap in the air keeps the trims and the doubt after an alarm.
+    /// Resets the state after a flight or a gap. After a gap in the air, the trims are kept, and so is the level if it
+    /// was above GOOD (see [`Self::doubt`]).
     fn forget(&mut self, t_s: f64, end: End, room: &mut FlightMemory<'_>) -> EndedFindings {
         for seen in room.seen.iter_mut() {
             seen.clear();

@@ -123,7 +123,7 @@ pub struct Monitor {
     /// The monitors of the other risks of the profile.
     others: Vec<Monitor>,
     ended_elsewhere: Vec<OfRisk>,
-    /// The reason why this risk, without the others, is unknown after the latest sample.
+    /// The reason why the risk of this monitor is unknown after the latest sample; the other risks are not considered.
     unknown: Option<Unknown>,
 }
 

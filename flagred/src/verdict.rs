@@ -63,12 +63,13 @@ pub enum Measure {
     CommandNoise,
     /// The reserve of the mean command to the upper limit, in % of the range.
     Reserve,
-    /// The deviation of motors from their own part of the thrust earlier in the flight, in % of the range.
+    /// The shift of a motor's command, relative to the mean command of all motors, since earlier in the flight, in % of
+    /// the range.
     Imbalance,
     /// The difference between a motor and the opposite one, in % of the range.
     PairImbalance,
-    /// The amount by which one motor alone exceeds its own part of the thrust earlier in the flight, in % of the range:
-    /// it gives less thrust than commanded.
+    /// The shift of the command of a single motor that is higher than earlier in the flight, in % of the range: the
+    /// motor gives less thrust than commanded.
     WeakMotor,
     /// The risk of motors that idle in the air, which is 100 %.
     IdleInAir,
@@ -203,8 +204,9 @@ pub struct NoticeSettings {
     pub noise: Option<Limit>,
     /// The threshold on the reserve of the mean command to the upper limit.
     pub reserve: Option<Limit>,
-    /// The threshold on the deviation of motors from their own part of the thrust earlier in the
-    /// flight. It is doubled for opposite motors, and halved if only one motor is higher.
+    /// The threshold on the shift of a motor's command, relative to the mean command of all motors, since earlier in
+    /// the flight. It is doubled for the difference of opposite motors, and halved if a single motor is higher than
+    /// before.
     pub imbalance: Option<Limit>,
 }
 

@@ -384,16 +384,16 @@ pub(crate) fn duplicate(
     let (code, help) = match kind {
         "variable" => (
             "duplicate-variable",
-            "inputs and outputs have different names; rename one of them",
+            "inputs and outputs must have different names; rename one of them",
         ),
         "term" => (
             "duplicate-term",
-            "the terms of a variable have different names; rename one of them",
+            "the terms of a variable must have different names; rename one of them",
         ),
         "finding" => ("duplicate-key", "keep one, with both reasons"),
         "block" => (
             "duplicate-block",
-            "rule blocks have different names; rename one of them",
+            "rule blocks must have different names; rename one of them",
         ),
         _ => ("duplicate-key", "keep one of them"),
     };

@@ -257,37 +257,37 @@ form::forms! {
     Rectangle "rectangle" RECTANGLE [left: Ascending, right: Ascending]
         "1 from left to right";
     Singleton "singleton" SINGLETON [at: Ascending]
-        "1 at one value alone";
+        "1 at a single value, 0 elsewhere";
     Gaussian "gaussian" GAUSSIAN [mean: Ascending, sd: Positive]
         "exp(-(x - mean)^2 / (2 sd^2))";
     Gaussian2 "gaussian2" GAUSSIAN2 [left_mean: Number, left_sd: Positive, right_mean: Number, right_sd: Positive]
-        "Gaussian flanks around 1 from left_mean to right_mean; the product of both halves";
+        "A gaussian flank up to left_mean, 1 from left_mean to right_mean, a gaussian flank beyond it; the product of both halves";
     Bell "bell" BELL [center: Ascending, width: Positive, slope: Positive]
         "1 / (1 + |(x - center) / width|^(2 slope))";
     Sigmoid "sigmoid" SIGMOID [inflection: Number, slope: Number]
         "1 / (1 + exp(-slope (x - inflection)))";
     SigmoidDifference "sigmoid_difference" SIGMOID_DIFFERENCE [left_inflection: Number, left_slope: Number, right_inflection: Number, right_slope: Number]
-        "The difference of two sigmoids, without its sign";
+        "The absolute difference of two sigmoids";
     SigmoidProduct "sigmoid_product" SIGMOID_PRODUCT [left_inflection: Number, left_slope: Number, right_inflection: Number, right_slope: Number]
         "The product of two sigmoids";
     SShape "s_shape" S_SHAPE [foot: Ascending, top: Ascending]
-        "Two parabolas up from 0 at foot to 1 at top";
+        "Rises from 0 at foot to 1 at top, as two parabolas";
     ZShape "z_shape" Z_SHAPE [top: Ascending, foot: Ascending]
-        "Two parabolas down from 1 at top to 0 at foot";
+        "Falls from 1 at top to 0 at foot, as two parabolas";
     PiShape "pi_shape" PI_SHAPE [left: Ascending, left_top: Ascending, right_top: Ascending, right: Ascending]
-        "An S up to left_top, 1, a Z down from right_top";
+        "Rises to 1 like s_shape up to left_top, falls like z_shape from right_top";
     Cosine "cosine" COSINE [center: Ascending, width: Positive]
-        "A bump of a cosine, width wide";
+        "One period of a raised cosine, from 0 over 1 at center to 0, width wide";
     Spike "spike" SPIKE [center: Ascending, width: Positive]
         "exp(-|10 (x - center) / width|)";
     Concave "concave" CONCAVE [inflection: Number, end: Number]
-        "(end - inflection) / (2 end - inflection - x) up to end, 1 beyond it";
+        "(end - inflection) / (2 end - inflection - x) up to end, 1 beyond end";
     Arc "arc" ARC [start: Number, end: Number]
         "A quarter of an ellipse from 0 at start to 1 at end";
     SemiEllipse "semi_ellipse" SEMI_ELLIPSE [left: Ascending, right: Ascending]
         "The upper half of an ellipse from left to right";
     Constant "constant" CONSTANT [value: Ascending]
-        "The same degree everywhere; in a Takagi-Sugeno output, the value itself";
+        "The same degree everywhere; in a Takagi-Sugeno output, the value of the consequent";
 }
 
 #[cfg(feature = "alloc")]

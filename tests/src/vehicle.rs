@@ -34,7 +34,8 @@ pub struct StandIn {
     parameters: Vec<(String, f64)>,
     kind: MavType,
     sender: Sender,
-    /// Random states for the packets of the flight and for all others, so that the number of requests does not affect the flight.
+    /// States of the random number generators for the packets of the flight and for all others, so that the number of
+    /// requests does not affect the flight.
     random: [u64; 2],
     stream: Stream,
     /// A second link.
@@ -111,7 +112,8 @@ impl StandIn {
         }
     }
 
-    /// Sends heartbeats until the other side knows the motors; without a reader of its output, until it has sent a request.
+    /// Sends heartbeats until the other side knows the motors. If nothing reads the other side's output, sends them
+    /// until it has sent a request.
     pub fn meet(&mut self) {
         let start = Instant::now();
         let is_met = |vehicle: &StandIn| match &vehicle.progress {

@@ -116,7 +116,7 @@ fn the_method_does_not_measure_how_good_its_risks_are() {
     }
 }
 
-/// The top modules of a package that a text names: `crate::a`, or `crate::{a, b::{..}}`.
+/// The top-level modules of the package that a text mentions: `crate::a`, or `crate::{a, b::{..}}`.
 fn named(text: &str) -> BTreeSet<&str> {
     let mut found = BTreeSet::new();
     for (at, start) in text.match_indices("crate::") {

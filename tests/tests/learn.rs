@@ -262,7 +262,7 @@ fn bad_data_is_reported_with_its_position_and_nothing_is_written() {
         assert!(said.contains("help: "), "{name}: {said}");
         assert!(!Path::new(&out).exists(), "{name}");
     }
-    // The file of rows itself must not be lost.
+    // The file with the rows must not be overwritten.
     let data = folder.file("rows.csv", "margin,spread,risk\n0.1,0.1,5\n");
     let output = learn(&[&model, &data, "-o", &data]);
     assert_eq!(output.status.code(), Some(2));
@@ -540,7 +540,8 @@ fn fan_rows() -> String {
     rows
 }
 
-/// Its output has constants. With each way to resolve conflicts, the rules equal those for the same terms as triangles.
+/// The template's output has constants as terms. With each way to resolve conflicts, the learned rules are the same as
+/// with triangles or singletons in place of the constants.
 #[test]
 fn rules_are_learned_for_the_constants_of_the_template() {
     let folder = Folder::new();

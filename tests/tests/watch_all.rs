@@ -27,7 +27,7 @@ const VEHICLES: usize = SOCKETS * SYSTEMS;
 /// Motor commands per second of each vehicle, sent in this many parts of the second.
 const RATE_HZ: u32 = 10;
 const PARTS: usize = 10;
-/// The vehicle whose motors are at their limits from the middle on, and the one that becomes silent then.
+/// The vehicle whose motors are at their limits in the second half, and the vehicle that is silent in the second half.
 const TROUBLED: usize = 123;
 const SILENT: usize = 321;
 
@@ -98,7 +98,7 @@ fn fly(seconds: u32) -> Watched {
                     let at = sent.lock().unwrap().remove(&(vehicle, t_ms));
                     late_ms.extend(at.map(|at| (now - at).as_secs_f64() * 1e3));
                 }
-                // Risks are not kept, because ten minutes have millions of such lines.
+                // Risks are not kept, because ten minutes produce millions of such lines.
                 if line["watch"]["event"] != "risk"
                     || line["vehicle"].as_str().unwrap().starts_with("7@")
                 {

@@ -159,7 +159,8 @@ struct AlarmsDocument<'a> {
     /// Alarms in calm stretches: at least 20 s, from 5 s after take-off, 10 s away from any error over 5 degrees and
     /// any tilt over 45 degrees.
     calm_stretches: NeedlessDocument,
-    /// Alarms in ordinary flights: error over 1 s never above 5 degrees, tilt under 45 degrees, no upset.
+    /// Alarms in ordinary flights: the error, as a root mean square over 1 s, is never above 5 degrees, the tilt is
+    /// below 45 degrees, and there is no upset.
     ordinary_flights: NeedlessDocument,
     /// The upsets of flights, found by any alarm.
     upsets: UpsetsDocument<'a>,

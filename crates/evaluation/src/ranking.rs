@@ -291,7 +291,7 @@ pub struct Band {
     pub to_pct: f64,
     /// The number of predictions in the band.
     pub predictions: u64,
-    /// The number of critical ones among these.
+    /// The number of these predictions that were critical.
     pub critical: u64,
     /// The mean of their risks in %; `None` without predictions.
     pub mean_risk_pct: Option<f64>,

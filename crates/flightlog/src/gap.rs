@@ -141,7 +141,7 @@ impl Gap {
                 DataFlash | DataFlashText => {
                     "add 1024 to LOG_BITMASK, bit 10: RCOUT, or MOTORS before ArduCopter 3.2"
                 }
-                ULog => "log actuator_motors, or actuator_outputs before 1.13 (SDLOG_PROFILE)",
+                ULog => "log actuator_motors, or before PX4 1.13 actuator_outputs (SDLOG_PROFILE)",
                 Tlog => {
                     "let the ground station request SERVO_OUTPUT_RAW (ArduPilot: SRx_RC_CHAN), or use the log on the vehicle"
                 }

@@ -109,8 +109,8 @@ impl Outputs {
         restarts_s
     }
 
-    /// The number of motors, if nothing else determines it: 4, 6 or 8 if that many of the first outputs, and not the
-    /// next ones, move together.
+    /// The number of motors, for logs in which nothing else determines it: 8, 6 or 4, the largest of these counts for
+    /// which all outputs up to it move together; `None` if fewer than 4 do.
     pub(crate) fn like_motors(&self) -> Option<u16> {
         let row = |row: usize| -> [f64; MOST_LIKE] {
             std::array::from_fn(|output| {

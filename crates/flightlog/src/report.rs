@@ -145,12 +145,12 @@ impl Report {
         is_full
     }
 
-    /// Keeps a text, up to the limit.
+    /// Keeps a text unless there are too many; then it is only counted.
     pub(crate) fn text<T>(&mut self, texts: &mut Vec<T>, text: T) {
         keep(texts, text, MOST_TEXTS, &mut self.left_out.texts);
     }
 
-    /// Keeps a flight mode, up to the limit.
+    /// Keeps a flight mode unless there are too many; then it is only counted.
     pub(crate) fn mode<T>(&mut self, modes: &mut Vec<T>, mode: T) {
         keep(modes, mode, MOST_MODES, &mut self.left_out.modes);
     }

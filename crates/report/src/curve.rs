@@ -167,7 +167,7 @@ impl Pen {
     }
 }
 
-/// The height of a picture as text, in rows.
+/// The height of a text chart, in rows.
 const ROWS: usize = 5;
 
 /// Values in percent over time as text, `width` columns wide.

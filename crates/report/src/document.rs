@@ -94,7 +94,7 @@ struct Profile<'a> {
     reliability: &'a [Reliability],
 }
 
-/// A finding, with the output of the motor that it names, and its texts.
+/// A finding with its texts, and the output of the motor that it names.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "FlightFinding"))]

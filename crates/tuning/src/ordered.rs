@@ -67,7 +67,7 @@ impl Ordered {
             rest = behind;
             segment.place(own, &mut positions);
         }
-        // The upper end is removed.
+        // The last position is the upper end of the range, which is not part of the result.
         positions.truncate(self.count);
         positions
     }

@@ -347,7 +347,7 @@ fn wrong_rows_are_errors() {
     );
 }
 
-/// A part of the rows may have no weight: it is not used in cross-validation.
+/// Some rows may have a weight of 0; cross-validation ignores them.
 #[test]
 fn rows_without_weight_do_not_change_figures() {
     let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);

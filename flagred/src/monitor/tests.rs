@@ -261,7 +261,7 @@ fn a_filled_gap_is_reported_as_filled() {
     assert_eq!((covered.filled_from, covered.coverage), (None, 1.0));
     let filled = flight.last().unwrap().risk.unwrap();
     assert_eq!(filled.coverage, 0.0);
-    // Half of the range is covered: the term `high` is at 0.5 in the middle.
+    // Half of the range is covered: the degree of the term `high` is 0.5 in the middle.
     approx::assert_abs_diff_eq!(filled.filled_from.unwrap(), 0.5, epsilon = 0.02);
     approx::assert_abs_diff_eq!(filled.risk_pct, 10.0, epsilon = 1e-9);
 }

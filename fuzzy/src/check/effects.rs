@@ -140,7 +140,7 @@ fn constant(input: &Variable, one: &Degrees<'_>, all: &[Degrees<'_>]) -> Option<
             false => format!("{least} to {most}"),
         };
         let message = format!(
-            "term `{name}` of input `{of}` is nearly constant: {degrees} on the whole range"
+            "term `{name}` of input `{of}` is nearly constant: {degrees} over the whole range"
         );
         return Some((message, help));
     }

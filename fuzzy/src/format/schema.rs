@@ -44,24 +44,24 @@ pub fn schema() -> Node {
             ),
         ),
         ("name", text("The name of the rule set")),
-        ("description", text("What the rule set is for")),
+        ("description", text("The purpose of the rule set")),
         (
             "inputs",
-            named("The inputs, by the names that rules use", "input"),
+            named("The inputs; the keys are the names that rules use", "input"),
         ),
         (
             "outputs",
-            named("The outputs, by the names that rules use", "output"),
+            named("The outputs; the keys are the names that rules use", "output"),
         ),
         (
             "operators",
-            operators("The operators that all rules share", true),
+            operators("The operators of all rules", true),
         ),
         ("activation", activation()),
         (
             "least_strength",
             about(
-                "A firing strength below it counts as 0; 1e-12 where absent",
+                "A firing strength below this counts as 0; default: 1e-12",
                 [
                     ("type", Node::text("number")),
                     ("minimum", Node::number(LEAST_STRENGTH)),
@@ -73,14 +73,14 @@ pub fn schema() -> Node {
         (
             "blocks",
             named(
-                "Rules in blocks with operators and an activation method of their own, by names",
+                "Rule blocks, each with its own operators and activation method; the keys are their names",
                 "block",
             ),
         ),
         (
             "allow",
             list(
-                "The findings of the analysis that the author accepts, each with a reason",
+                "The findings of `flagred check` that the author accepts, each with a reason",
                 reference("allowed"),
                 None,
             ),
@@ -88,7 +88,7 @@ pub fn schema() -> Node {
         (
             "provenance",
             list(
-                "The commands that made the rule set, the last one last",
+                "The commands that created or changed the rule set, in order",
                 reference("step"),
                 None,
             ),
@@ -124,7 +124,7 @@ fn definitions() -> Node {
             "output",
             of(
                 &OUTPUT_KEYS,
-                "An output: a range, terms, and how they become a number",
+                "An output: a range, terms, and how its value is computed",
             ),
         ),
         ("term", term()),
@@ -139,19 +139,19 @@ fn definitions() -> Node {
 /// Returns the schema of a key of an input or output.
 fn variable_key(key: &str) -> Node {
     match key {
-        "description" => text("What it means"),
-        "unit" => text("The unit of its values, for people"),
-        "range" => numbers("The least and the greatest value", 2),
+        "description" => text("The meaning of the variable"),
+        "unit" => text("The unit of the values, shown to readers"),
+        "range" => numbers("[minimum, maximum]", 2),
         "partition" => any_of(
-            "Terms whose memberships sum to 1, the outer ones shoulders",
+            "Terms whose degrees sum to 1 at every value; the first and the last term are shoulders",
             Vec::from([
                 list(
-                    "Evenly spaced over the range",
+                    "The names of the terms; their peaks are evenly spaced over the range",
                     Node::mapping([("type", scalar())]),
                     Some(2),
                 ),
                 about(
-                    "By their peaks, from left to right",
+                    "The peak of each term, from left to right",
                     [
                         ("type", Node::text("object")),
                         (
@@ -164,7 +164,7 @@ fn variable_key(key: &str) -> Node {
             ]),
         ),
         "steps" => about(
-            "Terms that divide the range: the limit below which each one ends, and none for the last",
+            "Terms that divide the range at crisp limits: the upper limit of each term, and null for the last one",
             [
                 ("type", Node::text("object")),
                 (
@@ -177,21 +177,21 @@ fn variable_key(key: &str) -> Node {
                 ("minProperties", Node::number(2.0)),
             ],
         ),
-        "terms" => named("Terms, each with a shape of its own", "term"),
-        "defuzzifier" => words("How the fuzzy result becomes a number", &DEFUZZIFIERS),
+        "terms" => named("The terms, each with its membership function; the keys are their names", "term"),
+        "defuzzifier" => words("The defuzzifier, which computes a number from the fuzzy result", &DEFUZZIFIERS),
         "samples" => {
             let rules = [
                 (
                     "midpoint",
-                    whole("At the middles of so many even steps", 1.0),
+                    whole("Evaluate the set at the midpoints of this number of equal steps", 1.0),
                 ),
                 (
                     "trapezoid",
-                    whole("At so many evenly spaced points, the ends included", 2.0),
+                    whole("Evaluate the set at this number of evenly spaced points, including both ends of the range", 2.0),
                 ),
             ];
             let mut entries = object(
-                "Integrate by sampling, to reproduce another program",
+                "Integrate by sampling, to reproduce another program; without this key the result is exact",
                 rules,
                 &[],
             );
@@ -200,30 +200,30 @@ fn variable_key(key: &str) -> Node {
             Node::mapping(entries)
         }
         "when_no_rule_fires" => any_of(
-            "What the output is where no rule fires",
+            "The value of the output if no rule fires; default: undefined",
             Vec::from([
                 words(
-                    "Undefined, an error, or the value of the row before",
+                    "No value, an error, or the value of the previous row",
                     &[("undefined", ()), ("error", ()), ("previous", ())],
                 ),
                 Node::mapping(object(
-                    "A value of the range",
+                    "A default value",
                     [("value", number("The value"))],
                     &["value"],
                 )),
                 Node::mapping(object(
-                    "The value of the row before, and a value before there is one",
-                    [("previous", number("The value before there is one"))],
+                    "The value of the previous row, and a value for the time before there is one",
+                    [("previous", number("The value to use until the output has had a value"))],
                     &["previous"],
                 )),
             ]),
         ),
         "aggregation" => words(
-            "How the terms of this output join; as in the rule set's operators where absent",
+            "The function that combines the terms of this output; default: the aggregation in `operators`",
             &AGGREGATIONS,
         ),
         "clamp" => boolean(
-            "Whether a value outside the range is clamped to it; only a weighted defuzzifier gives one",
+            "Whether a value outside the range is clamped to it; only weighted and Tsukamoto outputs have such values",
         ),
         // All keys that are read have an entry above; a new key is at least allowed.
         _ => Node::mapping(Entries::new()),
@@ -234,7 +234,7 @@ fn allowed() -> Node {
     let codes = allow::CODES.map(|code| (code, ()));
     let properties = [
         ("finding", words("The code of the finding", &codes)),
-        ("because", text("Why it is accepted")),
+        ("because", text("The reason why the finding is accepted")),
     ];
     Node::mapping(object(
         "A finding that the author accepts",
@@ -245,25 +245,26 @@ fn allowed() -> Node {
 
 fn step() -> Node {
     let file = |key: &&'static str| match *key {
-        "file" => (*key, text("Its name")),
-        _ => (*key, text("The SHA-256 of its bytes")),
+        "file" => (*key, text("The name of the file")),
+        _ => (*key, text("The SHA-256 hash of the file's content")),
     };
     let of_loss = |key: &&'static str| match *key {
-        "name" => (*key, text("What it is, as `RMS error`")),
-        key => (key, number("Its value")),
+        "name" => (*key, text("The name of the loss, such as `RMS error`")),
+        "before" => ("before", number("The loss before the command")),
+        key => (key, number("The loss after the command")),
     };
     let property = |key: &'static str| match key {
-        "command" => text("What made it: a command, or in words"),
+        "command" => text("The command that created or changed the rule set, or a description"),
         "data" => {
-            let file = object("A file", provenance::DATA_KEYS.iter().map(file), &["file"]);
+            let file = object("A file with data", provenance::DATA_KEYS.iter().map(file), &["file"]);
             list("The files with the data", Node::mapping(file), None)
         }
-        "rows" => whole("How many rows were used", 0.0),
-        "seed" => whole("The seed of what was random", 0.0),
+        "rows" => whole("The number of rows that were used", 0.0),
+        "seed" => whole("The random seed", 0.0),
         "loss" => {
             let keys = provenance::LOSS_KEYS;
             Node::mapping(object(
-                "The loss that was made small",
+                "The loss that was minimised",
                 keys.iter().map(of_loss),
                 &keys,
             ))
@@ -271,17 +272,17 @@ fn step() -> Node {
         "rules" => numbers("The number of rules, before and after", 2),
         "moved" => {
             let one = Node::mapping([("type", Node::text("string"))]);
-            list("The numbers that moved, in words", one, None)
+            list("The numbers that the command changed, described in text", one, None)
         }
-        "note" => text("What else there is to say"),
+        "note" => text("Further remarks"),
         "result" => text(
-            "A hash of the rule set that the command made; another one now says that it was edited since",
+            "A hash of the rule set that the command wrote; if the hash of the rule set differs from it, the rule set was edited afterwards",
         ),
         _ => Node::mapping(Entries::new()),
     };
     let properties = provenance::KEYS.map(|key| (key, property(key)));
     Node::mapping(object(
-        "A command that made the rule set of another one",
+        "A command that created the rule set, or derived it from another rule set",
         properties,
         &["command"],
     ))
@@ -297,7 +298,7 @@ fn function() -> Node {
     let height = (
         "height",
         about(
-            "The largest degree of membership",
+            "The largest degree of membership; default: 1",
             [
                 ("type", Node::text("number")),
                 ("exclusiveMinimum", Node::number(0.0)),
@@ -305,9 +306,9 @@ fn function() -> Node {
             ],
         ),
     );
-    let point = numbers("[x, degree]", 2);
+    let point = numbers("A point: [x, degree]", 2);
     let linear = about(
-        "Takagi-Sugeno outputs: the sum of the constant and of each input times its number",
+        "A linear consequent of a Takagi-Sugeno output: a constant, and a coefficient for each input",
         [
             ("type", Node::text("object")),
             (
@@ -320,7 +321,7 @@ fn function() -> Node {
         (
             "piecewise",
             list(
-                "Straight between points, from left to right",
+                "Straight lines between points, from left to right",
                 point,
                 Some(1),
             ),
@@ -328,7 +329,7 @@ fn function() -> Node {
         (
             "function",
             about(
-                "A formula over the variable; in a Takagi-Sugeno output, the value itself over inputs and other outputs",
+                "A formula for the degree at a value of the variable; in a Takagi-Sugeno output, a formula for the consequent, from inputs and other outputs",
                 [(
                     "type",
                     Node::list(["string", "number"].map(Node::text).into()),
@@ -343,7 +344,7 @@ fn function() -> Node {
         .map(|form| (form.name, shape(form)))
         .chain(others);
     let mut entries = object(
-        "A membership function, and a height if it is not 1",
+        "A membership function, with a height if that is not 1",
         properties,
         &[],
     );
@@ -356,12 +357,12 @@ fn function() -> Node {
 fn term() -> Node {
     let bounds = ["upper", "lower"].map(|bound| (bound, reference("function")));
     let interval = object(
-        "An interval type-2 term: the lower membership function is nowhere above the upper one",
+        "An interval type-2 term; the lower membership function must not be above the upper one anywhere",
         bounds,
         &["upper", "lower"],
     );
     any_of(
-        "A term",
+        "A term: a membership function, or an upper and a lower one",
         Vec::from([reference("function"), Node::mapping(interval)]),
     )
 }
@@ -376,14 +377,14 @@ fn shape(form: &Form) -> Node {
         (*name, Node::mapping(entries))
     });
     let names = form.names();
-    let by_name = Node::mapping(object("By name", properties, &names));
+    let by_name = Node::mapping(object("The parameters by name", properties, &names));
     let mut options = Vec::new();
     if form.as_list() {
         let order = format!("[{}], from left to right", names.join(", "));
         options.push(numbers(&order, names.len()));
     }
     if names.len() == 1 {
-        options.push(number("Its one parameter"));
+        options.push(number("The only parameter"));
     }
     options.push(by_name);
     any_of(form.about, options)
@@ -392,19 +393,19 @@ fn shape(form: &Form) -> Node {
 /// Returns the schema of operators. `all` adds the aggregation, which blocks do not have.
 fn operators(description: &str, all: bool) -> Node {
     let properties = [
-        ("and", words("AND; minimum where absent", &CONJUNCTIONS)),
-        ("or", words("OR; maximum where absent", &DISJUNCTIONS)),
+        ("and", words("The function for AND; default: minimum", &CONJUNCTIONS)),
+        ("or", words("The function for OR; default: maximum", &DISJUNCTIONS)),
         (
             "implication",
             words(
-                "How a firing strength cuts or scales a term; minimum where absent",
+                "The function that applies a firing strength to the term of the consequent; default: minimum",
                 &CONJUNCTIONS,
             ),
         ),
         (
             "aggregation",
             words(
-                "How the terms of an output join; maximum where absent",
+                "The function that combines the terms of an output; default: maximum",
                 &AGGREGATIONS,
             ),
         ),
@@ -416,15 +417,15 @@ fn operators(description: &str, all: bool) -> Node {
 
 fn block() -> Node {
     let value = |key: &str| match key {
-        "description" => text("What its rules are for"),
-        "enabled" => boolean("Whether its rules are evaluated; true where absent"),
-        "operators" => operators("Its operators; those of the rule set where absent", false),
+        "description" => text("The purpose of the rules"),
+        "enabled" => boolean("Whether the rules of the block are evaluated; default: true"),
+        "operators" => operators("The operators of the block; default: those of the rule set", false),
         "activation" => activation(),
-        _ => list("Its rules", reference("rule"), None),
+        _ => list("The rules of the block", reference("rule"), None),
     };
     let properties = blocks::KEYS.iter().map(|key| (*key, value(key)));
     Node::mapping(object(
-        "Rules with operators and an activation method of their own",
+        "A rule block: rules with their own operators and activation method",
         properties,
         &["rules"],
     ))
@@ -435,38 +436,38 @@ fn activation() -> Node {
         |key: &str, which: &str, value: Node| Node::mapping(object(which, [(key, value)], &[key]));
     let counted = |key: &str, which: &str| {
         let counted = object(
-            "So many, of those with at least a strength",
+            "This number of rules, among those whose firing strength reaches a minimum",
             [
-                ("rules", whole("How many", 1.0)),
-                ("at_least", number("Their least strength")),
+                ("rules", whole("The number of rules", 1.0)),
+                ("at_least", number("The minimum firing strength")),
             ],
             &["rules"],
         );
-        let options = Vec::from([whole("How many", 1.0), Node::mapping(counted)]);
-        only(key, which, any_of("How many", options))
+        let options = Vec::from([whole("The number of rules", 1.0), Node::mapping(counted)]);
+        only(key, which, any_of("The number of rules", options))
     };
-    let comparisons = COMPARISONS.map(|(word, _)| (word, number("The firing strength")));
-    let mut threshold = object("The rules whose strength compares so", comparisons, &[]);
+    let comparisons = COMPARISONS.map(|(word, _)| (word, number("The number to which the firing strength is compared")));
+    let mut threshold = object("The comparison that the firing strength must satisfy", comparisons, &[]);
     threshold.push(entry("minProperties", Node::number(1.0)));
     threshold.push(entry("maxProperties", Node::number(1.0)));
     any_of(
-        "Which rules fire: all where absent",
+        "The activation method, which determines which rules fire; default: general",
         Vec::from([
             words(
-                "All, or all with the strength divided by the sum of all",
+                "general: all rules; proportional: all rules, each firing strength divided by the sum of all",
                 &METHODS,
             ),
-            counted("first", "The first rules that fire"),
-            counted("last", "The last rules that fire"),
-            only("highest", "The strongest rules", whole("How many", 1.0)),
+            counted("first", "Only the first rules that would fire"),
+            counted("last", "Only the last rules that would fire"),
+            only("highest", "Only the rules with the largest firing strengths", whole("The number of rules", 1.0)),
             only(
                 "lowest",
-                "The weakest rules that fire",
-                whole("How many", 1.0),
+                "Only the rules with the smallest firing strengths above 0",
+                whole("The number of rules", 1.0),
             ),
             only(
                 "threshold",
-                "Those above or below a strength",
+                "Only the rules whose firing strength satisfies a comparison",
                 Node::mapping(threshold),
             ),
         ]),
@@ -479,20 +480,20 @@ fn boolean(description: &str) -> Node {
 
 fn rule() -> Node {
     let beaten = object(
-        "A conclusion that lost against the one in the rule when it was learned",
+        "A consequent that was rejected in favour of the rule's consequent when the rule was learned",
         [
-            ("term", text("The term that lost")),
-            ("degree", degree("Its degree")),
-            ("support", whole("How many samples stood behind it", 0.0)),
+            ("term", text("The term of the rejected consequent")),
+            ("degree", degree("The degree of the rejected consequent")),
+            ("support", whole("The number of samples that support the rejected consequent", 0.0)),
         ],
         &["term", "degree", "support"],
     );
     let value = |key: &str| match key {
         "rule" => rule_text(),
-        "confidence" => degree("How sure its source is of it; it does not weight the rule"),
-        "support" => whole("How many samples stand behind it", 0.0),
+        "confidence" => degree("The confidence of the rule's source, from 0 to 1; it is not used as a weight"),
+        "support" => whole("The number of samples that support the rule", 0.0),
         "against" => list(
-            "The conclusions it beat",
+            "The rejected consequents",
             Node::mapping(beaten.clone()),
             None,
         ),
@@ -500,7 +501,7 @@ fn rule() -> Node {
     };
     let properties = rules::KEYS.iter().map(|key| (*key, value(key)));
     let with_provenance = Node::mapping(object(
-        "A rule and where it came from",
+        "A rule and its origin",
         properties,
         &["rule"],
     ));

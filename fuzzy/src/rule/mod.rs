@@ -63,7 +63,7 @@ pub struct Rule {
     pub condition: Condition,
     /// The consequents, at least one; several are joined by AND.
     pub consequents: Vec<Consequent>,
-    /// The weight, by which the firing strength is multiplied, as in `WITH w`; 1 by default.
+    /// The weight (`WITH w`), by which the firing strength is multiplied; 1 by default.
     pub weight: f64,
 }
 

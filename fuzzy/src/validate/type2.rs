@@ -175,7 +175,8 @@ fn above(term: &Term, low: f64, high: f64) -> Option<(f64, f64, f64)> {
     worst.map(|(x, _)| (x, term.lower_membership(x), term.membership(x)))
 }
 
-/// Returns the position of the maximum of a function between two values, which has a single one there.
+/// Returns the position of the maximum of a function between `left` and `right`; the function must have a single
+/// maximum there.
 fn highest(mut left: f64, mut right: f64, f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..SEARCH {
         let third = (right - left) / 3.0;

@@ -213,7 +213,7 @@ fn peaks(set: &Set<'_>, pieces: &[Piece], seen: &[Vec<Place>]) -> Vec<(f64, f64)
     for (&(from, to), places) in pieces.iter().zip(seen) {
         let (first, last) = (places[0], places[GRID as usize]);
         let (rises, left) = before.map_or((true, first.1), |place| (place.2 > 0.0, place.1));
-        // At a cut: the set rises to it or steps up, and falls from it or steps down.
+        // Whether the set rises to the cut, or steps up at it; and whether it falls after the cut, or steps down at it.
         let is_step = (left - first.1).abs() > 1e-7 * left.max(first.1);
         let up = if is_step { left < first.1 } else { rises };
         let down = if is_step {

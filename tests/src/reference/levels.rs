@@ -1,4 +1,4 @@
-//! When levels are raised and lowered, from the risk and the elevated risk over time.
+//! The times at which levels are raised and lowered, computed from the risk and the elevated risk.
 
 use flagred::verdict::{Level, LevelSettings, Threshold, VerdictSettings};
 

@@ -1,5 +1,5 @@
-//! The definition of interval type-2 rule sets, apart from the engine: intervals of degrees through every operator, and the
-//! centroid for each of many switch points. Slow.
+//! A reference implementation of interval type-2 rule sets, independent of the engine: it computes the interval of
+//! degrees of every operator, and the centroid for each of many switch points. Slow.
 
 use fuzzy::model::{Defuzzifier, Model, Output, Term};
 use fuzzy::rule::{Condition, Proposition};

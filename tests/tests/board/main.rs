@@ -181,7 +181,7 @@ fn plans_agree_with_the_monitor_on_every_flight() {
     }
 }
 
-/// An action on a strength before those of its output raises nothing and does not panic.
+/// A strength with an index below the strengths of its output raises nothing, and does not cause a panic.
 #[test]
 fn an_action_without_an_output_raises_nothing() {
     let estimator = estimator("flagred-paper");

@@ -207,8 +207,8 @@ impl DataTable {
         })
     }
 
-    /// The rule set with rules learned from the rows in place of its own, as `flagred learn`: a JSON object with the new text.
-    /// `complete` adds rules for combinations of terms without rows.
+    /// The rule set with its rules replaced by rules learned from the rows, as with `flagred learn`: a JSON object with
+    /// the new text. `complete` adds rules for combinations of terms without rows.
     pub fn learn(&self, text: &str, complete: bool) -> Result<String, JsError> {
         let whole = parsed(text)?;
         let refused = |error: learn::LearnError| failure(&error, Some(error.help()));

@@ -7,7 +7,7 @@ use wasm_bindgen::{JsCast, JsValue};
 
 use super::PIECE;
 
-/// A reader that calls a function of an offset and a length.
+/// A reader that obtains bytes by calling a JavaScript function with an offset and a length.
 pub(super) struct Source<'f> {
     read: &'f Function,
     /// The offset of the first byte after the piece.

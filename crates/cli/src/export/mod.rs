@@ -214,7 +214,7 @@ fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
 
 /// The texts of findings for pilots.
 struct FindingWords {
-    /// Texts for findings with an input as cause: a row for each proposition of the plan.
+    /// Texts for findings that an input caused: a row for each proposition of the plan.
     causes: Vec<Words>,
     /// Texts for the other findings: a row for each measure.
     notices: Vec<Words>,

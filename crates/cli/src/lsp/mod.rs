@@ -52,7 +52,7 @@ pub(crate) fn run(_: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn broken(error: impl std::fmt::Display) -> Failure {
-    Failure::unreadable(format!("the editor broke the protocol: {error}"))
+    Failure::unreadable(format!("the editor violated the protocol: {error}"))
 }
 
 fn abilities(encoding: Encoding) -> lsp::InitializeResult {

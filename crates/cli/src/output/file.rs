@@ -79,7 +79,8 @@ impl Files {
         let mut files = Files::default();
         for input in inputs {
             let input = input.as_ref();
-            // An input that is not a regular file, or cannot be read, would not be replaced as an output either.
+            // An input that is not a regular file, or cannot be read, is not registered: an output of that name would
+            // not replace it.
             let identity = match is_standard(input) {
                 true => standard(Stream::Input),
                 false => fs::metadata(input)

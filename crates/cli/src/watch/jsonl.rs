@@ -177,8 +177,7 @@ pub(crate) enum FleetLine<'a> {
     },
     /// An event of one vehicle.
     Event {
-        /// The system of the vehicle, and the address or endpoint at which it is received:
-        /// `7@192.0.2.5:14550`.
+        /// The system id of the vehicle, and the address or endpoint at which its packets arrive: `7@192.0.2.5:14550`.
         vehicle: String,
         /// A line of `flagred.watch/1`.
         watch: Line<'a>,

@@ -1,4 +1,4 @@
-//! Events in words, line by line, for people and pipes.
+//! Events as lines of text, for people and pipes.
 
 use flagred::{
     estimator::Estimator,
@@ -84,7 +84,7 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
                 "component {component} of vehicle {system} sends parameters: they are ignored, because it is not the autopilot"
             ),
             Doubt::ClockJump => format!(
-                "a timestamp of vehicle {system} jumps, but its clock does not: it is ignored"
+                "vehicle {system} sent a timestamp that jumps while its clock continues: the timestamp is ignored"
             ),
         },
         Event::AnotherWatch {
@@ -169,11 +169,11 @@ fn another_watch(component: Option<u8>, speaks: bool) -> String {
         ),
         (Some(number), true) => (
             format!("component {number} also watches the vehicle"),
-            "all",
+            "everything",
         ),
     };
     let help = match speaks {
-        false => "; `--send-anyway` sends both",
+        false => "; with `--send-anyway`, both send",
         true => "",
     };
     format!("{what}: this watch sends {so}{help}")
@@ -245,7 +245,7 @@ fn ready(setup: &Setup) -> String {
     );
     if !setup.assumed.is_empty() {
         text += &format!(
-            "; the vehicle did not report everything, assumed: {}",
+            "; the vehicle did not report everything; assumed values: {}",
             setup.assumed.join("; ")
         );
     }

@@ -38,7 +38,7 @@ fn the_file_is_written_only_if_nobody_else_changed_it() {
         (200, text.as_str())
     );
     assert_eq!(changed.header("etag"), saved.header("etag"));
-    // The previous tag, a wrong one, none.
+    // Saving with the previous tag, with a wrong tag and without a tag is refused.
     assert_eq!(studio.save(tag, "lost").status, 412);
     assert_eq!(studio.save("*", "lost").status, 412);
     assert_eq!(studio.ask("PUT", "api/file", &[], "lost").status, 428);

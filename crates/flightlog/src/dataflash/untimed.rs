@@ -81,8 +81,8 @@ impl Untimed {
         self.last_s.get_or_insert(first_s);
     }
 
-    /// Returns the kept messages with their times, when a message at `t_s` follows them. Messages before the first
-    /// message with a time are spread like those after it.
+    /// Returns the kept messages, evenly spaced in time up to the message at `t_s`, which follows them. Messages before
+    /// the first message with a time get the same spacing as those after it.
     pub(super) fn timed_before(&mut self, t_s: f64) -> impl Iterator<Item = (f64, Kept)> + use<> {
         let from_s = self.last_s.replace(t_s).unwrap_or(t_s).min(t_s);
         let before = std::mem::take(&mut self.before_first);

@@ -16,7 +16,8 @@ pub(super) enum From {
     Angle(Angle, &'static str),
 }
 
-/// The signals of one topic: computation (the first one for which the topic has the fields), name, unit.
+/// The signals of one topic. Each has alternative computations (the first one whose fields the topic contains is used),
+/// a name and a unit.
 pub(super) struct Spec {
     pub(super) topic: &'static str,
     pub(super) signals: &'static [(&'static [From], &'static str, &'static str)],

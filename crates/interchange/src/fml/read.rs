@@ -188,7 +188,7 @@ pub(super) fn tag<'t>(text: &'t str, node: Node<'_, '_>) -> &'t str {
         .unwrap_or(element)
 }
 
-/// The child elements with one of some names.
+/// The child elements with any of the given names.
 pub(super) fn children<'a, 'i>(
     node: Node<'a, 'i>,
     names: &'static [&'static str],

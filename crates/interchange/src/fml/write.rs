@@ -417,7 +417,7 @@ fn clause(proposition: &Proposition) -> Result<Element, &'static str> {
             let word = HEDGES
                 .iter()
                 .find(|(_, known): &&(_, Hedge)| *known == hedge);
-            clause.with("modifier", word.ok_or("has a hedge that FML has not")?.0)
+            clause.with("modifier", word.ok_or("has a hedge that FML does not support")?.0)
         }
         _ => return Err("has two hedges before a term"),
     };

@@ -255,8 +255,8 @@ fn total_size(places: &Places) -> usize {
 
 /// Applies the changes that do not change any output, largest reduction first.
 fn without_difference(model: &Model, judge: &mut Judge, places: &mut Places) {
-    // A change that failed fails again, as long as no change affects the outputs; in the last pass all are tried once
-    // more.
+    // A change that failed would fail again, because the changes applied meanwhile do not affect the outputs. Before
+    // the loop ends, all failed changes are tried once more.
     let mut failed: HashSet<String> = HashSet::new();
     loop {
         let is_complete = failed.is_empty();

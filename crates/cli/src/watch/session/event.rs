@@ -164,7 +164,7 @@ pub(crate) enum End {
     LeftInAir(StopReason),
 }
 
-/// What was lost in the air.
+/// The reason why contact was lost in the air.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Lost {

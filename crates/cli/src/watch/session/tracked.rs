@@ -194,8 +194,9 @@ impl Tracked {
         self.heard_s = now_s;
     }
 
-    /// Creates a monitor as soon as the motors are known, and a new one if more about them becomes known; the new one assesses the
-    /// flight from its beginning. If the flight so far is too long for that, it ends, and its verdict is returned.
+    /// Creates a monitor as soon as the motors are known, and replaces it when more is known about them; the new
+    /// monitor assesses the flight from its beginning. If the flight is already too long for that, it is ended and its
+    /// verdict is returned.
     pub(super) fn set_up(
         &mut self,
         now_s: f64,
