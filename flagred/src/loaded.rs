@@ -241,7 +241,7 @@ fn parse<E>(name: &str, source: &Source) -> Result<Profile, LoadError<E>> {
             let file = Path::new(name);
             let file = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
             return LoadError::unusable(format!("`{name}` is a rule set, not a profile"))
-                .help(format!("write a profile that names it, with `rules: {file}` and where each input comes from"));
+                .help(format!("write a profile that names it, with `rules: {file}` and the source of each input"));
         }
         LoadError::Findings { file: name.to_owned(), text: source.text().to_owned(), findings }
     })

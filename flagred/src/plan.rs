@@ -48,17 +48,17 @@ impl NoPlan {
         match self {
             NoPlan::NoClosedForm { .. } => {
                 "the defuzzifiers have a closed form with `implication: minimum` or `product` and `aggregation: maximum` or \
-                 `sum` (maxima: `maximum` only), over terms that are not functions, without `samples`; those of Takagi-Sugeno \
-                 and Tsukamoto have one always"
+                 `sum` (maxima: `maximum` only), over terms that are not functions, without `samples`; Takagi-Sugeno and \
+                 Tsukamoto outputs always have one"
             }
             NoPlan::KeepsPrevious { .. } => {
                 "set `when_no_rule_fires` to a number, such as 0, or leave that key out"
             }
             NoPlan::Type2 => {
-                "remove the lower membership functions: the export has the upper ones then"
+                "remove the lower membership functions: then the export contains only the upper ones"
             }
             NoPlan::SeveralRisks { .. } => {
-                "write a profile for each risk, and run a monitor of each: the findings are the same"
+                "write a profile for each risk, and run a monitor for each: the findings are the same"
             }
         }
     }

@@ -419,7 +419,7 @@ pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     let bare = |name: &str| name.trim_matches(is_curly_quote) == word;
     match meant.as_slice() {
         [one] if *one != word && bare(one) => Some(format!(
-            "the curly quotes belong to the name `{one}`; write it in straight quotes or in none"
+            "the curly quotes are read as a part of the name `{one}`; write straight quotes or none"
         )),
         [] => match candidates.as_slice() {
             [] => None,

@@ -132,8 +132,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ),
     (
         "type",
-        "a rule set has no type: with the defuzzifier `weighted_average` or `weighted_sum` an output is of Takagi and Sugeno's \
-         kind, with any other of Mamdani's",
+        "a rule set has no type: an output with the defuzzifier `weighted_average` or `weighted_sum` is a Takagi-Sugeno \
+         output, with any other a Mamdani output",
     ),
     (
         "defuzzmethod",

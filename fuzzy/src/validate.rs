@@ -134,7 +134,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     for (i, rule) in model.rules.iter().enumerate() {
         let first = validator.findings.len();
         if first >= MOST_FINDINGS {
-            let message = format!("rule {} and those after it are not looked at", i + 1);
+            let message = format!("rule {} and the rules after it were not examined", i + 1);
             let here = spans.rules.get(i).map_or(0..0, |rule| rule.whole.clone());
             let help = format!("correct the {first} errors above first");
             validator.error("too-many-errors", &here, message, &help);
@@ -166,7 +166,7 @@ fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
     let all_spans = || spans.inputs.iter().chain(&spans.outputs);
     let refuse = |here: Option<Range<usize>>, count: usize, most: usize, what: &str| {
         (count > most).then(|| {
-            let message = format!("{count} {what} are more than {most}");
+            let message = format!("{count} {what} are more than the maximum of {most}");
             let here = here.unwrap_or_default();
             Diagnostic::error("too-large", here, message).help("split the rule set into several")
         })

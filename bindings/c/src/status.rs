@@ -27,7 +27,7 @@ pub(crate) fn text(status: i32) -> &'static CStr {
         5 => c"the memory is too small, or not aligned to 16 bytes",
         6 => c"the lower limit of a motor is not below its upper limit",
         7 => c"the geometry does not distinguish roll, pitch, yaw and thrust of the motors",
-        8 => c"not one value for each input, not one outcome for each output, or too many commands",
+        8 => c"the numbers of values or outcomes differ from those of inputs or outputs, or there are too many commands",
         _ => c"unknown status",
     }
 }

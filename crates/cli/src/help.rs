@@ -154,7 +154,7 @@ Examples:
   flagred map my-rules.yaml --surface --svg surface.svg
   flagred map my-rules.yaml --activations        the dominant rule of each cell
   flagred map my-rules.yaml --hold battery=20 --x margin:0..0.3 --y spread
-  flagred map my-profile.yaml                    interpolated as the profile says
+  flagred map my-profile.yaml                    interpolated as in the profile
   flagred map my-rules.yaml --values             numbers, a table for each slice
   flagred map my-rules.yaml --csv -o my-rules.map.csv
   flagred map my-rules.yaml --check my-rules.map.csv     in a test: exit code 1 if an output differs

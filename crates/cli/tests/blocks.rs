@@ -43,8 +43,8 @@ fn explain_and_map_report_a_missing_previous_row() {
     let folder = folder(&[("fan.yaml", FAN)]);
     let (_, text, _) = flagred(folder.path(), &["explain", "fan.yaml", "heat=22"]);
     for told in [
-        "\nspeed keeps its previous value, which one point does not have: no rule fired\n",
-        "\nlamp keeps its previous value, 4 where there is none: no rule fired\n",
+        "\nspeed keeps its previous value, and a single point has none: no rule fired\n",
+        "\nlamp keeps its previous value, or 4 if there is none: no rule fired\n",
     ] {
         assert!(text.contains(told), "{text}");
     }

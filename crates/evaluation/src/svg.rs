@@ -38,7 +38,7 @@ pub fn draw(evaluation: &Evaluation) -> String {
         Plot {
             title: "Reliability".into(),
             x: (percent, "risk [%]".into()),
-            y: (percent, "of these became critical [%]".into()),
+            y: (percent, "share that became critical [%]".into()),
             series: diagonal(100.0).chain(reliability).collect(),
         },
     ];

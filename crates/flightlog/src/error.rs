@@ -99,10 +99,10 @@ impl ReadError {
                 Some("`flagred check` examines a rule set")
             }
             Self::NotALog { what, .. } if what == PROFILE => {
-                Some("`flagred assess --profile PROFILE FLIGHT` assesses a flight by it")
+                Some("`flagred assess --profile PROFILE FLIGHT` assesses a flight with it")
             }
             Self::NotALog { what, .. } if what == SEMICOLONS => {
-                Some("a flight CSV separates cells by commas, and decimals by a point")
+                Some("a flight CSV separates cells by commas, and numbers have a decimal point")
             }
             Self::NotALog { .. } => Some(
                 "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",

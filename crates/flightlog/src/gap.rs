@@ -36,7 +36,7 @@ pub enum Gap {
         from: String,
     },
     /// No output is known to drive a motor.
-    #[error("the log does not say which outputs drive the motors")]
+    #[error("the log does not record which outputs drive the motors")]
     NoMotors {
         /// The format of the log.
         format: Format,
@@ -128,7 +128,7 @@ impl Gap {
                     "let the ground station load all parameters while it records, or use the log on the vehicle"
                 }
                 Csv => {
-                    "name the columns of the motors pwm1.. (us) or motor1.. (0 to 1), in small letters; a profile that reads no motor needs none"
+                    "name the columns of the motors pwm1.. (us) or motor1.. (0 to 1), in lower-case letters; a profile that reads no motor needs none"
                 }
             },
             Self::NoCommands {

@@ -63,7 +63,7 @@ impl fmt::Display for LeftOut {
             (self.texts, "texts"),
             (self.modes, "flight modes"),
             (self.parameters, "values of parameters"),
-            (self.changes, "changes of armed and in the air"),
+            (self.changes, "changes of the armed or in-air state"),
             (self.messages, "messages after the flight that is kept"),
         ];
         let counts = counts.iter().filter(|(count, _)| *count > 0);

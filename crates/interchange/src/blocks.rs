@@ -57,7 +57,7 @@ pub(crate) fn joined(draft: &mut Draft<'_>, output: &str, part: &str, help: &str
         .any(|pair| matches!(pair, [a, b] if a == b))
     {
         let message = format!(
-            "several rules conclude one term of `{output}`, and its aggregation joins them"
+            "several rules conclude the same term of `{output}`, and its aggregation joins them"
         );
         draft.loss("joined", part, message, help);
     }

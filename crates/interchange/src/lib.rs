@@ -214,14 +214,14 @@ pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, F
         Err(Findings(unreadable)) => {
             let what = unreadable.first().map_or("", |finding| &finding.message);
             let message = format!(
-                "what {} can hold of it is not a rule set: {what}",
+                "the part of it that {} can express is not a rule set: {what}",
                 format.name()
             );
             let finding = Diagnostic::error("unreadable", 0..0, message);
             let mut findings = written.findings;
             findings
                 .0
-                .push(finding.help("change what the other findings name"));
+                .push(finding.help("change the parts that the other findings name"));
             Err(findings)
         }
     }

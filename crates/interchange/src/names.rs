@@ -145,7 +145,7 @@ fn note(paper: &mut Paper, before: &str, after: &str) {
         paper.note(
             "renamed",
             message,
-            "the format cannot write all of it, or has it already",
+            "the format does not allow all its characters, or the name is already used",
         );
     }
 }

@@ -50,7 +50,7 @@ impl Paper {
         if let Some((name, _)) = coefficients.iter().find(|(name, _)| !is_input(name)) {
             let message = format!("the term `{term}` reads the output `{name}`");
             let help = format!(
-                "a linear function of {} reads inputs alone",
+                "a linear function of {} reads only inputs",
                 self.format.name()
             );
             self.refuse("no-shape", message, &help);

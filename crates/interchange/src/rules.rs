@@ -176,7 +176,7 @@ impl<'r> Reader<'r, '_, '_> {
     // The recursive functions must have small stack frames, so the rest is in separate functions.
     fn too_deep<T>(&mut self) -> Option<T> {
         let part = self.peek().unwrap_or(self.end);
-        let message = format!("a condition has at most {DEEPEST_NESTING} brackets in each other");
+        let message = format!("the brackets of a condition are nested at most {DEEPEST_NESTING} deep");
         let help = "write it as several rules";
         self.draft.error("rule-too-deep", part, message, help);
         None

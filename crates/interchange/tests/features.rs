@@ -144,7 +144,7 @@ const FEATURES: &[(&str, &str, &str)] = &[
         "terms: {small: {left_shoulder: [1, 5]}, large: {right_shoulder: [3, 8]}}, defuzzifier: tsukamoto",
     ),
     (
-        "a value where no rule fires",
+        "a value if no rule fires",
         "OUTPUT",
         "terms: {small: {triangle: [0, 2, 4]}, large: {triangle: [3, 6, 9]}}, when_no_rule_fires: {value: 1}",
     ),

@@ -187,8 +187,8 @@ fn reliability(rows: &[Reliability]) -> Markup {
             details {
                 summary { "How sure a risk is" }
                 p.soft {
-                    "Of the moments with such a risk on the flights that the rules were tested on, the share that was followed by an attitude \
-                     error over 5 degrees within 5 s."
+                    "The share of the moments with such a risk, in the flights that the rules were tested on, that were followed by an \
+                     attitude error over 5 degrees within 5 s."
                 }
                 table.rules {
                     thead { tr { th.n { "Risk" } th.n { "Real vehicles" } th.n { "Simulated vehicles" } } }

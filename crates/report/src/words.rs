@@ -231,7 +231,7 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     if !flight.assumed.is_empty() {
         let assumed = flight.assumed.join("; ");
         notes.push(format!(
-            "the log does not report everything, assumed: {assumed}"
+            "the log does not report everything; assumed values: {assumed}"
         ));
     }
     for assumed in &assessed.assumed_inputs {
@@ -250,14 +250,14 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     }
     if assessed.findings_left_out > 0 {
         notes.push(format!(
-            "the {} gravest findings are kept, {} others are left out",
+            "the {} most severe findings are kept, {} others are left out",
             assessed.findings.len(),
             assessed.findings_left_out
         ));
     }
     if let Some(step_s) = assessed.widened_step_s {
         notes.push(format!(
-            "the steps are {} s apart, so that not more than {} are kept",
+            "the steps are {} s apart, so that at most {} are kept",
             number(step_s, 6),
             flagred::flight::MOST_STEPS
         ));

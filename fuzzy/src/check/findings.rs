@@ -80,7 +80,7 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
                     at.rule(one.by),
                     "this rule fires wherever the other does, with the same conclusion",
                 )
-                .help("remove the narrower rule, or change what it concludes"),
+                .help("remove the narrower rule, or change its conclusion"),
         );
     }
     for &rule in &report.never_firing {
@@ -239,7 +239,7 @@ impl At<'_> {
         finding.help = match rules.as_slice() {
             [] if weak.is_empty() => self.disabled_blocks(),
             [] => Some(format!(
-                "no term of {} reaches that there; let the terms overlap more",
+                "no term of {} reaches that degree there; let the terms overlap more",
                 listed(&weak)
             )),
             [one] => Some(format!("the rule is missing: {one}{more}")),
@@ -318,7 +318,7 @@ impl At<'_> {
             one.first + 1
         );
         Diagnostic::warning("contradiction", self.rule(one.first), message)
-            .help("keep one of them; what lies between two terms is a term of its own")
+            .help("keep one of them; for a value between two terms, add a term")
     }
 
     /// Reports a rule that never fires, unless a term of its condition is 0 on the whole range, which is reported on
@@ -498,7 +498,7 @@ impl At<'_> {
         let output = claim.output.as_deref().unwrap_or("");
         let does = claim.direction.contradicted();
         Diagnostic::warning("not-monotone", self.name(output), one.to_string()).help(format!(
-            "it is claimed that it never {does}; look at the rules that fire there"
+            "the claim is that the output never {does}; look at the rules that fire there"
         ))
     }
 

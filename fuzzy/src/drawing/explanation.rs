@@ -121,7 +121,7 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
             (70.0, y),
             Anchor::Start,
             "title",
-            "Rules that fired: firing strength from 0 to 1, in the shade of what they imply above",
+            "Rules that fired: firing strength from 0 to 1; the implied set above has the same shade",
         );
     }
     y += 20.0;
@@ -180,13 +180,13 @@ pub(super) fn answer(output: &ExplainedOutput, variable: &Variable, all: &Explan
         None => match unknown {
             Some(read) => format!("{} is undefined, because {} is", output.name, read.name),
             None if output.keeps_previous => format!(
-                "{} keeps its previous value, which one point does not have: no rule fired",
+                "{} keeps its previous value, and a single point has none: no rule fired",
                 output.name
             ),
             None => format!("{} is undefined: no rule fired", output.name),
         },
         Some(value) if output.is_default && output.keeps_previous => format!(
-            "{} keeps its previous value, {}{unit} where there is none: no rule fired",
+            "{} keeps its previous value, or {}{unit} if there is none: no rule fired",
             output.name,
             digits(value)
         ),

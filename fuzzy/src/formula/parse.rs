@@ -65,10 +65,10 @@ pub(super) fn parse(text: &str) -> Result<Formula, Box<Diagnostic>> {
             let formula = Formula::new(expression, parser.variables);
             if code::depth(&formula.code) > code::DEEPEST {
                 let message = format!(
-                    "the formula keeps more than {} numbers at a time",
+                    "the formula needs more than {} intermediate results at a time",
                     code::DEEPEST
                 );
-                return whole(message, "write what is nested to the right further left");
+                return whole(message, "write deeply nested operands before the others");
             }
             Ok(formula)
         }
@@ -503,7 +503,7 @@ impl Mistake<'_> {
             .help("write the name of a variable between two quotes"),
             Wrong::Number(written) => {
                 let message = match written.parse::<f64>() {
-                    Ok(_) => format!("`{written}` is too large a number"),
+                    Ok(_) => format!("the number `{written}` is too large"),
                     Err(_) => format!("`{written}` is not a number"),
                 };
                 error(written.len(), message).help("write digits with one decimal point: `0.5`")
@@ -511,12 +511,12 @@ impl Mistake<'_> {
             Wrong::TooDeep => {
                 let message =
                     format!("brackets, signs and powers are nested deeper than {DEEPEST_NESTING}");
-                error(found.len(), message).help("let several terms share the work")
+                error(found.len(), message).help("split the formula into the formulas of several terms")
             }
             Wrong::TooLong => {
                 let message = format!("the formula has more than {LONGEST} parts");
                 Diagnostic::error("formula-syntax", 0..text.len(), message)
-                    .help("let several terms share the work")
+                    .help("split the formula into the formulas of several terms")
             }
         }
     }

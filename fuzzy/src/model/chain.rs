@@ -324,7 +324,7 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             .fold(finding, |finding, (text, span)| {
                 finding.related(span.clone(), text.as_str())
             })
-            .help("let one of them read inputs alone, or conclude an output of another name")
+            .help("let one of them read only inputs, or conclude an output with another name")
     });
     circles.collect()
 }

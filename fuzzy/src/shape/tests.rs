@@ -550,6 +550,6 @@ fn messages_name_the_parameter() {
             left: -1.7e308,
             right: 1.7e308
         }),
-        "`left` is too large a number"
+        "`left` is too large"
     );
 }

@@ -107,7 +107,7 @@ fn finite(i: usize, name: &str, value: f64) -> Result<(), MembershipError> {
     if (2.0 * value).is_finite() {
         Ok(())
     } else if value.is_finite() {
-        wrong(i, format!("`{name}` is too large a number"))
+        wrong(i, format!("`{name}` is too large"))
     } else {
         wrong(i, format!("`{name}` is {value}, not a finite number"))
     }

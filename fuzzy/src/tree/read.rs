@@ -439,9 +439,9 @@ impl Node {
         }
         if let Some(percent) = text.strip_suffix('%').and_then(plain) {
             return Some(match percent {
-                0.0 => "write the number alone: `0`".into(),
+                0.0 => "write only the number: `0`".into(),
                 _ => format!(
-                    "write the number alone, in the unit of the value: `{percent}` in percent, `{}` as a share",
+                    "write only the number, in the unit of the value: `{percent}` in percent, `{}` as a share",
                     percent / 100.0
                 ),
             });

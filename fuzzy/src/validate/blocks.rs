@@ -57,7 +57,7 @@ impl Validator<'_> {
         for (i, rule) in rules.iter().enumerate() {
             let message = if rule.block >= last {
                 format!(
-                    "rule {} is in block {}, which there is not",
+                    "rule {} is in block {}, which does not exist",
                     i + 1,
                     rule.block + 1
                 )

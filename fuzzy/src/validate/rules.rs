@@ -68,7 +68,7 @@ impl<'m> Validator<'m> {
     ) {
         if depth > DEEPEST_NESTING {
             let message = format!("brackets and NOTs are nested deeper than {DEEPEST_NESTING}");
-            let help = "split the rule into several rules of the same conclusion";
+            let help = "split the rule into several rules with the same conclusion";
             self.error("rule-too-deep", rule, message, help);
             return;
         }

@@ -55,7 +55,7 @@ impl Validator<'_> {
             let blamed = error.parameter.and_then(|i| spans.parameters.get(i));
             let here = blamed.unwrap_or(&spans.name);
             let message = format!("{what}: {error}");
-            let help = "the positions of a membership function ascend, its widths are greater than 0, its degrees lie in [0, 1]";
+            let help = "the positions of a membership function must ascend, its widths must be greater than 0, and its degrees in [0, 1]";
             self.error("wrong-parameter", here, message, help);
         }
         if !(height > 0.0 && height <= 1.0) {
@@ -73,7 +73,7 @@ impl Validator<'_> {
             self.error("wrong-range", here, message, "write two finite numbers");
         } else if low >= high {
             let message = format!("the range of {what} starts at {low} and ends at {high}");
-            let help = "write the least value first, then the greatest";
+            let help = "write the minimum first, then the maximum";
             self.error("wrong-range", here, message, help);
         } else if !(2.0 * (high - low)).is_finite() {
             // Twice the width must be finite too, or distances within the range overflow.
@@ -133,7 +133,7 @@ impl Validator<'_> {
             let here = spans.parameters.first().unwrap_or(&spans.name);
             let message = format!("the degree {number} of {what} is outside [0, 1]");
             let help = format!(
-                "a `constant` of an input is its degree everywhere; for values near {number} write a set such as `triangle`, for that value alone `singleton: {number}`"
+                "a `constant` of an input is its degree everywhere; for values near {number} write a set such as `triangle`, for only that value `singleton: {number}`"
             );
             self.error("wrong-parameter", here, message, &help);
         }
@@ -198,7 +198,7 @@ impl Validator<'_> {
                 self.error("wrong-parameter", here, message, "write 2 samples or more");
             } else if samples > MOST_SAMPLES {
                 let message = format!("{samples} samples are more than {MOST_SAMPLES}");
-                let help = "leave `samples` out: the result is exact then";
+                let help = "remove `samples`: then the result is exact";
                 self.error("wrong-parameter", here, message, help);
             }
         }
@@ -257,8 +257,8 @@ impl Validator<'_> {
                     self.own_formula(&what, &output.variable, formula, spans);
                 }
                 shape if tsukamoto && !shape.is_monotone() => {
-                    let message = format!("{what} does not rise or fall all along");
-                    let help = "with `tsukamoto` each degree has one place: write `right_shoulder`, `left_shoulder`, `s_shape`, `z_shape`, `sigmoid`, `concave`, `arc` or a monotone `piecewise`";
+                    let message = format!("{what} is not monotone");
+                    let help = "with `tsukamoto` each degree must belong to exactly one value: write `right_shoulder`, `left_shoulder`, `s_shape`, `z_shape`, `sigmoid`, `concave`, `arc` or a monotone `piecewise`";
                     self.error("wrong-term", here, message, help);
                 }
                 MembershipFunction::Singleton { .. } if !weighted && !output.is_discrete() => {
@@ -292,7 +292,7 @@ impl Validator<'_> {
             all => (format!("the terms {} of {what}", all_of(all)), "are", "s"),
         };
         if output.defuzzifier == Defuzzifier::Bisector {
-            let message = format!("{subject} {are} singleton{kind}, without an area to halve");
+            let message = format!("{subject} {are} singleton{kind}, but `bisector` halves an area");
             let help =
                 "write `defuzzifier: centroid`, which weights the positions by their degrees";
             self.error("wrong-term", here, message, help);

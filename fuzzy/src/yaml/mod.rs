@@ -164,7 +164,7 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
         if document.is_some() && matches!(event, Event::DocumentStart(..)) {
             return Err(Box::new(
                 Diagnostic::error("yaml-syntax", bytes, "a second document begins here").help(
-                    "a file contains one document; remove the line `---` and what follows it",
+                    "a file contains one document; remove the line `---` and everything after it",
                 ),
             ));
         }

@@ -129,7 +129,7 @@ fn problem(text: &str) -> String {
     match text {
         "" | "NA" | "NaN" => "the value is unknown".into(),
         _ if text.contains(',') && text.replacen(',', ".", 1).parse::<f64>().is_ok() => {
-            format!("`{text}` is not a number: the decimal mark is a point")
+            format!("`{text}` is not a number: write a decimal point instead of a comma")
         }
         _ => format!("`{text}` is not a finite number"),
     }

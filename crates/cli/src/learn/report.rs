@@ -68,7 +68,7 @@ pub(super) fn words(
     )?;
     writeln!(
         out,
-        "conflicts  {} combinations of terms whose rows disagree; {} left out for few or unsure rows",
+        "conflicts  {} combinations of terms whose rows disagree; {} left out because of few or uncertain rows",
         learned.conflicts, learned.left_out
     )?;
     writeln!(

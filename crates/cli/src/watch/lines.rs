@@ -58,7 +58,7 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
     match event {
         Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),
         Event::Locked { system, address } => format!(
-            "motor commands of vehicle {system} are received{}: it is followed, other senders with this number are ignored",
+            "motor commands of vehicle {system} are received{}: the vehicle is followed, and other senders with this number are ignored",
             from(*address)
         ),
         Event::GivenUp { system } => {
@@ -77,11 +77,11 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             address,
         } => match what {
             Doubt::SecondSender => format!(
-                "another sender{} uses the number of vehicle {system}: it is ignored",
+                "another sender{} that uses the number of vehicle {system} is ignored",
                 from(*address)
             ),
             Doubt::OtherComponent => format!(
-                "component {component} of vehicle {system} sends parameters: they are ignored, because it is not the autopilot"
+                "component {component} of vehicle {system} sends parameters: they are ignored, because this component is not the autopilot"
             ),
             Doubt::ClockJump => format!(
                 "vehicle {system} sent a timestamp that jumps while its clock continues: the timestamp is ignored"
@@ -91,7 +91,7 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             component, speaks, ..
         } => another_watch(*component, *speaks),
         Event::AnotherVehicle { system } => {
-            format!("vehicle {system} is on the link, too: it is not followed")
+            format!("vehicle {system} is also on the link, but is not followed")
         }
         Event::NotAMultirotor { system, vehicle } => {
             format!(

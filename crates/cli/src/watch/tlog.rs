@@ -66,10 +66,10 @@ impl Recording {
         let is_whole = file.is_some_and(|file| file.set_len(self.written).is_ok());
         match is_whole {
             true => format!(
-                "{told}; it ends after {} bytes, the watch continues",
+                "{told}; the recording ends after {} bytes, the watch continues",
                 self.written
             ),
-            false => format!("{told}; it ends inside a packet, the watch continues"),
+            false => format!("{told}; the recording ends inside a packet, the watch continues"),
         }
     }
 }

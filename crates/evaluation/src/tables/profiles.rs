@@ -41,7 +41,7 @@ pub(super) fn alarms(name: &str, alarms: &Alarms) -> Table {
     let mut notes = vec![format!("upsets: {}", upsets(&alarms.upsets))];
     if alarms.upsets.assessed() > 0 {
         let by_fail = upsets(&alarms.upsets_by_fail);
-        notes.push(format!("upsets, by FAIL alone: {by_fail}"));
+        notes.push(format!("upsets, by FAIL only: {by_fail}"));
     }
     let by_kind = by_kind
         .iter()

@@ -23,7 +23,7 @@ const THRUST: &str = "vehicle_thrust_setpoint";
 /// Index of the thrust along z.
 const DOWN: usize = 2;
 /// The assumption if the motor commands are not logged.
-const COMPUTED: &str = "motor commands computed from torque and thrust set points, estimates where motors are at their limits";
+const COMPUTED: &str = "motor commands computed from torque and thrust set points: only estimates while motors are at their limits";
 /// Both are published together; a thrust that is older than the torque by more than this, in seconds, does not belong
 /// to it.
 const LATE_THRUST_S: f64 = 0.1;

@@ -154,7 +154,7 @@ impl<'r, 't> Reader<'r, 't> {
         let Some(name) = name else {
             if let [_, (_, second), ..] = blocks[..] {
                 let message = format!("the file has the function blocks {listed}");
-                let help = "a rule set is one of them";
+                let help = "a rule set is read from one of them";
                 self.draft.loss("several-blocks", second, message, help);
             }
             return !self.draft.has_errors();

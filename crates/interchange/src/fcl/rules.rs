@@ -136,7 +136,7 @@ impl Reader<'_, '_> {
             let spans = self.draft.spans.outputs.get(index);
             let span = spans.map(|spans| spans.name.clone()).unwrap_or_default();
             let part = self.draft.text.get(span).unwrap_or_default();
-            let help = "write `ACCU : SUM;`, which weighs each rule";
+            let help = "write `ACCU : SUM;`, with which each rule counts";
             blocks::joined(&mut self.draft, &name, part, help);
         }
         None

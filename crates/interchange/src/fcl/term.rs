@@ -79,7 +79,7 @@ fn shape<'t>(
         let names = shapes::names(Format::Fcl).chain(shapes::names(Format::Fll));
         let help = match nearest(shape, names) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => "known are TRIAN, TRAPE, GAUSS, GAUSS2, GBELL, SIGM, DSIGM, COSINE, points and fuzzylite's".into(),
+            None => "known shapes are TRIAN, TRAPE, GAUSS, GAUSS2, GBELL, SIGM, DSIGM, COSINE, points and those of fuzzylite".into(),
         };
         let message = format!("unknown shape `{shape}`");
         draft.error("unknown-shape", shape, message, &help);

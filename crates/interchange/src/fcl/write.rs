@@ -108,8 +108,8 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
             NoRuleFires::Value(value) => paper.line(format!("  DEFAULT := {value};")),
             NoRuleFires::Previous(None) => paper.line("  DEFAULT := NC;"),
             NoRuleFires::Previous(Some(_)) => {
-                let message = format!("`{name}` keeps its value, and has a first one");
-                paper.loss("no-rule-fires", message, "FCL has `NC` or a value");
+                let message = format!("`{name}` keeps its previous value, and has an initial value");
+                paper.loss("no-rule-fires", message, "FCL supports either `NC` or a value");
             }
             NoRuleFires::Undefined | NoRuleFires::Error => {}
         }
@@ -119,7 +119,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         }
         paper.line("END_DEFUZZIFY");
         if output.samples.is_some() {
-            let message = format!("the output `{name}` is sampled, which FCL does not say");
+            let message = format!("the output `{name}` is sampled, which FCL cannot express");
             paper.note("sampled", message, "each program samples in its own way");
         }
     }
@@ -218,10 +218,10 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable, computes: bool) ->
             });
             let help = "write it as points: `piecewise`";
             if written.is_none() {
-                let message = format!("the term {name} has a shape that FCL has not");
+                let message = format!("the term {name} has a shape that FCL does not support");
                 paper.refuse("no-shape", message, help);
             } else if height != 1.0 {
-                let message = format!("the term {name} has a height, which FCL has not");
+                let message = format!("the term {name} has a height, which FCL does not support");
                 paper.loss("no-shape", message, help);
             }
             written.map(|(shape, parameters)| format!("{shape} {}", numbers(&parameters)))
@@ -232,7 +232,7 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable, computes: bool) ->
 /// Reports that a term is a function.
 fn function(paper: &mut Paper, term: &Term, variable: &Variable) {
     let name = named(term, variable);
-    let message = format!("the term {name} is a function, which IEC 61131-7 has not");
+    let message = format!("the term {name} is a function, which IEC 61131-7 does not define");
     let help = "jFuzzyLogic reads it in outputs with `COGS`";
     paper.note("not-in-iec", message, help);
 }
@@ -268,7 +268,7 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
         return;
     }
     if block.activation != Activation::General {
-        let message = format!("the rules `{}` do not all fire", block.name);
+        let message = format!("the activation method of `{}` selects the rules that fire", block.name);
         paper.loss("activation", message, "FCL has no activation methods");
     }
     let [and, or, implication] = paper.operators(operators);

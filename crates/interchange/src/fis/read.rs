@@ -188,7 +188,7 @@ fn kind(draft: &mut Draft<'_>, system: &Section<'_>) -> Option<bool> {
         // fuzzylite writes `tsukamoto` if the terms of outputs are monotone sets.
         "sugeno" | "tsukamoto" => Some(true),
         other if other.contains("type2") => {
-            let message = format!("`{other}` has type-2 fuzzy sets, which a rule set cannot hold");
+            let message = format!("`{other}` has type-2 fuzzy sets, which cannot be imported");
             let help = "MATLAB's `convertToType1` makes it a system that can be read";
             draft.error("type-2", word, message, help);
             None
@@ -259,7 +259,7 @@ fn defuzzifier(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) -> D
     if is_weighted != weighted {
         let written = system.get("DefuzzMethod").unwrap_or(system.name);
         let message = format!("`DefuzzMethod={written}` does not fit the type of the system");
-        let help = "`wtaver` and `wtsum` are for Sugeno systems, the others for Mamdani's";
+        let help = "`wtaver` and `wtsum` are for Sugeno systems, the other methods for Mamdani systems";
         draft.error("wrong-method", written, message, help);
     }
     value
@@ -360,7 +360,7 @@ fn count(draft: &mut Draft<'_>, section: &Section<'_>, key: &str, found: usize) 
     };
     if written.parse() != Ok(found) {
         let message = format!("`{key}` is {written}, but the file has {found}");
-        let help = "check that the file is complete; what it has is read";
+        let help = "check that the file is complete; the items that it contains are read";
         draft.warning("wrong-count", written, message, help);
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn read(draft: &mut Draft<'_>, line: &str) {
             parts.inputs.len(),
             parts.outputs.len()
         );
-        let help = "write a number for each variable, 0 where it does not count";
+        let help = "write a number for each variable, 0 for a variable that the rule does not use";
         draft.error("rule-syntax", line, message, help);
         return;
     }
@@ -54,7 +54,7 @@ pub(super) fn read(draft: &mut Draft<'_>, line: &str) {
                         "hedge-in-conclusion",
                         word,
                         message,
-                        "conclude a term of its own",
+                        "add a term with this meaning to the output, and conclude that",
                     );
                 }
                 consequents.push(Consequent {
@@ -83,7 +83,7 @@ pub(super) fn read(draft: &mut Draft<'_>, line: &str) {
                 "rule-syntax",
                 line,
                 message,
-                "name the term of one input at least",
+                "name a term of at least one input",
             );
             return;
         }
@@ -231,13 +231,13 @@ fn octave(
         30 if draft.model.operators.and == Conjunction::Product => Ok((SQUARE, true)),
         30 => {
             let message = format!("`{word}` has Octave's hedge `extremely`, the cube");
-            let help = "it can be read with `AndMethod='prod'`, as `very` times the term; no hedge is a cube";
+            let help = "no hedge of a rule set is a cube; with `AndMethod='prod'` it can be read as `very` times the term";
             draft.loss("unknown-hedge", word, message, help);
             Ok((&[Hedge::Extremely], false))
         }
         _ => {
             let message = format!("`{word}` has an unknown hedge");
-            let help = "known are .05 somewhat, .2 very, .3 extremely, .4 very very";
+            let help = "known hedges are .05 somewhat, .2 very, .3 extremely, .4 very very";
             draft.error("unknown-hedge", word, message, help);
             Err(())
         }

@@ -36,7 +36,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
             output.when_no_rule_fires,
             NoRuleFires::Undefined | NoRuleFires::Error
         ) {
-            let message = format!("`{name}` has a value where no rule fires, which FIS cannot say");
+            let message = format!("`{name}` has a value if no rule fires, which FIS cannot express");
             paper.loss(
                 "no-rule-fires",
                 message,
@@ -48,11 +48,11 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
             paper.loss(
                 "own",
                 message,
-                "FIS has one aggregation, and does not clamp",
+                "FIS has one aggregation for all outputs, and does not clamp",
             );
         }
         if output.samples.is_some() {
-            let message = format!("the output `{name}` is sampled, which FIS does not say");
+            let message = format!("the output `{name}` is sampled, which FIS cannot express");
             paper.note(
                 "sampled",
                 message,
@@ -61,7 +61,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         }
     }
     if !model.blocks.is_empty() || model.activation != Activation::General {
-        let message = "the rules are in blocks, or do not all fire".into();
+        let message = "the rules are in blocks, or an activation method selects those that fire".into();
         paper.loss(
             "blocks",
             message,
@@ -74,7 +74,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
             Ok(line) => paper.line(line),
             Err(what) => {
                 let message = format!("rule {} {what}", index + 1);
-                let help = "a rule of FIS joins one term of each input by AND alone or OR alone";
+                let help = "a rule of FIS joins one term of each input, either all by AND or all by OR";
                 paper.loss("rule", message, help);
             }
         }
@@ -173,7 +173,7 @@ fn shape(
     let name = named(term, variable);
     if term.height != 1.0 {
         let message = format!("the term {name} has the height {}", term.height);
-        paper.loss("height", message, "all terms of FIS are 1 high");
+        paper.loss("height", message, "terms of FIS have the height 1");
     }
     // A shape that MATLAB lacks is replaced by one that is equal within the range. Octave does not accept flanks of
     // width 0.
@@ -205,7 +205,7 @@ fn shape(
     };
     match written {
         None => {
-            let message = format!("the term {name} has a shape that FIS has not");
+            let message = format!("the term {name} has a shape that FIS does not support");
             paper.refuse("no-shape", message, "write it as points: `piecewise`");
         }
         Some((shape @ ("discretemf" | "cosinemf" | "spikemf" | "concavemf"), _)) => {
@@ -235,7 +235,7 @@ fn line(rule: &Rule, model: &Model) -> Result<String, &'static str> {
         let sign = match proposition.hedges[..] {
             [] => 1,
             [Hedge::Not] => -1,
-            _ => return Err("has a hedge besides NOT"),
+            _ => return Err("has a hedge other than NOT"),
         };
         let index = model
             .inputs

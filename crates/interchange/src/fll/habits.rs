@@ -27,8 +27,8 @@ pub(crate) fn add(
         return;
     }
     if variable.terms.iter().any(|known| known.name == term.name) {
-        let message = format!("`{}` has a term `{}` before", variable.name, term.name);
-        let help = "no rule finds this one, and it is left out";
+        let message = format!("`{}` already has a term `{}`", variable.name, term.name);
+        let help = "rules refer to the first one; this one is left out";
         draft.note("never-used", part, message, help);
         return;
     }

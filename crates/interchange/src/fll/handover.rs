@@ -41,9 +41,9 @@ pub(crate) fn replace(draft: &mut Draft<'_>) {
         let part = draft.text.get(span.unwrap_or_default()).unwrap_or_default();
         if resolved.is_none() || depth(&condition) > 2 * DEEPEST_NESTING {
             let message =
-                "the conditions of the rules that conclude its outputs are too many".into();
+                "the rule reads outputs whose rules have too many conditions".into();
             let help = format!(
-                "conditions about outputs may become {MOST_PROPOSITIONS} propositions in all, in {DEEPEST_NESTING} brackets"
+                "conditions about outputs may become {MOST_PROPOSITIONS} propositions in all, nested {DEEPEST_NESTING} deep"
             );
             draft.error("too-large", part, message, &help);
             return;
@@ -55,7 +55,7 @@ pub(crate) fn replace(draft: &mut Draft<'_>) {
         rule.rule.condition = condition;
         if changes && problems.is_empty() {
             let message = "a condition is about an output".into();
-            let help = "fuzzylite hands degrees over, so it becomes the conditions of the rules that conclude the term";
+            let help = "fuzzylite passes degrees on, so the condition is replaced by those of the rules that conclude the term";
             draft.note("handed-over", part, message, help);
         }
         for problem in problems {

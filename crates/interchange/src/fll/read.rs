@@ -219,7 +219,7 @@ fn variable(
     spans.name = draft.span(section.name);
     if !is_enabled(draft, section) {
         let message = format!("the variable `{}` is not enabled", section.name);
-        let help = "take it out of the file, or enable it";
+        let help = "remove it from the file, or enable it";
         draft.loss("not-enabled", section.name, message, help);
     }
     let Some(range) = section.get("range") else {
@@ -407,7 +407,7 @@ fn aggregate(draft: &mut Draft<'_>, outputs: &[&Section<'_>]) {
                 draft,
                 section.name,
                 part,
-                "write `aggregation: none`, which weighs each rule",
+                "write `aggregation: none`, with which each rule counts",
             );
         }
         found.push(aggregation.filter(|_| !weighted));

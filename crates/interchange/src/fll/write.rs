@@ -102,7 +102,7 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
         (None, Some(sampling)) => sampling.samples.to_string(),
         (None, None) => {
             let message = format!(
-                "fuzzylite samples the output `{}` at {SAMPLES} places",
+                "fuzzylite samples the output `{}` at {SAMPLES} positions",
                 output.variable.name
             );
             paper.note("sampled", message, "the rule set integrates exactly");

@@ -89,7 +89,7 @@ fn xml_mistake(error: &roxmltree::Error) -> (String, String) {
             "it is cut off: look for the complete file".into(),
         ),
         Error::MalformedEntityReference(_) | Error::UnknownEntityReference(..) => (
-            "`&` begins no reference here".into(),
+            "`&` does not begin a reference here".into(),
             "write `&amp;` for the sign `&`".into(),
         ),
         Error::InvalidChar2("a quote", ..) | Error::InvalidAttributeValue(_) => (
@@ -397,7 +397,7 @@ impl Reader<'_> {
             "knowledgeBase" => return,
             other => {
                 let message = format!("`{other}` cannot be read");
-                let help = "mamdaniRuleBase, tskRuleBase and tsukamotoRuleBase can";
+                let help = "mamdaniRuleBase, tskRuleBase and tsukamotoRuleBase can be read";
                 let part = tag(self.draft.text, base);
                 self.draft.loss("unknown-element", part, message, help);
                 return;
@@ -445,7 +445,7 @@ impl Reader<'_> {
         for consequent in children(node, &["consequent", "tskConsequent"]) {
             if let Some(other) = children(consequent, &["else", "tskElse"]).next() {
                 let part = tag(self.draft.text, other);
-                let message = "the rule has another conclusion where it does not hold".into();
+                let message = "the rule has a second conclusion, for inputs that do not satisfy its condition".into();
                 self.draft
                     .loss("else", part, message, "write a rule of its own");
             }
@@ -466,7 +466,7 @@ impl Reader<'_> {
                         "hedge-in-conclusion",
                         part,
                         message,
-                        "conclude a term of its own",
+                        "add a term with this meaning to the output, and conclude that",
                     );
                 }
                 consequents.push(Consequent {

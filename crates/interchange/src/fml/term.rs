@@ -153,7 +153,7 @@ fn points(draft: &mut Draft<'_>, shape: Node<'_, '_>) -> Option<MembershipFuncti
             "interpolation",
             tag(draft.text, shape),
             message,
-            "straight lines can be read",
+            "only straight lines can be read",
         );
     }
     let mut points = vec![];

@@ -108,7 +108,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     let kind = kinds.next().unwrap_or(Kind::Mamdani);
     if kinds.any(|other| other != kind) {
         let message = "the outputs are of different kinds".into();
-        let help = "write a rule set for each of Mamdani's, Takagi and Sugeno's, Tsukamoto's";
+        let help = "write one rule set each for the Mamdani, Takagi-Sugeno and Tsukamoto outputs";
         paper.loss("two-kinds", message, help);
     }
     let enabled = blocks::of(model).into_iter().filter(|block| block.enabled);
@@ -186,14 +186,14 @@ fn variable(paper: &mut Paper, variable: &Variable, names: [&'static str; 3]) ->
 fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
     let name = &output.variable.name;
     if output.samples.is_some() {
-        let message = format!("the output `{name}` is sampled, which FML does not say");
+        let message = format!("the output `{name}` is sampled, which FML cannot express");
         paper.note("sampled", message, "each program samples in its own way");
     }
     let mut element = match Kind::of(output) {
         Kind::Tsk => {
             if output.defuzzifier == Defuzzifier::WeightedSum {
                 let message = format!("the output `{name}` is a weighted sum");
-                paper.loss("no-method", message, "FML has the weighted average alone");
+                paper.loss("no-method", message, "FML supports only the weighted average");
             }
             tsk(paper, output, model)
         }
@@ -220,7 +220,7 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
         NoRuleFires::Value(value) => element = element.with("defaultValue", value),
         NoRuleFires::Previous(_) => {
             let message = format!("`{name}` keeps its value where no rule fires");
-            paper.loss("no-rule-fires", message, "FML has a value or none");
+            paper.loss("no-rule-fires", message, "FML supports only a default value");
         }
         NoRuleFires::Undefined | NoRuleFires::Error => {}
     }
@@ -276,7 +276,7 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
     let name = named(term, variable);
     if term.height != 1.0 {
         let message = format!("the term {name} has the height {}", term.height);
-        paper.loss("height", message, "all terms of FML are 1 high");
+        paper.loss("height", message, "terms of FML have the height 1");
     }
     let (low, high) = (variable.low, variable.high);
     let shape = match term.membership_function {
@@ -327,7 +327,7 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
         _ => None,
     };
     if shape.is_none() {
-        let message = format!("the term {name} has a shape that FML has not");
+        let message = format!("the term {name} has a shape that FML does not support");
         paper.refuse("no-shape", message, "write it as points: `piecewise`");
     }
     shape
@@ -336,7 +336,7 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
 fn rule_base(paper: &mut Paper, block: &Rules<'_>, outputs: Kind) -> Element {
     let operators = block.operators;
     if block.activation != Activation::General {
-        let message = format!("the rules `{}` do not all fire", block.name);
+        let message = format!("the activation method of `{}` selects the rules that fire", block.name);
         paper.loss("activation", message, "FML has no activation methods");
     }
     let [and, or, implication] = paper.operators(operators);
@@ -355,7 +355,7 @@ fn rule_base(paper: &mut Paper, block: &Rules<'_>, outputs: Kind) -> Element {
             Ok(element) => base.push(element.with("andMethod", and).with("orMethod", or)),
             Err(what) => {
                 let message = format!("rule {number} {what}");
-                let help = "a rule of FML joins its clauses by AND alone or OR alone";
+                let help = "a rule of FML joins its clauses either all by AND or all by OR";
                 paper.loss("rule", message, help);
             }
         }

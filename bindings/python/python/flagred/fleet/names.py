@@ -106,7 +106,7 @@ def view(connection: Any, names: str | os.PathLike[str] | None, only: Mapping[st
         CREATE VIEW steps AS FROM stored_steps {"WHERE flight_id IN (SELECT flight_id FROM flights)" if only else ""}
     """)
     if only and not connection.execute("SELECT 1 FROM flights LIMIT 1").fetchone():
-        help = "values are written as in the file of names, with capital letters"
+        help = "write values as in the file of names, with the same capital letters"
         raise FleetError(f"no flight has {' and '.join(f'{column} `{value}`' for column, value in only.items())}", help)
     if names is not None:
         named = "SELECT 1 FROM stored_flights WHERE vehicle IN (SELECT vehicle FROM names) OR vehicle_id IN (SELECT vehicle FROM names) LIMIT 1"
