@@ -74,7 +74,8 @@ async function oneFile(template) {
     return (name) => outputFiles.find((file) => file.path.endsWith(name)).text;
   };
   const part = await bundled('src/main.ts');
-  // A worker from a blob is no module on every browser; what it would load by its address it is given.
+  // Not every browser runs a worker from a blob as a module, so the worker is given what it would otherwise load by its
+  // address.
   const worker = await bundled('src/worker.ts', { format: 'iife', define: { 'import.meta.url': '""' } });
   // Neither may end the element that it stands in.
   const script = part('main.js').replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');

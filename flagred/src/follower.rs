@@ -275,7 +275,8 @@ impl Follower {
         };
         let step = self.alert.push(now, room.motors);
         self.doubt(t_s);
-        // Both cannot end at once: after the state was reset, raising a level again takes a while.
+        // Only one of the two findings can end with a sample: after the state was reset, raising a level again takes a
+        // while.
         if step.ended.is_some() {
             ended[0] = step.ended;
         }

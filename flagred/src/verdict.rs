@@ -299,8 +299,7 @@ pub struct MotorFinding {
     /// The number of a second motor that may be the cause instead, if the commands do not show which of the two.
     #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     pub or_number: Option<usize>,
-    /// The nearest limit. For an imbalance, whether the motor is below or above its usual part of
-    /// the thrust.
+    /// The nearest limit. For an imbalance, whether the motor is below or above its share earlier in the flight.
     pub side: Side,
     /// The mean margin of the motor.
     pub margin_mean: f64,

@@ -62,7 +62,7 @@ pub struct StandIn {
     asked: bool,
     /// The minimum interval of motor commands.
     pub every: Duration,
-    /// Whether the vehicle sends motor commands at the requested rate.
+    /// Whether the vehicle sends motor commands at the rate that the other side requests.
     pub obeys: bool,
     /// The offset of its motors from the outputs of the log.
     shift: usize,

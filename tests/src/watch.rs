@@ -54,7 +54,7 @@ impl Watch {
         Watch::run(flagred(), endpoint, options, keep)
     }
 
-    /// Starts a watch by a command, to which the arguments are added.
+    /// Starts a watch with a command, to which the endpoint and the options are added as arguments.
     pub fn of(command: Command, endpoint: &str, options: &[&str]) -> Watch {
         Watch::run(command, endpoint, options, |_| true)
     }

@@ -448,13 +448,13 @@ fn files_of_other_programs_are_refused_in_time() {
             "doubled",
             "large.fll",
             fll(format!("{outputs}{block}{doubled}")),
-            "are too many",
+            "too many conditions",
         ),
         (
             "nested",
             "large.fll",
             fll(format!("{outputs}{block}{nested}")),
-            "are too many",
+            "too many conditions",
         ),
         (
             "hedges",

@@ -72,7 +72,7 @@ fn help_names_every_command() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("assess"));
 }
 
-/// Both are generated from the definitions of the help, so each names every command.
+/// Completions and manual pages are generated from the definitions of the help, so each of them names every command.
 #[test]
 fn completions_and_manual_name_every_command() {
     let commands = [

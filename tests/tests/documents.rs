@@ -135,7 +135,7 @@ fn run_console(desk: &Desk, block: &Block) -> (String, Vec<String>) {
     while let Some(line) = lines.next() {
         let Some(command) = line.strip_prefix("$ ") else {
             wrong.push(format!(
-                "`{line}` is no command: write `$ ` before the first line"
+                "`{line}` is not a command: write `$ ` before the first line"
             ));
             break;
         };

@@ -333,7 +333,7 @@ fn whole_flights_are_evaluated_from_a_table() {
     let bad = folder.file("bad.csv", "c_mean,att_rmse_deg\nhalf,1\n");
     let output = evaluate(&["--rows", &bad]);
     let said = String::from_utf8_lossy(&output.stderr);
-    // It contains only the load, and no profile reads the load alone.
+    // The table contains only the load, and no profile reads only the load.
     assert!(
         said.contains("has no column for its input `unsteady_now`"),
         "{said}"

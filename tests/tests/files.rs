@@ -28,7 +28,8 @@ fn run(arguments: &[&str]) -> (Option<i32>, String) {
     (output.status.code(), told)
 }
 
-/// By its own name, through a link, by another spelling, or by a hard link.
+/// An input is recognised by its own name, through a symbolic link, by another spelling of its path, and by a hard
+/// link.
 #[test]
 fn no_output_replaces_an_input() {
     let folder = Folder::new();
@@ -344,7 +345,7 @@ fn a_watch_reports_a_failed_recording_and_continues() {
     let risks = risks.filter(|event| event["event"] == "risk").count();
     assert!(risks > 100, "{risks}");
     assert_eq!(said.code, Some(0));
-    // It ends with a complete packet.
+    // The recording ends with a complete packet.
     let read = assess(Path::new(&file));
     assert_eq!(read["read"]["truncated"], false, "{}", read["read"]);
     assert_eq!(read["read"]["skipped_bytes"], 0);
@@ -428,7 +429,7 @@ fn old_or_new(seed: u64, count: usize) {
         let is_new = now == *new;
         match fault {
             Fault::Kill(_) => {}
-            // Only some pages of the manual are compared, and another one may not fit.
+            // Only some pages of the manual are compared, and it may be another page that does not fit.
             Fault::FullDisk(_) if is_new && writing.arguments[0] == "man" => {}
             Fault::FullDisk(_) => {
                 assert_eq!(code, if is_new { round.code } else { Some(2) }, "{what}");
@@ -455,7 +456,7 @@ fn a_failed_write_leaves_the_old_or_the_new_file_many_times() {
     }
 }
 
-/// The same on a disk that is really full.
+/// On a disk that is really full, the old file is intact as well.
 #[test]
 #[ignore = "mounts a small file system, which not every machine allows"]
 fn a_full_file_system_leaves_the_old_file() {

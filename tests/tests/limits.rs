@@ -298,7 +298,7 @@ fn a_file_that_is_not_a_rule_set_is_not_quoted() {
         !told.contains("root:") && !told.contains("hunter2"),
         "{told}"
     );
-    // Nor if it is named itself, as a rule set or as a profile.
+    // The content is not shown either if the file itself is named as a rule set or as a profile.
     let texts = [
         "root:x:0:0:root:/root:/bin/sh\npassword: {hunter2\n",
         "root:x:0:0:root:/root:/bin/sh\nhunter2",

@@ -77,7 +77,8 @@ fn a_hole_loses_only_the_rows_in_it() {
     }
 }
 
-/// They would be a flight of 292,000 years, in which seconds are below the precision of the clock.
+/// With the invalid timestamps, the flight would last 292,000 years, and seconds would be below the precision of the
+/// clock.
 #[test]
 fn seconds_of_invalid_timestamps_are_skipped() {
     let log = |wild_us: Option<f64>| {

@@ -90,7 +90,7 @@ fn px4_logs_have_global_and_local_positions() {
         latitude.iter().map(|(_, v)| *v).collect::<Vec<_>>(),
         [60.5, 60.5]
     );
-    // A place in metres may be 0; it is unknown where the estimator says so.
+    // A position in metres may be 0; it is unknown if the estimator reports it as invalid.
     let (north, source) = known(&flight, "north_m");
     assert_eq!(source, "vehicle_local_position.x");
     assert_eq!(

@@ -401,7 +401,7 @@ fn an_earlier_table_is_compared_with_the_current_outputs() {
     let evaluated = flagred().args(["eval", &model, &points]).output().unwrap();
     let table = folder.file("evaluated.csv", evaluated.stdout);
     let (code, _, errors) = map(&[&model, "--check", &table]);
-    assert_eq!(code, Some(3), "an unknown input is no point: {errors}");
+    assert_eq!(code, Some(3), "an unknown input is not a point: {errors}");
     let known = fs::read_to_string(&table)
         .unwrap()
         .replace("40,NA,60,0,,\n", "");

@@ -141,10 +141,9 @@ fn wind_and_manoeuvres_are_not_reported_as_a_weak_motor() {
     }
 }
 
-/// Flights with a weak motor that is not one of their faults: one with an upset of another kind; the landing whose motors run on
-/// for seconds on the ground; a craft that leans into rising wind and then, after FAIL, no longer does (8 %, for 8 s); and a
-/// real one that a pilot turns over in ACRO, 6 s before its end and already FAIL.
-/// pilot turns over in ACRO, 6 s before its end and already FAIL.
+/// Flights with a finding about a weak motor that is not a motor fault: a flight with an upset of another kind; a
+/// landing after which the motors run for seconds on the ground; a craft that leans into rising wind and, after FAIL,
+/// no longer does (8 %, for 8 s); and a real flight with FAIL that a pilot turns over in ACRO, 6 s before its end.
 const NOT_FAULTS: [&str; 4] = ["f240", "n240", "f068", "dronekit_test_01"];
 
 #[test]

@@ -317,7 +317,7 @@ fn each_risk_needs_only_the_inputs_that_its_rules_read() {
         assert!(told.starts_with("FAIL"), "{told}");
         assert!(!told.contains("battery_risk"), "{told}");
     }
-    // Calm motors alone are not GOOD, and the reason is the battery.
+    // Calm motors are not enough for GOOD, and the reason is the battery.
     for (log, why) in [
         (flight(calm, |_| None), "input `battery` has no known value"),
         (

@@ -99,7 +99,7 @@ fn a_report_has_the_track_and_folded_signals() {
     assert!(html.contains(">0:30</span>"), "minutes since take-off");
     assert!(html.len() < 600_000, "{} bytes", html.len());
 
-    // A log without positions has no track, and no place at 0.
+    // A log without positions has no track, and no position at 0.
     let log = folder.file("log.csv", long_log(20, 10));
     assert!(!report(&[&log], &folder).contains("<figure class=\"track\""));
 }
@@ -223,7 +223,7 @@ fn the_most_severe_finding_is_on_top_and_scales_have_units() {
     for said in ["WARN from 67 %", "FAIL from 85 %", ">100 %<"] {
         assert!(risk.contains(said), "no `{said}`");
     }
-    // One cause is one line, with the motor at its limit.
+    // Each cause has one line, with the motor at its limit.
     let told = html.matches("2 times, worst ").count();
     assert_eq!(told, 1);
     for said in [

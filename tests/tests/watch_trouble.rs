@@ -26,7 +26,7 @@ fn a_silent_link_and_a_reboot_are_reported_and_discard_the_old_risk() {
     vehicle.fly(&flight, Speed::Fastest, air.start_s, air.start_s + 40.0);
     vehicle.linger(Duration::from_millis(2300));
     let values_then = vehicle.heard.values("FR_RISK").len();
-    // It returns, half a minute later on its own clock: the windows start empty.
+    // The vehicle returns, half a minute later on its own clock: the windows start empty.
     vehicle.fly(
         &flight,
         Speed::Fastest,
@@ -40,7 +40,7 @@ fn a_silent_link_and_a_reboot_are_reported_and_discard_the_old_risk() {
         air.start_s + 80.0,
     );
     assert!(vehicle.heard.values("FR_RISK").len() > values_then);
-    // It reboots, which takes time.
+    // The vehicle reboots, which takes time.
     vehicle.linger(Duration::from_millis(2300));
     for t_ms in [100, 200, 300, 400] {
         vehicle.send(&servo(t_ms * 1000, &[1000; 16]));
@@ -235,7 +235,7 @@ fn packets_with_extreme_values_are_valid_packets() {
     for (message, extra, payload, _) in messages_read(1) {
         let bytes = packet(message, extra, &payload);
         let Next::Packet(packet) = next_packet(&bytes) else {
-            panic!("message {message} is no packet");
+            panic!("message {message} is not a packet");
         };
         assert_eq!(packet.id, u32::from(message));
     }
@@ -279,7 +279,7 @@ fn unavailable_ports_are_reported_with_a_remedy() {
     assert!(code == Some(2) && told.contains("sends first"), "{told}");
 }
 
-/// As a user who may not open the port.
+/// The watch runs as a user who may not open the port.
 #[test]
 #[cfg(unix)]
 fn a_serial_port_without_permission_is_reported_with_a_remedy() {

@@ -86,11 +86,11 @@ fn a_second_sender_is_reported_and_ignored() {
     assert!(!vehicle.heard.values("FR_RISK").is_empty());
     assert!(liar.heard.messages.is_empty(), "{:?}", liar.heard);
     valid(&said);
-    // Nor is it used when the recording is assessed.
+    // The packets of the liar are not used either when the recording is assessed.
     let assessed = assess(Path::new(&file));
     assert_eq!(assessed["verdict"], "GOOD");
     let (share, difference) = compare(&said, &assessed);
-    // One sample of 475 is in only one of them.
+    // One sample of 475 is in only one of the two results.
     assert!(share > 0.99 && difference < 0.5, "{share}, {difference}");
 }
 

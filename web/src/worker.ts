@@ -24,7 +24,7 @@ self.onmessage = async ({ data }: MessageEvent<Begin | Request>) => {
   try {
     await started;
     const run = calls.get(call);
-    if (!run) throw new Error(`\`${call}\` is no call`);
+    if (!run) throw new Error(`\`${call}\` is not a call`);
     const answer = await run((progress, found) => reply({ id, progress, found }), ...args);
     reply({ id, answer }, columns(answer));
   } catch (error) {

@@ -50,7 +50,7 @@ test('a worker that cannot start is told, and not tried without end', { timeout:
   t.after(() => context.close());
   let begun = 0;
   page.on('worker', () => begun++);
-  await context.route('**/worker.js', (route) => route.fulfill({ body: 'this is no script', contentType: 'text/javascript' }));
+  await context.route('**/worker.js', (route) => route.fulfill({ body: 'this is not a script', contentType: 'text/javascript' }));
   await page.goto(server.address);
   await page.getByText('the worker did not start').waitFor();
   await page.waitForTimeout(1000);

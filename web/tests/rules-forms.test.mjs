@@ -81,7 +81,7 @@ test('a variable with a term and a rule is added and removed', async (t) => {
   assert.ok(await page.getByRole('button', { name: 'Undo' }).isDisabled());
 });
 
-test('a rule is changed in place, and what is no rule is refused', async (t) => {
+test('a rule is changed in place, and a text that is not a rule is refused', async (t) => {
   const page = await table(t);
   await page.getByLabel('Rule 4', { exact: true }).fill('IF temperature IS hot AND humidity IS damp THEN fan IS medium');
   await page.getByLabel('Rule 4', { exact: true }).press('Enter');

@@ -36,7 +36,8 @@ impl From<SimplifyError> for Failed {
     }
 }
 
-/// Simplifies a rule set; `columns` are rows at which outputs are compared too, one for each input, or empty.
+/// Simplifies a rule set. `columns` contains the rows at which outputs are also compared, as one column for each input;
+/// it may be empty.
 #[pyfunction]
 pub(crate) fn _simplify(
     py: Python<'_>,

@@ -495,7 +495,7 @@ export interface Vehicle {
   effective_range: Range;
   /** The reason why the whole range is used although the log contains limits. */
   effective_range_doubt: string | null;
-  /** What is assumed about motors, their commands and ranges because the log does not record it, in words. */
+  /** The assumptions about motors, their commands and ranges that the log does not record, as texts. */
   assumed: string[];
   /** The parameters of the autopilot that determine motors and ranges, and the gains, if the log contains them. */
   parameters: Parameter[];

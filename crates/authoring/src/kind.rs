@@ -3,7 +3,7 @@
 /// A kind of file that is not a rule set or a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Kind {
-    /// What the file is, such as `a PDF document`.
+    /// The kind of file, such as `a PDF document`.
     pub name: &'static str,
     /// What to do.
     pub help: &'static str,

@@ -19,7 +19,7 @@ use crate::{
     table::{Format, Table},
 };
 
-/// The arguments of a command that makes a rule set of another one.
+/// The arguments of a command that derives a rule set from another one.
 #[derive(clap::Args)]
 pub(crate) struct Rewrite {
     /// The rule set: a file in YAML, FIS, FLL, FCL or FML, the name of a built-in one, or `-` for standard input
@@ -42,7 +42,7 @@ pub(crate) struct Rewrite {
     pub(crate) json: bool,
 }
 
-/// The arguments of a command that makes a rule set of another one and of rows.
+/// The arguments of a command that derives a rule set from another one and from rows.
 #[derive(clap::Args)]
 pub(crate) struct FromRows {
     #[command(flatten)]

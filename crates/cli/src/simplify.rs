@@ -191,7 +191,7 @@ impl Outcome<'_> {
         if ors[0] != ors[1] {
             writeln!(
                 out,
-                "or          {} before, {} after; no rule had an OR",
+                "or          {} before, {} after; no rule contains OR",
                 ors[0], ors[1]
             )?;
         }
@@ -324,7 +324,7 @@ pub(crate) struct Document<'a> {
     rules: Rules,
     /// The inputs that no rule needs.
     dropped_inputs: &'a [String],
-    /// The disjunction; it changes only if no rule contains OR.
+    /// The function for OR; it changes only if no rule contains OR.
     or: Change,
     /// The points at which both rule sets were compared.
     points: Points<'a>,
@@ -349,7 +349,7 @@ struct Rules {
 
 #[derive(Serialize, JsonSchema)]
 struct OfRule {
-    /// The rule in words.
+    /// The text of the rule.
     rule: String,
     /// The numbers in the original rule set of the rules that it replaces.
     #[schemars(inner(range(min = 1)))]
@@ -358,9 +358,9 @@ struct OfRule {
 
 #[derive(Serialize, JsonSchema)]
 struct Change {
-    /// The disjunction before.
+    /// The function for OR before.
     before: &'static str,
-    /// The disjunction after.
+    /// The function for OR after.
     after: &'static str,
 }
 

@@ -83,7 +83,7 @@ pub(crate) struct Figure {
     pub(crate) interval: Option<Interval>,
 }
 
-/// The alarms of a profile in times that need none.
+/// The alarms of a profile in times without danger.
 pub(crate) struct Needless {
     /// The number of flights with such times and a verdict, and of those without a verdict.
     pub(crate) flights: usize,

@@ -20,7 +20,7 @@ use crate::{
 /// The version of the document's layout; it increases when a name changes its meaning or is removed.
 const SCHEMA: &str = "flagred.validate/1";
 
-/// The document of an evaluation: what `flagred validate --json` prints.
+/// The document of an evaluation: the output of `flagred validate --json`.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Document<'a> {
@@ -112,7 +112,7 @@ struct ScoresDocument {
     within_flight_flights: usize,
     /// The number of cases with a score.
     cases: usize,
-    /// The number of critical ones among these.
+    /// The number of these cases that were critical.
     critical: usize,
     /// The number of cases without a score.
     unknown: usize,
@@ -127,7 +127,7 @@ struct BandDocument {
     to_pct: f64,
     /// The number of cases with such a risk.
     cases: u64,
-    /// The number of critical ones among these.
+    /// The number of these cases that were critical.
     critical: u64,
     /// The share of critical cases, from 0 to 1.
     critical_share: Option<f64>,

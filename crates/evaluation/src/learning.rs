@@ -455,8 +455,8 @@ rules: []
         assert_eq!(compared.rules, 10);
         assert_eq!(compared.methods.len(), 4);
         for (method, errors) in &compared.methods {
-            // Half way between two terms, the rule of the neighbouring term covers the row as well;
-            // this applies to 20 of the 400 rows.
+            // Halfway between two terms, the rule of the neighbouring term covers the row as well; this applies to 20
+            // of the 400 rows.
             assert_eq!(errors.by_row.rows, 380, "{method:?}");
             // A neighbour along the spread predicts the same as the removed rule.
             assert!(errors.by_rule_mean_absolute < 15.0, "{method:?} {errors:?}");

@@ -84,7 +84,8 @@ const TRI: u16 = 3;
 const REAR_OF_TRI: u16 = 4;
 const SERVO_OF_TRI: u16 = 7;
 
-/// The number of changes of armed, or of in the air, that are kept if they are derived from the commands.
+/// The maximum number of changes of the armed state, and of the in-air state, that are kept if they are derived from
+/// the commands.
 const MOST_CHANGES: usize = 10_000;
 
 /// Armed and in-air times derived from the commands, for logs without events: armed while any motor runs, in the air

@@ -61,7 +61,7 @@ impl VehicleKind {
     /// Advice for an unknown name of a kind.
     pub(crate) const NAMES_HELP: &str = "write `multirotor`, `helicopter`, `plane`, `VTOL plane`, `rover`, `submarine` and `other vehicle`";
 
-    /// The kind with the given name, in small or capital letters.
+    /// The kind with the given name, in lower or upper case.
     pub(crate) fn from_name(name: &str) -> Option<Self> {
         [
             Self::Multirotor,
@@ -279,8 +279,8 @@ pub struct Flight {
     pub effective_range: Range,
     /// The reason why the whole range is used although the log contains limits.
     pub effective_range_doubt: Option<String>,
-    /// What is assumed about motors, their commands and ranges because the log does not record it, in words. `flagred
-    /// watch` assumes the same for the vehicle. Empty without assumptions.
+    /// The assumptions about motors, their commands and ranges that the log does not record, as texts. `flagred watch`
+    /// makes the same assumptions for the vehicle. Empty without assumptions.
     pub assumed: Vec<String>,
     /// The parameters of the autopilot that determine motors and ranges, and the gains, if the log contains them.
     pub parameters: Vec<Parameter>,

@@ -98,7 +98,7 @@ pub enum Gap {
 }
 
 impl Gap {
-    /// Advice for the pilot: how to record it in the next log of this kind.
+    /// Advice for the pilot: how to record the missing information in the next log of this kind.
     ///
     /// # Example
     /// ```

@@ -46,7 +46,8 @@ const TOGETHER: f64 = 0.6;
 #[derive(Debug, Default)]
 pub(crate) struct Outputs {
     t_s: Vec<f64>,
-    /// Columns by output number minus one; shorter than `t_s` if nothing was logged since, empty if all values were 0.
+    /// One column for each output, at the index of its number minus 1; it is shorter than `t_s` if the output was not
+    /// logged since, and empty if all its values were 0.
     columns: Vec<Vec<u16>>,
     set_back: SetBack,
 }

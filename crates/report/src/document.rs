@@ -74,7 +74,7 @@ struct Vehicle<'a> {
     effective_range: &'a Range,
     /// The reason why the whole range is used although the log contains limits.
     effective_range_doubt: Option<&'a str>,
-    /// What is assumed about motors, their commands and ranges because the log does not record it, in words.
+    /// The assumptions about motors, their commands and ranges that the log does not record, as texts.
     assumed: &'a [String],
     /// The parameters of the autopilot that determine motors and ranges, and the gains, if the log contains them.
     parameters: &'a [Parameter],

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use crate::{charts, subject::Subject, words};
 
-/// What was read, and the parameters folded, with a search.
+/// The data that was read from the log; the parameters are folded and can be searched.
 pub(crate) fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
     let flight = &subject.flight;
     let report = &flight.report;

@@ -9,7 +9,7 @@
 //! consequents of a Takagi-Sugeno output are computed by least squares at every step, as in ANFIS (Jang 1993).
 //! [`cross_validate`] estimates the loss of a tuned model on unseen rows.
 //!
-//! [`identify`] finds inputs, partitions and rules from data alone; [`c_means`] finds clusters of rows, which can be the
+//! [`identify`] finds inputs, partitions and rules from only data; [`c_means`] finds clusters of rows, which can be the
 //! terms of an input; [`simplify()`] reduces the number of rules with the same outputs.
 
 pub mod c_means;

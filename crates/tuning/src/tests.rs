@@ -451,8 +451,8 @@ fn constants_are_optimal_within_the_range() {
     assert_eq!(numbers(&outside.unwrap().model)[3].value, 12.0);
 }
 
-/// The rows do not determine one of two constants alone, and require values far above the range: both end at its upper
-/// end.
+/// The rows do not determine one of the two constants by itself, and require values far above the range: both end at
+/// its upper end.
 #[test]
 fn constants_end_at_the_end_of_the_range_for_targets_far_beyond_it() {
     let heat: Vec<f64> = (0..=20).map(|i| f64::from(i) / 2.0).collect();

@@ -18,7 +18,7 @@ type Least = Vec<Vec<f64>>;
 
 /// Whether the rules of an output are proven to cover all values of the inputs, so that none counts as a gap.
 ///
-/// The range of each input is divided at the corners of its terms and half way between them. Degrees are linear within
+/// The range of each input is divided at the corners of its terms and halfway between them. Degrees are linear within
 /// an interval, so their minimum is at an end. The minimum strength of a rule in a cell follows from the minimum
 /// degrees in the intervals. Rules with operators other than AND and IS, and curved terms, count as 0. Nothing is
 /// proven for outputs that read other outputs (which may have no value), for rule blocks and for activation methods.

@@ -45,7 +45,7 @@ impl Field<'_> {
     }
 
     /// The neighbours of a knot, each with the area of the wall between the two divided by their distance. The cell
-    /// around a knot reaches half way to its neighbours.
+    /// around a knot reaches halfway to its neighbours.
     pub(super) fn beside(&self, knot: usize) -> Vec<(usize, f64)> {
         let knots = self.knots;
         let width = |axis: usize| {

@@ -11,7 +11,7 @@ use super::{
 
 /// The values that fill the gaps of a rule set, where no rule applies.
 ///
-/// The rules are evaluated at knots: the peaks of the terms and the points half way between them. Knots that are a gap
+/// The rules are evaluated at knots: the peaks of the terms and the points halfway between them. Knots that are a gap
 /// get their value from the covered knots by a [`GapMethod`]. Its distances are scaled by the typical change of the
 /// output. Between knots the value is interpolated linearly along each input. Beyond the outermost peaks, where the
 /// rules cannot distinguish points, it is constant.

@@ -12,10 +12,10 @@ use super::filled::read;
 /// The maximum number of knots; more are thinned, which bounds the cost of filling for any number of inputs.
 const MOST_KNOTS: usize = 40_000;
 
-/// A grid over the inputs of a rule set, with a coordinate at the peak of every term and one half way between each two
+/// A grid over the inputs of a rule set, with a coordinate at the peak of every term and one halfway between each two
 /// peaks.
 ///
-/// At a peak a single term applies. Half way between two peaks both terms apply equally, and there the gap of a missing
+/// At a peak a single term applies. Halfway between two peaks both terms apply equally, and there the gap of a missing
 /// rule ends.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Knots {
@@ -143,7 +143,7 @@ fn count(axes: &[Vec<f64>]) -> usize {
     axes.iter().fold(1, times)
 }
 
-/// Adds a coordinate half way between each two.
+/// Adds a coordinate halfway between each two.
 fn with_middles(places: &[f64]) -> Vec<f64> {
     let middles = places.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
     let mut all: Vec<f64> = middles.chain(places.iter().copied()).collect();

@@ -5,7 +5,7 @@
 //! covered part of the map.
 //!
 //! Filled values are computed from knots at which the rules are well defined: the peaks of the terms, and the points
-//! half way between two peaks, where the gap of a missing rule ends ([`Filling`]). So they do not depend on the
+//! halfway between two peaks, where the gap of a missing rule ends ([`Filling`]). So they do not depend on the
 //! resolution of the map.
 
 #[cfg(feature = "std")]
@@ -41,15 +41,14 @@ pub use map::FilledMap;
 pub use settings::{GapMethod, GapSettings};
 
 /// Whether a point with this coverage is a gap: whether the coverage is below `coverage_below`, with a tolerance of
-/// 1e-9 of it. Half way between two peaks, where both terms should be at 0.5, rounding may leave one of them slightly
+/// 1e-9 of it. Halfway between two peaks, where both terms should be at 0.5, rounding may leave one of them slightly
 /// below.
 ///
 /// # Example
 /// ```
 /// use flagred::gap::is_gap;
 ///
-/// assert!(is_gap(0.3, 0.5) && !is_gap(0.5, 0.5));
-/// assert!(!is_gap(0.5 - 1e-16, 0.5), "rounding is no gap");
+/// assert!(is_gap(0.3, 0.5) && !is_gap(0.5, 0.5)); assert!(!is_gap(0.5 - 1e-16, 0.5), "a rounding error is not a gap");
 /// ```
 pub fn is_gap(coverage: f64, coverage_below: f64) -> bool {
     coverage < coverage_below - 1e-9 * coverage_below

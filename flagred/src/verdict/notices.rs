@@ -55,7 +55,7 @@ impl Notices {
     }
 
     /// Processes a sample in flight at `t_s` that applies to the `held_s` seconds before. `is_calm` is true while there
-    /// is no alarm.
+    /// is not an alarm.
     pub(crate) fn push(
         &mut self,
         (t_s, held_s): (f64, f64),

@@ -74,7 +74,7 @@ pub(super) fn cells(
     slice: &Slice,
     colour: impl Fn(usize, usize) -> Option<Colour>,
 ) {
-    // A cell extends half way to its neighbours; cells at the ends are cut off by the frame.
+    // A cell extends halfway to its neighbours; cells at the ends are cut off by the frame.
     let edge = |i: usize, count: usize| {
         if i == count {
             return 1.0;

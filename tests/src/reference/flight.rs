@@ -74,7 +74,8 @@ pub struct Followed {
     pub unbalanced: Vec<Unbalanced>,
 }
 
-/// State that is kept over a gap in the air: the trims, and the time since which an alarm is in doubt.
+/// State that is kept over a gap in the air: the trims, and after an alarm the last time at which the motors did not
+/// work as before it.
 type AcrossGap = (Trims, Option<f64>);
 
 /// Follows flights with a profile and a rule set; `factors` are those of the motors, empty if they are unknown.
@@ -369,7 +370,7 @@ impl Air {
         elevated
     }
 
-    /// An alarm lasts until the motors have worked as before for as long as a level is held.
+    /// An alarm lasts until the motors have worked as before it for `clear_after_s`.
     fn doubt(&mut self, t_s: f64, verdict: &VerdictSettings) {
         let is_alarm = self.levels.level > Level::Good;
         let is_back = verdict.notices.imbalance.is_none() || self.balance.is_back;

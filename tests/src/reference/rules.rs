@@ -424,6 +424,6 @@ fn consequent(shape: &MembershipFunction, values: &Values<'_>) -> f64 {
         MembershipFunction::Function { formula } => {
             formula.evaluate(|name| values[name].unwrap().1)
         }
-        other => panic!("{other:?} is no consequent"),
+        other => panic!("{other:?} is not a consequent"),
     }
 }

@@ -16,7 +16,7 @@ type Bounds = [f64; 2];
 pub struct Interval {
     pub low: f64,
     pub high: f64,
-    /// The area of the lower set, as a share of that of the upper one; 1 of weighted numbers.
+    /// The area of the lower set, as a share of that of the upper one; 1 for weighted numbers.
     pub lower_share: f64,
 }
 
@@ -89,7 +89,7 @@ fn is(model: &Model, point: &[f64], proposition: &Proposition) -> Bounds {
         None => [0.0, 0.0],
         Some(name) => bounds(named(&input.terms, &name.text), *x),
     };
-    // Each hedge rises or falls all along, so the ends go to ends.
+    // Each hedge is monotone, so it maps the ends of an interval to the ends of the result.
     let mut ends = degrees.map(|degree| hedged(&proposition.hedges, degree));
     ends.sort_by(f64::total_cmp);
     ends
@@ -171,7 +171,7 @@ fn centroids(
             parts.push((x, degrees.map(|degree| degree * step)));
         }
     }
-    // The lower set beyond each switch point, and the upper one up to it; and the other way round.
+    // First the upper set up to each switch point and the lower one beyond it; then the other way round.
     let [mut area, mut moment] = [[0.0; 2]; 2];
     for (x, areas) in &parts {
         for side in 0..2 {

@@ -444,7 +444,7 @@ fn every_signal_and_statistic_is_the_same_in_the_script() {
     );
 }
 
-/// The battery is known after a minute, and its ratio is unknown below 80 %.
+/// The battery level is known after a minute, and the ratio with it is unknown while it is below 80 %.
 #[test]
 fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
     let folder = Folder::new();
@@ -466,7 +466,7 @@ fn signals_of_two_and_missing_ones_are_the_same_in_the_script() {
     let [first, .., last] = expected.as_slice() else {
         panic!("{expected:?}")
     };
-    // Its ratio is unknown when the battery has 79 %.
+    // The ratio is unknown when the battery level is 79 %.
     assert!(
         first.0 < 500 && (1900..2200).contains(&last.0),
         "{first:?} {last:?}"
@@ -491,7 +491,7 @@ fn the_script_evaluates_outputs_that_read_other_outputs() {
     let (operators, rules) = rules.split_once('\n').unwrap();
     let strain = risk.replace("  risk:", "  strain:");
     let trouble = "  trouble: {range: [0, 1], partition: [none, some, much], when_no_rule_fires: {value: 0.1}}\n";
-    // Not read, so not in the script.
+    // The risk does not read this output, so the script does not contain it.
     let unread = "  comfort: {range: [0, 1], terms: {good: {gaussian: {mean: 1, sd: 0.3}}}}\n";
     let more = "
   - IF strain IS NOT very_low AND spread IS NOT low THEN trouble IS some

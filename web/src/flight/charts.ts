@@ -14,7 +14,7 @@ export interface Chart {
   unit: string;
   /** The digits of a value. */
   digits: number;
-  /** A line over the chart. It is no part of the picture, which would be drawn again whenever it moves. */
+  /** A line over the chart. It is not a part of the picture, so that moving it does not redraw the picture. */
   cursor: HTMLElement;
   outputs: HTMLElement[];
   lines: SVGPathElement[];

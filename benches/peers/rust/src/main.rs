@@ -136,7 +136,7 @@ fn fuzzy_logic_rs(
     let mut variable = OutputVariable::new(output.name.clone(), (output.low, output.high), samples);
     for (name, corners) in &output.terms {
         let [a, b, c] = corners[..] else {
-            return Err(format!("`{name}` is no triangle").into());
+            return Err(format!("`{name}` is not a triangle").into());
         };
         let universe = variable.get_universe();
         let range = MembershipRange::new_triangle(universe, name.clone(), a, b, c);

@@ -38,7 +38,7 @@ struct Errors<'a> {
     output: &'a str,
     unit: Option<&'a str>,
     rows: usize,
-    /// Why rows are not used, at most 20 of them.
+    /// The reasons why rows are not used, at most 20.
     refused: Vec<String>,
     refused_count: usize,
     /// Rows in which the rule set has no value.
@@ -141,7 +141,7 @@ impl DataTable {
         })
     }
 
-    /// Moves the numbers of a rule set so that its error on the rows becomes small, as `flagred tune`: a JSON object with the new
+    /// Moves the numbers of a rule set to reduce its error on the rows, like `flagred tune`: a JSON object with the new
     /// text. `watch` is called with the step, the error so far and the text so far.
     pub fn tune(&self, text: &str, watch: &Function) -> Result<String, JsError> {
         let model = parsed(text)?;
@@ -207,7 +207,7 @@ impl DataTable {
         })
     }
 
-    /// The rule set with its rules replaced by rules learned from the rows, as with `flagred learn`: a JSON object with
+    /// The rule set with its rules replaced by rules learned from the rows, like `flagred learn`: a JSON object with
     /// the new text. `complete` adds rules for combinations of terms without rows.
     pub fn learn(&self, text: &str, complete: bool) -> Result<String, JsError> {
         let whole = parsed(text)?;

@@ -14,7 +14,7 @@ pub(super) struct Table {
     records: Vec<(u64, csv::StringRecord)>,
 }
 
-/// The rows that can be used, and why others cannot.
+/// The rows that can be used, and the reasons why the others cannot.
 pub(super) struct Rows {
     /// The inputs, then the output.
     pub(super) values: Vec<Vec<f64>>,

@@ -79,7 +79,7 @@ impl Assessment {
         serde_json::to_string(&signals).map_err(|error| failure(error, None))
     }
 
-    /// The curves of some signals as HTML, as those of a part.
+    /// The curves of some signals as HTML, in the form of a part of the report.
     #[wasm_bindgen(js_name = signalCharts)]
     pub fn signal_charts(
         &self,

@@ -66,7 +66,7 @@ impl Profile {
         self.loaded.profile.text().to_owned()
     }
 
-    /// Warnings, which do not prevent its use, displayed in its text; empty if there are none.
+    /// The warnings about the profile, displayed in its text; empty if there are none. They do not prevent its use.
     #[wasm_bindgen(getter)]
     pub fn warnings(&self) -> String {
         drawn(

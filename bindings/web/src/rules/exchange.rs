@@ -17,7 +17,7 @@ struct Exchanged {
     notes: Vec<String>,
 }
 
-/// Converts a rule set of another program to YAML, as `flagred import`: a JSON object with `text`, `format` and
+/// Converts a rule set of another program to YAML, like `flagred import`: a JSON object with `text`, `format` and
 /// `notes`. YAML is returned unchanged.
 #[wasm_bindgen(js_name = importRules)]
 pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
@@ -37,7 +37,8 @@ pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
     })
 }
 
-/// Converts a rule set to the format of another program, as `flagred export`: `format` is `FIS`, `FLL`, `FCL` or `FML`.
+/// Converts a rule set to the format of another program, like `flagred export`: `format` is `FIS`, `FLL`, `FCL` or
+/// `FML`.
 #[wasm_bindgen(js_name = exportRules)]
 pub fn export(text: &str, format: &str, lossy: bool) -> Result<String, JsError> {
     let mut formats = Format::ALL.into_iter();

@@ -70,7 +70,7 @@ pub fn starting_points() -> Result<String, JsError> {
             "how much to tip, the example of every textbook",
             include_str!("../../../../rules/tipper.yaml"),
         ),
-        start(rules.name.into(), "the rule set to fly with", rules.text),
+        start(rules.name.into(), "the default rule set for flights", rules.text),
         start(
             paper_rules.name.into(),
             "the rule set of the paper",
@@ -78,7 +78,7 @@ pub fn starting_points() -> Result<String, JsError> {
         ),
         start(
             battery_rules.name.into(),
-            "the rule set to fly with, and the battery",
+            "the default rule set for flights, with the battery",
             battery_rules.text,
         ),
         start(
@@ -88,7 +88,7 @@ pub fn starting_points() -> Result<String, JsError> {
         ),
         start(
             profile_name(profile),
-            "the profile to fly with",
+            "the default profile for flights",
             profile.text,
         ),
         start(
@@ -98,7 +98,7 @@ pub fn starting_points() -> Result<String, JsError> {
         ),
         start(
             profile_name(battery_profile),
-            "the profile to fly with, and the battery",
+            "the default profile for flights, with the battery",
             battery_profile.text,
         ),
     ])

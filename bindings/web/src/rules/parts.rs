@@ -23,16 +23,16 @@ struct Parts {
 
 #[derive(Serialize)]
 struct Named {
-    /// Where its name is.
+    /// The span of its name.
     at: usize,
-    /// Where the names of its terms are.
+    /// The spans of the names of its terms.
     terms: Vec<usize>,
 }
 
 #[wasm_bindgen(js_class = RuleText)]
 impl RuleText {
-    /// Where the names of variables and terms are, inputs first, and the rules, as JSON; `null` of a profile and of a text that
-    /// cannot be read.
+    /// The spans of the names of variables and terms, inputs first, and the rules, as JSON; `null` for a profile and
+    /// for a text that cannot be read.
     pub fn parts(&self) -> Result<String, JsError> {
         let text = self.document.text();
         let at = |span: &Range<usize>| utf16(text, span.start);
@@ -87,7 +87,7 @@ impl RuleText {
         self.changed(structure::add_rule(&self.document, rule))
     }
 
-    /// The edits that give a rule other words, as JSON.
+    /// The edits that replace the text of a rule, as JSON.
     #[wasm_bindgen(js_name = changeRule)]
     pub fn change_rule(&self, rule: usize, to: &str) -> Result<String, JsError> {
         self.changed(structure::change_rule(&self.document, rule, to))

@@ -28,14 +28,14 @@ const CURVE_POINTS: usize = 401;
 #[wasm_bindgen(js_name = RuleSet)]
 pub struct RuleSet {
     pub(super) engine: Engine,
-    /// Of a profile: its output, what fills the gaps of its rules, and the name of the method.
+    /// For a profile: its output, the filling of the gaps of its rules, and the name of the method.
     profile: Option<(usize, Filling, &'static str)>,
-    /// The memory of single values, once there was one.
+    /// The memory for evaluating single values, once one was requested.
     pub(super) memory: Option<Memory>,
 }
 
 /// The content of a map: the index of an output and of one or two inputs, the parts of their ranges, the number of
-/// points along each, and a value for each input at which the others are held.
+/// points along each, and a value for each input, at which it is held if it is not an axis.
 #[wasm_bindgen(js_name = View)]
 #[derive(Debug, Clone)]
 pub struct View {

@@ -5,7 +5,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::set::RuleSet;
 
-/// What an evaluation reads and writes.
+/// The values that an evaluation reads and writes.
 pub(super) struct Memory {
     point: Vec<f64>,
     scratch: Scratch,
@@ -31,7 +31,7 @@ impl RuleSet {
             return f64::NAN;
         };
         let (scratch, outcomes) = (&mut memory.scratch, &mut memory.outcomes);
-        // It fails where no rule fires and the rule set says that this is an error.
+        // This fails if no rule fires and `when_no_rule_fires` of the output is `error`.
         let evaluated = self.engine.evaluate_with(scratch, &memory.point, outcomes);
         let outcome = evaluated.ok().and_then(|()| memory.outcomes.get(output));
         outcome.and_then(Outcome::value).unwrap_or(f64::NAN)

@@ -323,7 +323,7 @@ fn curve(variable: &Variable, term: &Term) -> Vec<f64> {
         .collect()
 }
 
-/// A place in UTF-16 code units.
+/// A span in UTF-16 code units.
 pub(super) fn utf16(text: &str, byte: usize) -> usize {
     let before = text.char_indices().take_while(|(at, _)| *at < byte);
     before.map(|(_, letter)| letter.len_utf16()).sum()

@@ -32,7 +32,7 @@ struct Cell<'a> {
     /// The hedges and the term: `very high`.
     words: String,
     term: Option<&'a str>,
-    /// The hedged curve, x and degree in turns; empty where there are no hedges: then it is that of the term.
+    /// The hedged curve, as alternating x and degree; empty without hedges, because it is then the curve of the term.
     curve: Vec<f64>,
 }
 
@@ -45,7 +45,7 @@ struct Conclusion<'a> {
 
 #[wasm_bindgen(js_class = RuleSet)]
 impl RuleSet {
-    /// What each rule reads and concludes, as JSON.
+    /// The propositions and consequents of each rule, as JSON.
     pub fn viewed(&self) -> Result<String, JsError> {
         let model = self.engine.model();
         let rows = model.rules.iter().map(|rule| {
@@ -69,8 +69,8 @@ impl RuleSet {
         })
     }
 
-    /// The degrees of the propositions of all rules at a point, in the order of [`RuleSet::viewed`]. NaN where a proposition
-    /// reads an output.
+    /// The degrees of the propositions of all rules at a point, in the order of [`RuleSet::viewed`]. NaN if a
+    /// proposition reads an output.
     #[wasm_bindgen(js_name = propositionDegrees)]
     pub fn proposition_degrees(&self, point: &[f64]) -> Vec<f64> {
         let model = self.engine.model();

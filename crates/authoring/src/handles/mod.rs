@@ -49,8 +49,8 @@ enum Grip {
     Point(usize),
 }
 
-/// Returns the handles of a term. Variables are counted inputs first. There are none in a profile, for a formula, and
-/// if the range or the term cannot be read.
+/// Returns the handles of a term. Variables are counted inputs first. A profile and a formula have no handles, nor has
+/// a term that cannot be read or whose range cannot be read.
 pub fn of(document: &Document, variable: usize, term: usize) -> Vec<Handle> {
     let found = Place::find(document, variable, term);
     let handles = found.map(|place| place.handles()).unwrap_or_default();

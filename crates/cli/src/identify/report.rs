@@ -1,4 +1,4 @@
-//! The identified rule set: as a report in words, as JSON, and as a file.
+//! The identified rule set: as a report in text, as JSON, and as a file.
 
 use std::io::Write;
 

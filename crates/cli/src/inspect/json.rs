@@ -28,7 +28,7 @@ pub(crate) struct Document<'a> {
     /// The reason why the whole range is used as the effective range although the log reports
     /// limits.
     effective_range_doubt: Option<&'a str>,
-    /// Assumptions about motors, their commands and ranges that the log does not report, in words.
+    /// Assumptions about motors, their commands and ranges that the log does not report, as texts.
     assumed: &'a [String],
     clock: Clock<'a>,
     commands: Commands,

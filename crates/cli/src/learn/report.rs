@@ -1,4 +1,4 @@
-//! The learned rules: as a report in words, as JSON, and as a rule set.
+//! The learned rules: as a report in text, as JSON, and as a rule set.
 
 use std::io::Write;
 

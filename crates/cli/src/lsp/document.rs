@@ -1,4 +1,4 @@
-//! An open text in terms of the protocol: its findings, and conversion of the editor's positions.
+//! An open text as the protocol represents it: its findings, and the conversion of the editor's positions.
 
 use std::{
     ops::Range,

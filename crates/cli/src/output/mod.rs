@@ -83,7 +83,7 @@ pub(crate) fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<Pat
     }
 }
 
-/// Returns whether the extension of a path is one of these, in small or capital letters.
+/// Returns whether the extension of a path is one of these, in lower or upper case.
 pub(crate) fn has_ending(path: &Path, extensions: &[&str]) -> bool {
     let ending = path.extension();
     ending.is_some_and(|ending| extensions.iter().any(|e| ending.eq_ignore_ascii_case(e)))

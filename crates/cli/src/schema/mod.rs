@@ -29,24 +29,24 @@ enum Format {
     RuleSet,
     /// A profile
     Profile,
-    /// What `flagred assess --json` prints
+    /// The output of `flagred assess --json`
     Assess,
-    /// What `flagred check --json` prints
+    /// The output of `flagred check --json`
     Check,
-    /// What `flagred validate --json` prints
+    /// The output of `flagred validate --json`
     #[value(alias = "evaluate")]
     Validate,
-    /// What `flagred explain --json` prints
+    /// The output of `flagred explain --json`
     Explain,
-    /// What `flagred identify --json` prints
+    /// The output of `flagred identify --json`
     Identify,
-    /// What `flagred inspect --json` prints
+    /// The output of `flagred inspect --json`
     Inspect,
-    /// What `flagred learn --json` prints
+    /// The output of `flagred learn --json`
     Learn,
-    /// What `flagred simplify --json` prints
+    /// The output of `flagred simplify --json`
     Simplify,
-    /// What `flagred tune --json` prints
+    /// The output of `flagred tune --json`
     Tune,
     /// A line of `flagred watch --jsonl`
     Watch,

@@ -132,7 +132,7 @@ fn accept(listener: &TcpListener, server: &Arc<Server>) {
         let strangers = Arc::clone(&strangers);
         let number = strangers.admit(&stream);
         thread::spawn(move || {
-            // A failed connection has no one to report the error to.
+            // The error of a failed connection cannot be reported to anybody.
             let _ = http::serve(&stream, |request| {
                 if server.is_for_the_user(request) {
                     strangers.forget(number);

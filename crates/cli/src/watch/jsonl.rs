@@ -49,7 +49,7 @@ pub(crate) enum EventLine<'a> {
     LostInAir {
         #[serde(flatten)]
         flown: FlownLine<'a>,
-        /// What was lost: the link, the motor commands, or the vehicle by a reboot.
+        /// The reason why contact was lost: the link, the motor commands, or a reboot of the vehicle.
         why: Lost,
     },
     /// The vehicle is still in the air, but the flight is no longer followed.

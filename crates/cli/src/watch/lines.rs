@@ -48,7 +48,7 @@ impl Words {
     }
 }
 
-/// Formats a line of words with the receiver's time.
+/// Formats a line of text with the receiver's time.
 pub(crate) fn words(at_s: f64, text: &str) -> String {
     format!("{at_s:8.1} s  {}\n", visible(text))
 }

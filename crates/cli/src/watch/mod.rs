@@ -102,7 +102,7 @@ pub(crate) struct Arguments {
     record: Option<PathBuf>,
 }
 
-/// The first input without `if_missing` whose signal is in no MAVLink message, and that signal.
+/// The first input without `if_missing` whose signal no MAVLink message contains, and that signal.
 fn not_live(estimator: &Estimator) -> Option<(&str, &str)> {
     let known = known_signals();
     let is_live = |signal: &str| {

@@ -130,9 +130,10 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     })
 }
 
-/// The text of a change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, fighting gusts`, or if motors
-/// are near a limit `FLAGRED: WARN risk 78 %, upper limit, motor 3`, or `FLAGRED: WARN motor 3 weak: +24 %`. The finding comes with
-/// its words. Without a finding, the alarm is still on because the motors have changed since it was raised.
+/// The text of a change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, fighting gusts`,
+/// or if motors are near a limit `FLAGRED: WARN risk 78 %, upper limit, motor 3`, or `FLAGRED: WARN motor 3 weak: +24
+/// %`. The finding is passed with its texts. Without a finding, the alarm is still on because the motors have changed
+/// since it was raised.
 pub(crate) fn say(level: Level, update: &Update, finding: Option<(&Finding, &Words)>) -> String {
     if level > Level::Good && finding.is_none() {
         return format!("{PREFIX}{level} stays: motors not as before");

@@ -10,7 +10,7 @@ use crate::{Flight, Motor, Series, VehicleKind};
 
 /// The mixer factors of the motors, and their source.
 ///
-/// # Example: turning the nose is no imbalance
+/// # Example: turning the nose is not an imbalance
 /// ```
 /// let log = "# frame: QUAD/X\nt_s,motor1,motor2,motor3,motor4\n0,0.6,0.6,0.4,0.4\n";
 /// let flight = flagred_flightlog::read(log.as_bytes(), &flagred_flightlog::Options::default())?;

@@ -59,7 +59,7 @@ fn text(bytes: &[u8]) -> String {
 pub(crate) enum Told {
     /// No change in the decoder.
     Nothing,
-    /// A change of armed, in the air or the mode, which [`Decoder`] returns.
+    /// A change of the armed state, the in-air state or the mode, which [`Decoder`] returns.
     State,
     /// A parameter is now known, or known to be unreadable.
     Parameter,

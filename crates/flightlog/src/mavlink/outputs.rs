@@ -18,7 +18,7 @@ pub(crate) struct KnownOutputs {
     /// Whether `effective` is assumed.
     pub(crate) is_effective_assumed: bool,
     pub(crate) declared: Declared,
-    /// The assumptions for values that the vehicle did not report, in words.
+    /// The assumptions for values that the vehicle did not report, as texts.
     pub(crate) assumed: Vec<String>,
 }
 

@@ -28,7 +28,7 @@ pub struct Setup {
     pub range: Range,
     /// The part of the range that is used in flight, as fractions of it.
     pub effective_range: Range,
-    /// The assumptions for values that the vehicle did not report, in words; empty without assumptions.
+    /// The assumptions for values that the vehicle did not report, as texts; empty without assumptions.
     pub assumed: Vec<String>,
     /// The number of motors that the vehicle reported.
     #[cfg_attr(feature = "serde", serde(skip))]

@@ -127,7 +127,8 @@ impl<'t> Reader<'_, 't> {
             && !self.is_fuzzylite
             && output.variable.terms.iter().all(term::is_number)
         {
-            // The centre of gravity for singletons: degrees are aggregated before they are used as weights of the positions.
+            // The center of gravity for singletons: degrees are aggregated before they are used as weights of the
+            // positions.
             output.defuzzifier = Defuzzifier::Centroid;
         }
         let weighted = words::is_weighted(output.defuzzifier);

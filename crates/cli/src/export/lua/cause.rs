@@ -63,7 +63,7 @@ impl Causes {
     }
 }
 
-/// Returns the area and the centre of a rule's consequent for an output.
+/// Returns the area and the center of a rule's consequent for an output.
 fn consequent_of(estimator: &Estimator, rule: &Rule, output: &str) -> Option<(f64, f64)> {
     let mut consequents = rule.consequents.iter().rev();
     let consequent = consequents.find(|consequent| consequent.output.text == output)?;
@@ -100,7 +100,7 @@ fn leads(estimator: &Estimator, proposition: &Proposition) -> String {
     format!("  {{{}}},", rules.join(", "))
 }
 
-/// Returns the area of an output's term and its centre, within the range.
+/// Returns the area of an output's term and its center, within the range.
 fn area_and_centre(variable: &Variable, term: &str) -> (f64, f64) {
     const STEPS: u32 = 200;
     let Some(term) = variable.terms.iter().find(|known| known.name == term) else {

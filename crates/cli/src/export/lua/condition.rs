@@ -179,7 +179,8 @@ pub(super) fn corners(
             "the script supports terms of straight lines; `piecewise` can approximate a curve",
         )
     })?;
-    // At a vertical side the script uses the degree to its right, but to the right of the range there is none.
+    // At a vertical side the script uses the degree to its right, but a side at the end of the range has no degree to
+    // its right.
     if let [.., (left, _), (right, _)] = *corners.as_slice()
         && left == right
         && right >= variable.high

@@ -81,7 +81,7 @@ pub(super) fn fill(
                 maxima |= !adds;
                 fires.extend(lines);
             }
-            // One more stays 0, because the last term of a partition has no neighbour.
+            // One more strength stays 0, because the last term of a partition has no neighbour.
             first += strengths + 1;
         }
         for place in expressions.used.iter().skip(known) {

@@ -88,7 +88,7 @@ pub(crate) enum Event {
         system: Option<u8>,
         component: Option<u8>,
     },
-    /// A message in words.
+    /// A message as text.
     Note { text: String },
     /// The link or the motor commands are lost.
     Lost { what: Silent },
@@ -105,8 +105,8 @@ pub(crate) enum Event {
         /// The time on the clock of the vehicle, in seconds.
         t_s: f64,
     },
-    /// The level changed in flight, with the words, the motor and the cause of the finding behind
-    /// it. The new level is unknown if the risk became unknown during an alarm.
+    /// The level changed in flight, with the texts, the motor and the cause of the finding behind it. The new level is
+    /// unknown if the risk became unknown during an alarm.
     Level {
         t_s: f64,
         /// The new level; null if the risk became unknown during an alarm.
@@ -125,7 +125,7 @@ pub(crate) enum Event {
     /// A sample was assessed. Its line also contains the current state.
     #[serde(skip)]
     Risk { update: Update },
-    /// A finding ended. Its line also contains the finding in words.
+    /// A finding ended. Its line also contains the finding as text.
     #[serde(skip)]
     Ended { finding: Finding },
     /// A flight, or the observed part of it, is over. The name of its line depends on how it ended.
