@@ -1,5 +1,5 @@
 // Times fuzzylite on a system written by the example `peers`: fuzzylite NAME FOLDER
-// prints `system,program,ns a call,largest error in % of the range` for 100 and 1000 samples.
+// prints `system,program,ns per call,largest error in % of the range` for 100 and 1000 samples.
 #include <fl/Headers.h>
 
 #include <chrono>

@@ -1,6 +1,6 @@
 """Times scikit-fuzzy and simpful on the system (bw): peers.py FOLDER
 
-Prints `system,program,ns a call,largest error in % of the range`.
+Prints `system,program,ns per call,largest error in % of the range`.
 """
 import importlib.metadata
 import sys

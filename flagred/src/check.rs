@@ -76,8 +76,8 @@ pub fn profile(
     (Findings::locate(found, text), estimator)
 }
 
-/// Warns about inputs that do not come from the motors and cannot raise a level alone: the other inputs outvote them,
-/// however bad their values are.
+/// Warns about inputs that do not come from the motors and cannot raise a level by themselves: the other inputs outvote
+/// them, however bad their values are.
 ///
 /// These warnings are for the author of a profile; the warnings of [`profile`] are for everyone who uses it.
 ///
@@ -200,8 +200,8 @@ fn compile(
     None
 }
 
-/// Finds levels of another risk without a threshold for the elevated risk, although the same level of the first risk has
-/// one: what a written level leaves out does not apply.
+/// Finds levels of another risk without a threshold for the elevated risk, although the same level of the first risk
+/// has one: a level that is written replaces the whole level, so parts that it omits do not apply.
 fn dropped(first: &Profile, other: &Profile, place: &[&str], at: &Places) -> Vec<Diagnostic> {
     let levels = [
         ("warn", &first.verdict.warn, &other.verdict.warn),

@@ -196,7 +196,7 @@ test('other thresholds give the verdict of a profile that has them', async () =>
   const report = (await room.download('Report (HTML)')).content.toString();
   const [, profile] = /<h2>Profile<\/h2><pre>([^]*?)<\/pre>/.exec(report);
   assert.match(profile, /fail: \{risk: 95, after_s: 0.3, until: \{risk: 65\}\}/);
-  assert.match(profile, /# lowered when nothing has held it for so long/);
+  assert.match(profile, /# a level is lowered when it has not been held for this time/);
   const text = profile.replaceAll('&gt;', '>').replaceAll('&lt;', '<').replaceAll('&quot;', '"').replaceAll('&amp;', '&');
   const there = folder({ [basename(GUST)]: readFileSync(GUST), 'tried.yaml': text });
   const { out } = await command([`${there}/${basename(GUST)}`], '--json', '--profile', 'tried.yaml');

@@ -99,7 +99,7 @@ test('thresholds are changed in the text of a profile', () => {
   assert.equal(tried.verdict.warn.raise.risk_pct, 40);
   assert.equal(tried.verdict.warn.raise.elevated_risk_pct, 60);
   assert.equal(flight.assess(tried).brief().verdict, 'WARN');
-  assert.match(tried.text, /clear_after_s: 7 +# lowered when nothing has held it for so long/);
+  assert.match(tried.text, /clear_after_s: 7 +# a level is lowered when it has not been held for this time/);
   assert.equal(Profile.fromText('x.yaml', tried.text).verdict.clear_after_s, 7);
   assert.throws(() => profile.withVerdict({ warn: { raise: { risk_pct: 40 } } }), { message: /held until 43, which is above 40\nhelp: / });
 });

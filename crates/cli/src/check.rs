@@ -170,8 +170,8 @@ fn examine<'s>(source: &'s Source, arguments: &Arguments) -> Result<Examined<'s>
     })
 }
 
-/// Reads a profile; returns all findings about it and its rule set, and the risk that each of its inputs reaches alone. A rule set
-/// with errors is refused, since these are in another file.
+/// Reads a profile; returns all findings about it and its rule set, and the highest risk that each of its inputs causes
+/// while all others are calm. A rule set with errors is refused, since these are in another file.
 fn examine_profile(
     path: &Path,
     source: &Source,

@@ -40,7 +40,7 @@ struct Slice {
     means: Vec<f64>,
 }
 
-/// The two inputs that affected the risk most over the flight, each varied alone with the others at their mean.
+/// The two inputs that affected the risk most over the flight, each varied with the others at their mean.
 fn slice(estimator: &Estimator, steps: &[&Step]) -> Option<Slice> {
     let inputs = estimator.profile().inputs.len();
     if inputs < 2 || steps.is_empty() {

@@ -44,7 +44,7 @@ pub fn comparison(subjects: &[&Subject], loaded: &Loaded) -> String {
     )
 }
 
-/// The body of [`comparison`] alone, for a stretch of time since the start of each flight, or for all of it.
+/// Only the body of [`comparison`], for a stretch of time since the start of each flight, or for all of it.
 pub fn comparison_fragment(
     subjects: &[&Subject],
     loaded: &Loaded,

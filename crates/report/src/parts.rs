@@ -1,4 +1,4 @@
-//! The parts of the report of one flight; each can be rendered alone, and for any stretch of time.
+//! The parts of the report of one flight; each can be rendered separately, and for any stretch of time.
 
 use flagred::{flight::Assessment, loaded::Loaded};
 use fuzzy::{

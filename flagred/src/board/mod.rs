@@ -89,7 +89,7 @@ pub struct Plan<'a> {
 /// by the values of the finding, `{motor}` by its motor, and `{side}` by `above` or `below`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Words<'a> {
-    /// A stable word for programs: small letters, digits and `_`.
+    /// A stable word for programs: lower-case letters, digits and `_`.
     pub code: &'a str,
     /// A few words, for messages limited to 50 characters.
     pub brief: &'a str,

@@ -24,7 +24,7 @@ use crate::{
 /// The words of a finding for the pilot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Words {
-    /// A stable word for programs: small letters, digits and `_`.
+    /// A stable word for programs: lower-case letters, digits and `_`.
     pub code: String,
     /// A few words, for messages limited to 50 characters. The second part can be left out, because
     /// the first is also true alone.
@@ -235,7 +235,7 @@ fn number(value: f64) -> String {
     format!("{}", libm::round(value * 1e3) / 1e3 + 0.0)
 }
 
-/// Converts a name to a code of small letters, digits and `_`.
+/// Converts a name to a code of lower-case letters, digits and `_`.
 fn code(name: &str) -> String {
     let letter = |c: char| match c.to_ascii_lowercase() {
         c if c.is_ascii_alphanumeric() => c,
@@ -244,7 +244,7 @@ fn code(name: &str) -> String {
     name.chars().map(letter).collect()
 }
 
-/// The description of an input up to its first comma, beginning with a small letter as inside a sentence.
+/// The description of an input up to its first comma, beginning with a lower-case letter as inside a sentence.
 fn first_phrase(input: &Variable) -> Option<String> {
     let description = input.description.as_deref()?;
     let phrase = description.split([',', '.', ';']).next()?;

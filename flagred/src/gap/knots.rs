@@ -143,7 +143,7 @@ fn count(axes: &[Vec<f64>]) -> usize {
     axes.iter().fold(1, times)
 }
 
-/// Adds a coordinate halfway between each two.
+/// Adds a coordinate halfway between every two neighbours.
 fn with_middles(places: &[f64]) -> Vec<f64> {
     let middles = places.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
     let mut all: Vec<f64> = middles.chain(places.iter().copied()).collect();

@@ -81,7 +81,7 @@ pub struct Profile {
 pub struct CauseWords {
     /// The name of the input in the profile.
     pub input: String,
-    /// A stable word for programs: small letters, digits and `_`.
+    /// A stable word for programs: lower-case letters, digits and `_`.
     pub code: String,
     /// Two or three words, at most 20 ASCII characters, for messages limited to 50 characters.
     pub brief: String,

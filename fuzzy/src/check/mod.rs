@@ -85,8 +85,8 @@ impl Default for Options {
 pub struct Report {
     /// Boxes of the input space without a rule.
     pub uncovered: Vec<Uncovered>,
-    /// Whether the list is complete. In large rule sets the search stops early. It is not possible if NOT is applied to
-    /// an interval type-2 term.
+    /// Whether the list is complete. In large rule sets the search stops early. No list is computed if NOT is applied
+    /// to an interval type-2 term.
     pub uncovered_complete: bool,
     /// Rules with equal conditions and different conclusions, and rules that conclude two terms of the same output.
     pub contradictions: Vec<Contradiction>,

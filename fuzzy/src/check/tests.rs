@@ -498,7 +498,7 @@ fn parts_without_an_effect_or_a_value_are_found() {
         ]
         .join("\n")
     );
-    // These are intended.
+    // These constant degrees are intended.
     for (term, output) in [
         (shoulder, sets),
         ("{constant: 1}", sets),

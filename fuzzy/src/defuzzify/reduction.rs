@@ -318,7 +318,7 @@ mod tests {
         // Equal bounds give a number.
         let crisp = points(&[(4.0, 0.5, 0.5), (8.0, 0.5, 0.5)]);
         assert_eq!(average(&crisp), Some((6.0, 6.0)));
-        // Without a lower bound every average is possible, and also each number alone.
+        // Without a lower bound every average is possible, and also each single number.
         let open = points(&[(4.0, 0.0, 0.5), (8.0, 0.0, 0.1), (9.0, 0.0, 0.0)]);
         assert_eq!(average(&open), Some((4.0, 8.0)));
         assert_eq!(average(&points(&[(4.0, 0.0, 0.0)])), None);

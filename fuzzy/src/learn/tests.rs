@@ -171,7 +171,7 @@ fn rules_can_be_completed_and_made_monotone() {
     let rows = [
         [0.0, 0.2, 100.0],
         [0.1, 0.2, 25.0],
-        // Against the physics: less margin, but less risk than above.
+        // Contrary to physics: less margin, but less risk than in the rows above.
         [0.1, 0.1, 75.0],
         [0.3, 0.0, 0.0],
     ];
@@ -575,7 +575,7 @@ fn rules_for_numbers_are_made_monotone() {
         [
             "IF heat IS cold THEN speed IS slow",
             "IF heat IS mild THEN speed IS slow",
-            // Same conclusion as the nearest rule.
+            // The completed rule has the same conclusion as the nearest rule.
             "IF heat IS hot THEN speed IS slow"
         ]
     );

@@ -27,7 +27,7 @@ pub fn peaks(variable: &Variable) -> Vec<f64> {
     let apart = 1e-3 * (high - low);
     peaks.dedup_by(|next, last| {
         let is_near = *next - *last < apart;
-        // At a limit of steps, the term above it counts.
+        // At a limit of `steps`, the value belongs to the term above the limit.
         if is_near && *next == last.next_up() {
             *last = *next;
         }

@@ -1,5 +1,5 @@
 //! Times the Rust crates fuzzy-logic_rs and oxictl on a system written by the example `peers`:
-//! flagred-peers NAME FOLDER prints `system,program,ns a call,largest error in % of the range`.
+//! flagred-peers NAME FOLDER prints `system,program,ns per call,largest error in % of the range`.
 //!
 //! Both support only rules that are ANDs of one term of every input, so not the tipper.
 

@@ -1,5 +1,5 @@
-//! `flagred export`: a profile and its rule set, or a rule set alone, as constant data for firmware; or a rule set for another
-//! program.
+//! `flagred export`: a profile and its rule set, or only a rule set, as constant data for firmware; or a rule set for
+//! another program.
 
 use std::{
     fmt::Debug,

@@ -74,7 +74,7 @@ fn the_layout_of_six_and_eight_motors_is_found_by_their_commands() {
     assert_eq!(flight("", &odd).geometry, None);
 }
 
-/// The outputs of the rate controllers distinguish layouts that the commands alone do not.
+/// The outputs of the rate controllers distinguish layouts that the commands by themselves do not distinguish.
 #[test]
 fn the_outputs_of_the_controllers_name_the_layout() {
     for frame in [

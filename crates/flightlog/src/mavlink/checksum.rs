@@ -6,7 +6,7 @@ pub(crate) fn accumulate(bytes: &[u8], extra: u8) -> u16 {
     let mut eights = bytes.chunks_exact(8);
     let sum = eights.by_ref().fold(0xffff_u16, |sum, eight| {
         let [low, high] = sum.to_le_bytes();
-        // Each byte alone, followed by the bytes after it as zeros: the sum is linear.
+        // Each byte by itself, followed by zeros in place of the bytes after it: the sum is linear.
         let first = [low, high, 0, 0, 0, 0, 0, 0];
         let tables = TABLES.iter().rev();
         tables
@@ -24,7 +24,8 @@ pub(crate) fn accumulate(bytes: &[u8], extra: u8) -> u16 {
         })
 }
 
-/// The checksum of each byte alone (polynomial 0x1021, bits reversed), and of each byte followed by one to seven zeros.
+/// The checksum of each single byte (polynomial 0x1021, bits reversed), and of each byte followed by one to seven
+/// zeros.
 const TABLES: [[u16; 256]; 8] = {
     let mut tables = [[0; 256]; 8];
     let mut byte = 0;

@@ -127,7 +127,7 @@ impl<'t> Reader<'_, 't> {
             && !self.is_fuzzylite
             && output.variable.terms.iter().all(term::is_number)
         {
-            // The center of gravity for singletons: degrees are aggregated before they are used as weights of the
+            // The centre of gravity for singletons: degrees are aggregated before they are used as weights of the
             // positions.
             output.defuzzifier = Defuzzifier::Centroid;
         }

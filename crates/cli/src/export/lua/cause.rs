@@ -63,7 +63,7 @@ impl Causes {
     }
 }
 
-/// Returns the area and the center of a rule's consequent for an output.
+/// Returns the area and the centre of a rule's consequent for an output.
 fn consequent_of(estimator: &Estimator, rule: &Rule, output: &str) -> Option<(f64, f64)> {
     let mut consequents = rule.consequents.iter().rev();
     let consequent = consequents.find(|consequent| consequent.output.text == output)?;
@@ -72,8 +72,8 @@ fn consequent_of(estimator: &Estimator, rule: &Rule, output: &str) -> Option<(f6
     Some(area_and_centre(&output.variable, &consequent.term.text))
 }
 
-/// Returns the rules whose consequents are about the output of a proposition, as pairs of a rule's number and the degree of the
-/// proposition where the output has the value that this rule alone gives it.
+/// Returns the rules whose consequents are about the output of a proposition, as pairs of a rule's number and the
+/// degree of the proposition where the output has the value that it has if only this rule fires.
 fn leads(estimator: &Estimator, proposition: &Proposition) -> String {
     // As in the monitor: the strongest rule if the degree is 0 for all of them.
     const NOT_AT_ALL: f64 = 1e-9;
@@ -100,7 +100,7 @@ fn leads(estimator: &Estimator, proposition: &Proposition) -> String {
     format!("  {{{}}},", rules.join(", "))
 }
 
-/// Returns the area of an output's term and its center, within the range.
+/// Returns the area of an output's term and its centre, within the range.
 fn area_and_centre(variable: &Variable, term: &str) -> (f64, f64) {
     const STEPS: u32 = 200;
     let Some(term) = variable.terms.iter().find(|known| known.name == term) else {
