@@ -184,7 +184,7 @@ test('two fingers zoom, and keys move the cursor', async () => {
 test('other thresholds give the verdict of a profile that has them', async () => {
   const { page, room, context, complaints } = await withLog(GUST);
   assert.equal(await room.badge(basename(GUST)), 'FAIL');
-  await page.getByText('the thresholds were others?').click();
+  await page.getByText('the thresholds were different?').click();
   const field = (name) => page.getByRole('spinbutton', { name });
   await field('FAIL, from a risk of, %').fill('95');
   await page.locator('.what-if-verdict').getByText('WARN').waitFor();
@@ -283,7 +283,7 @@ test('axe finds nothing serious', async () => {
       await room.take(GUST);
       await room.badge(basename(GUST));
       await room.settled();
-      await page.getByText('the thresholds were others?').click();
+      await page.getByText('the thresholds were different?').click();
       await check('a report');
       await room.take({ name: 'no.log', mimeType: '', buffer: Buffer.from('nothing') });
       await room.badge('no.log');

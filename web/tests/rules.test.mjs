@@ -233,7 +233,7 @@ test('what one was at is there again; where nothing can be kept it is told', asy
     };
   });
   await put(other, await read('rules/tipper.yaml'));
-  await other.getByText('This browser keeps nothing').waitFor();
+  await other.getByText('This browser cannot store the rule set').waitFor();
 });
 
 test('what was one\'s own is not lost to a link or an example', async (t) => {
@@ -403,7 +403,7 @@ test('a defect is told and the page goes on', async (t) => {
   });
   const tipper = await read('rules/tipper.yaml');
   await paste(page, tipper.replace('name: tipper', 'name: trap'));
-  await page.getByText('flagred has a defect, and goes on: index out of bounds').waitFor();
+  await page.getByText('flagred has a defect, but continues: index out of bounds').waitFor();
   await paste(page, tipper);
   await page.getByLabel('service, as a number').waitFor();
   assert.deepEqual(complaints, []);

@@ -156,7 +156,7 @@ export interface FlightDocument {
   widened_step_s: number | null;
 }
 
-/** A finding, with the output of the motor that it names, and its texts. */
+/** A finding with its texts, and the output of the motor that it names. */
 export interface FlightFinding {
   /** The worst level that was reached. */
   severity: Level;
@@ -282,7 +282,7 @@ export interface MotorFinding {
   number: number;
   /** The number of a second motor that may be the cause instead, if the commands do not show which of the two. */
   or_number: number | null;
-  /** The nearest limit. For an imbalance, whether the motor is below or above its usual part of the thrust. */
+  /** The nearest limit. For an imbalance, whether the motor is below or above its share earlier in the flight. */
   side: Side;
   /** The mean margin of the motor. */
   margin_mean: number;
@@ -296,7 +296,7 @@ export interface NoticeSettings {
   noise: Limit | null;
   /** The threshold on the reserve of the mean command to the upper limit. */
   reserve: Limit | null;
-  /** The threshold on the deviation of motors from their own part of the thrust earlier in the flight. It is doubled for opposite motors, and halved if only one motor is higher. */
+  /** The threshold on the shift of a motor's command, relative to the mean command of all motors, since earlier in the flight. It is doubled for the difference of opposite motors, and halved if a single motor is higher than before. */
   imbalance: Limit | null;
 }
 

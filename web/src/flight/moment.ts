@@ -46,7 +46,7 @@ export function momentPanel(): MomentPanel {
 }
 
 function facts({ step, filled_from, clamped }: Moment): Child {
-  if (!step) return h('p', { class: 'soft' }, 'No step of the assessment is at this time.');
+  if (!step) return h('p', { class: 'soft' }, 'The assessment has no step at this time.');
   const rows: [string, string][] = [
     ['Risk', percent(step.risk)],
     ['Elevated risk', percent(step.elevated_risk)],

@@ -147,7 +147,7 @@ export function whatIf(change: (changes: VerdictChanges) => void): WhatIf {
   const element = h(
     'details',
     { class: 'what-if card' },
-    h('summary', {}, h('b', {}, 'What if'), ' the thresholds were others?'),
+    h('summary', {}, h('b', {}, 'What if'), ' the thresholds were different?'),
     verdict,
     refusal,
     ...groups,

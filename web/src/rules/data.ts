@@ -45,7 +45,7 @@ export function data(app: App, place: Place): Data {
   const hint = h('p', { class: 'soft hint' });
   const report = h('div', { class: 'errors' });
   const complete = h('input', { type: 'checkbox' });
-  const tune = h('button', { type: 'button', class: 'main', title: 'Move the numbers of the terms so that the error becomes small' }, 'Tune');
+  const tune = h('button', { type: 'button', class: 'main', title: 'Move the numbers of the terms to reduce the error' }, 'Tune');
   const learn = h('button', { type: 'button', title: 'Replace the rules by rules learned from the rows' }, 'Learn rules');
   const stop = h('button', { type: 'button', hidden: true, title: 'Stop, and keep the best rule set so far' }, 'Stop');
   const progress = h('progress', { 'aria-label': 'Search', hidden: true });
@@ -124,7 +124,7 @@ export function data(app: App, place: Place): Data {
       return;
     }
     place.replace(after);
-    fill(state, h('b', {}, words), ' Undo brings back the rule set before.', details.length > 0 && h('span', { class: 'soft' }, ` ${details.slice(0, 12).join('; ')}${details.length > 12 ? `; and ${details.length - 12} more` : ''}.`));
+    fill(state, h('b', {}, words), ' Undo restores the previous rule set.', details.length > 0 && h('span', { class: 'soft' }, ` ${details.slice(0, 12).join('; ')}${details.length > 12 ? `; and ${details.length - 12} more` : ''}.`));
   }
 
   tune.addEventListener('click', () =>

@@ -56,7 +56,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     }
   }
   function refused(error: Error): void {
-    app.say(error instanceof Trapped ? `flagred has a defect, and goes on: ${error.message}` : error.message);
+    app.say(error instanceof Trapped ? `flagred has a defect, but continues: ${error.message}` : error.message);
   }
   // Runs after it is known which text caused the crash.
   engine.onRestart = () => setTimeout(() => edit.text() !== poison && changed(edit.text()));
@@ -153,7 +153,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     { class: 'bar-of-tools', role: 'toolbar', 'aria-label': 'Rule set' },
     group(startFrom, button('Open', 'Open a rule set in YAML, FIS, FLL, FCL or FML', () => file.click()), file, save),
     group(undo, redo, button('Format', 'One layout (Shift+Alt+F)', format)),
-    group(button('Copy link', 'Copy a link that holds this rule set', () => void share())),
+    group(button('Copy link', 'Copy a link that contains this rule set', () => void share())),
   );
   const paper = h('div', { class: 'editor' });
   const heading = h('h1', {}, 'Rules');
@@ -181,7 +181,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
         ),
         h('section', { class: 'explanation', 'aria-label': 'Explanation' }, h('h2', {}, 'Why'), why),
       ),
-      h('section', { class: 'reading', 'aria-label': 'Rule viewer' }, h('h2', {}, 'Rules ', h('span', { class: 'soft' }, 'how far each holds at this point; drag the line of an input')), ruleViewer.element),
+      h('section', { class: 'reading', 'aria-label': 'Rule viewer' }, h('h2', {}, 'Rules ', h('span', { class: 'soft' }, 'the degree of each condition at this point; drag the line of an input')), ruleViewer.element),
       h('section', { class: 'shapes', 'aria-label': 'Terms' }, h('h2', {}, 'Terms ', h('span', { class: 'soft' }, 'drag a point, or move it with the arrow keys')), shapes.element),
       rows.element,
     ),
@@ -233,7 +233,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   function store(text: string): void {
     disk?.changed(text);
     if (text !== starts.find(({ name }) => name === start)?.text) start = undefined;
-    if (!disk && !keep(text)) app.say('This browser keeps nothing: download the rule set, or copy its link, before you leave.');
+    if (!disk && !keep(text)) app.say('This browser cannot store the rule set: download it, or copy its link, before you leave.');
     address();
   }
 
@@ -384,7 +384,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     startFrom.value = '';
     if (value === 'before') {
       const text = before();
-      if (text === undefined) return app.say('There is nothing from before.');
+      if (text === undefined) return app.say('There is no earlier rule set to restore.');
       setAside();
       return put(text);
     }
@@ -392,7 +392,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     if (!one) return;
     if (start === undefined) setAside();
     put(one.text, one.name);
-    app.say(`${one.name} is open. Undo brings back what you had.`);
+    app.say(`${one.name} is open. Undo restores your previous text.`);
   }
 
   async function take(file: File): Promise<void> {
@@ -425,7 +425,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     parameters.set('text', await pack(edit.text()));
     app.navigate(parameters);
     const link = location.href;
-    if (link.length > LONGEST) app.say('The link is in the address, but long: some programs cut it. A file is safer.');
+    if (link.length > LONGEST) app.say('The link is in the address, but long: some programs truncate it. A file is safer.');
     else {
       const isCopied = await navigator.clipboard?.writeText(link).then(() => true, () => false);
       app.say(isCopied ? 'The link is copied: the rule set is in it.' : 'The link is in the address: copy it from there.');
@@ -447,7 +447,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
 
   function rename(): void {
     const [text, at] = [edit.text(), edit.cursor()];
-    const name = prompt('A new name for what stands here, everywhere in the rule set:');
+    const name = prompt('The new name, which replaces the old one everywhere in the rule set:');
     if (!name) return;
     engine.call('rulesRename', text, at, name).then(
       (edits) => edit.text() === text && edit.apply(edits),

@@ -74,7 +74,7 @@ SECTIONS: Sequence[tuple[str, str, Sequence[Column], str]] = (
             number("At risk, s", "at_risk_s", 1),
             number("In the air, s", "in_air_s", 1),
         ),
-        "No flight was at a risk that warns.",
+        "No flight reached a risk that raises a warning.",
     ),
     ("Flights without a verdict", "no_verdict", (text("Reason", "reason"), number("Flights", "flights"), log("Such as", "example")), "Every flight has a verdict."),
     (
