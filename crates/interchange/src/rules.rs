@@ -176,7 +176,8 @@ impl<'r> Reader<'r, '_, '_> {
     // The recursive functions must have small stack frames, so the rest is in separate functions.
     fn too_deep<T>(&mut self) -> Option<T> {
         let part = self.peek().unwrap_or(self.end);
-        let message = format!("the brackets of a condition are nested at most {DEEPEST_NESTING} deep");
+        let message =
+            format!("the brackets of a condition are nested at most {DEEPEST_NESTING} deep");
         let help = "write it as several rules";
         self.draft.error("rule-too-deep", part, message, help);
         None

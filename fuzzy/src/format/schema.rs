@@ -51,12 +51,12 @@ pub fn schema() -> Node {
         ),
         (
             "outputs",
-            named("The outputs; the keys are the names that rules use", "output"),
+            named(
+                "The outputs; the keys are the names that rules use",
+                "output",
+            ),
         ),
-        (
-            "operators",
-            operators("The operators of all rules", true),
-        ),
+        ("operators", operators("The operators of all rules", true)),
         ("activation", activation()),
         (
             "least_strength",
@@ -177,17 +177,29 @@ fn variable_key(key: &str) -> Node {
                 ("minProperties", Node::number(2.0)),
             ],
         ),
-        "terms" => named("The terms, each with its membership function; the keys are their names", "term"),
-        "defuzzifier" => words("The defuzzifier, which computes a number from the fuzzy result", &DEFUZZIFIERS),
+        "terms" => named(
+            "The terms, each with its membership function; the keys are their names",
+            "term",
+        ),
+        "defuzzifier" => words(
+            "The defuzzifier, which computes a number from the fuzzy result",
+            &DEFUZZIFIERS,
+        ),
         "samples" => {
             let rules = [
                 (
                     "midpoint",
-                    whole("Evaluate the set at the midpoints of this number of equal steps", 1.0),
+                    whole(
+                        "Evaluate the set at the midpoints of this number of equal steps",
+                        1.0,
+                    ),
                 ),
                 (
                     "trapezoid",
-                    whole("Evaluate the set at this number of evenly spaced points, including both ends of the range", 2.0),
+                    whole(
+                        "Evaluate the set at this number of evenly spaced points, including both ends of the range",
+                        2.0,
+                    ),
                 ),
             ];
             let mut entries = object(
@@ -213,7 +225,10 @@ fn variable_key(key: &str) -> Node {
                 )),
                 Node::mapping(object(
                     "The value of the previous row, and a value for the time before there is one",
-                    [("previous", number("The value to use until the output has had a value"))],
+                    [(
+                        "previous",
+                        number("The value to use until the output has had a value"),
+                    )],
                     &["previous"],
                 )),
             ]),
@@ -256,7 +271,11 @@ fn step() -> Node {
     let property = |key: &'static str| match key {
         "command" => text("The command that created or changed the rule set, or a description"),
         "data" => {
-            let file = object("A file with data", provenance::DATA_KEYS.iter().map(file), &["file"]);
+            let file = object(
+                "A file with data",
+                provenance::DATA_KEYS.iter().map(file),
+                &["file"],
+            );
             list("The files with the data", Node::mapping(file), None)
         }
         "rows" => whole("The number of rows that were used", 0.0),
@@ -272,7 +291,11 @@ fn step() -> Node {
         "rules" => numbers("The number of rules, before and after", 2),
         "moved" => {
             let one = Node::mapping([("type", Node::text("string"))]);
-            list("The numbers that the command changed, described in text", one, None)
+            list(
+                "The numbers that the command changed, described in text",
+                one,
+                None,
+            )
         }
         "note" => text("Further remarks"),
         "result" => text(
@@ -393,8 +416,14 @@ fn shape(form: &Form) -> Node {
 /// Returns the schema of operators. `all` adds the aggregation, which blocks do not have.
 fn operators(description: &str, all: bool) -> Node {
     let properties = [
-        ("and", words("The function for AND; default: minimum", &CONJUNCTIONS)),
-        ("or", words("The function for OR; default: maximum", &DISJUNCTIONS)),
+        (
+            "and",
+            words("The function for AND; default: minimum", &CONJUNCTIONS),
+        ),
+        (
+            "or",
+            words("The function for OR; default: maximum", &DISJUNCTIONS),
+        ),
         (
             "implication",
             words(
@@ -419,7 +448,10 @@ fn block() -> Node {
     let value = |key: &str| match key {
         "description" => text("The purpose of the rules"),
         "enabled" => boolean("Whether the rules of the block are evaluated; default: true"),
-        "operators" => operators("The operators of the block; default: those of the rule set", false),
+        "operators" => operators(
+            "The operators of the block; default: those of the rule set",
+            false,
+        ),
         "activation" => activation(),
         _ => list("The rules of the block", reference("rule"), None),
     };
@@ -446,8 +478,17 @@ fn activation() -> Node {
         let options = Vec::from([whole("The number of rules", 1.0), Node::mapping(counted)]);
         only(key, which, any_of("The number of rules", options))
     };
-    let comparisons = COMPARISONS.map(|(word, _)| (word, number("The number to which the firing strength is compared")));
-    let mut threshold = object("The comparison that the firing strength must satisfy", comparisons, &[]);
+    let comparisons = COMPARISONS.map(|(word, _)| {
+        (
+            word,
+            number("The number to which the firing strength is compared"),
+        )
+    });
+    let mut threshold = object(
+        "The comparison that the firing strength must satisfy",
+        comparisons,
+        &[],
+    );
     threshold.push(entry("minProperties", Node::number(1.0)));
     threshold.push(entry("maxProperties", Node::number(1.0)));
     any_of(
@@ -459,7 +500,11 @@ fn activation() -> Node {
             ),
             counted("first", "Only the first rules that would fire"),
             counted("last", "Only the last rules that would fire"),
-            only("highest", "Only the rules with the largest firing strengths", whole("The number of rules", 1.0)),
+            only(
+                "highest",
+                "Only the rules with the largest firing strengths",
+                whole("The number of rules", 1.0),
+            ),
             only(
                 "lowest",
                 "Only the rules with the smallest firing strengths above 0",
@@ -484,13 +529,21 @@ fn rule() -> Node {
         [
             ("term", text("The term of the rejected consequent")),
             ("degree", degree("The degree of the rejected consequent")),
-            ("support", whole("The number of samples that support the rejected consequent", 0.0)),
+            (
+                "support",
+                whole(
+                    "The number of samples that support the rejected consequent",
+                    0.0,
+                ),
+            ),
         ],
         &["term", "degree", "support"],
     );
     let value = |key: &str| match key {
         "rule" => rule_text(),
-        "confidence" => degree("The confidence of the rule's source, from 0 to 1; it is not used as a weight"),
+        "confidence" => {
+            degree("The confidence of the rule's source, from 0 to 1; it is not used as a weight")
+        }
         "support" => whole("The number of samples that support the rule", 0.0),
         "against" => list(
             "The rejected consequents",
@@ -500,11 +553,7 @@ fn rule() -> Node {
         _ => text("A remark"),
     };
     let properties = rules::KEYS.iter().map(|key| (*key, value(key)));
-    let with_provenance = Node::mapping(object(
-        "A rule and its origin",
-        properties,
-        &["rule"],
-    ));
+    let with_provenance = Node::mapping(object("A rule and its origin", properties, &["rule"]));
     any_of(
         "IF input IS [hedge] term {AND|OR ...} THEN output IS term [WITH weight]",
         Vec::from([rule_text(), with_provenance]),

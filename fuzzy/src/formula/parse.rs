@@ -511,7 +511,8 @@ impl Mistake<'_> {
             Wrong::TooDeep => {
                 let message =
                     format!("brackets, signs and powers are nested deeper than {DEEPEST_NESTING}");
-                error(found.len(), message).help("split the formula into the formulas of several terms")
+                error(found.len(), message)
+                    .help("split the formula into the formulas of several terms")
             }
             Wrong::TooLong => {
                 let message = format!("the formula has more than {LONGEST} parts");

@@ -176,7 +176,9 @@ impl LearnError {
     pub fn help(&self) -> &'static str {
         match self {
             LearnError::Outputs { .. } => "learn with one of these outputs and those that it reads",
-            LearnError::Chain { .. } => "correct the rules of the outputs that the last output reads",
+            LearnError::Chain { .. } => {
+                "correct the rules of the outputs that the last output reads"
+            }
             LearnError::Type2 => {
                 "remove the lower membership functions for learning, and add them again afterwards"
             }

@@ -70,7 +70,11 @@ pub fn starting_points() -> Result<String, JsError> {
             "how much to tip, the example of every textbook",
             include_str!("../../../../rules/tipper.yaml"),
         ),
-        start(rules.name.into(), "the default rule set for flights", rules.text),
+        start(
+            rules.name.into(),
+            "the default rule set for flights",
+            rules.text,
+        ),
         start(
             paper_rules.name.into(),
             "the rule set of the paper",

@@ -108,8 +108,13 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
             NoRuleFires::Value(value) => paper.line(format!("  DEFAULT := {value};")),
             NoRuleFires::Previous(None) => paper.line("  DEFAULT := NC;"),
             NoRuleFires::Previous(Some(_)) => {
-                let message = format!("`{name}` keeps its previous value, and has an initial value");
-                paper.loss("no-rule-fires", message, "FCL supports either `NC` or a value");
+                let message =
+                    format!("`{name}` keeps its previous value, and has an initial value");
+                paper.loss(
+                    "no-rule-fires",
+                    message,
+                    "FCL supports either `NC` or a value",
+                );
             }
             NoRuleFires::Undefined | NoRuleFires::Error => {}
         }
@@ -268,7 +273,10 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
         return;
     }
     if block.activation != Activation::General {
-        let message = format!("the activation method of `{}` selects the rules that fire", block.name);
+        let message = format!(
+            "the activation method of `{}` selects the rules that fire",
+            block.name
+        );
         paper.loss("activation", message, "FCL has no activation methods");
     }
     let [and, or, implication] = paper.operators(operators);

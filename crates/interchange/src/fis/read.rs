@@ -259,7 +259,8 @@ fn defuzzifier(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) -> D
     if is_weighted != weighted {
         let written = system.get("DefuzzMethod").unwrap_or(system.name);
         let message = format!("`DefuzzMethod={written}` does not fit the type of the system");
-        let help = "`wtaver` and `wtsum` are for Sugeno systems, the other methods for Mamdani systems";
+        let help =
+            "`wtaver` and `wtsum` are for Sugeno systems, the other methods for Mamdani systems";
         draft.error("wrong-method", written, message, help);
     }
     value

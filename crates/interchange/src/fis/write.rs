@@ -36,7 +36,8 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
             output.when_no_rule_fires,
             NoRuleFires::Undefined | NoRuleFires::Error
         ) {
-            let message = format!("`{name}` has a value if no rule fires, which FIS cannot express");
+            let message =
+                format!("`{name}` has a value if no rule fires, which FIS cannot express");
             paper.loss(
                 "no-rule-fires",
                 message,
@@ -61,7 +62,8 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         }
     }
     if !model.blocks.is_empty() || model.activation != Activation::General {
-        let message = "the rules are in blocks, or an activation method selects those that fire".into();
+        let message =
+            "the rules are in blocks, or an activation method selects those that fire".into();
         paper.loss(
             "blocks",
             message,
@@ -74,7 +76,8 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
             Ok(line) => paper.line(line),
             Err(what) => {
                 let message = format!("rule {} {what}", index + 1);
-                let help = "a rule of FIS joins one term of each input, either all by AND or all by OR";
+                let help =
+                    "a rule of FIS joins one term of each input, either all by AND or all by OR";
                 paper.loss("rule", message, help);
             }
         }

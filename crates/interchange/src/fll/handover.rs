@@ -40,8 +40,7 @@ pub(crate) fn replace(draft: &mut Draft<'_>) {
         let span = draft.spans.rules.get(index).map(|rule| rule.whole.clone());
         let part = draft.text.get(span.unwrap_or_default()).unwrap_or_default();
         if resolved.is_none() || depth(&condition) > 2 * DEEPEST_NESTING {
-            let message =
-                "the rule reads outputs whose rules have too many conditions".into();
+            let message = "the rule reads outputs whose rules have too many conditions".into();
             let help = format!(
                 "conditions about outputs may become {MOST_PROPOSITIONS} propositions in all, nested {DEEPEST_NESTING} deep"
             );

@@ -193,7 +193,11 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
         Kind::Tsk => {
             if output.defuzzifier == Defuzzifier::WeightedSum {
                 let message = format!("the output `{name}` is a weighted sum");
-                paper.loss("no-method", message, "FML supports only the weighted average");
+                paper.loss(
+                    "no-method",
+                    message,
+                    "FML supports only the weighted average",
+                );
             }
             tsk(paper, output, model)
         }
@@ -220,7 +224,11 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
         NoRuleFires::Value(value) => element = element.with("defaultValue", value),
         NoRuleFires::Previous(_) => {
             let message = format!("`{name}` keeps its value where no rule fires");
-            paper.loss("no-rule-fires", message, "FML supports only a default value");
+            paper.loss(
+                "no-rule-fires",
+                message,
+                "FML supports only a default value",
+            );
         }
         NoRuleFires::Undefined | NoRuleFires::Error => {}
     }
@@ -336,7 +344,10 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
 fn rule_base(paper: &mut Paper, block: &Rules<'_>, outputs: Kind) -> Element {
     let operators = block.operators;
     if block.activation != Activation::General {
-        let message = format!("the activation method of `{}` selects the rules that fire", block.name);
+        let message = format!(
+            "the activation method of `{}` selects the rules that fire",
+            block.name
+        );
         paper.loss("activation", message, "FML has no activation methods");
     }
     let [and, or, implication] = paper.operators(operators);
@@ -417,7 +428,10 @@ fn clause(proposition: &Proposition) -> Result<Element, &'static str> {
             let word = HEDGES
                 .iter()
                 .find(|(_, known): &&(_, Hedge)| *known == hedge);
-            clause.with("modifier", word.ok_or("has a hedge that FML does not support")?.0)
+            clause.with(
+                "modifier",
+                word.ok_or("has a hedge that FML does not support")?.0,
+            )
         }
         _ => return Err("has two hedges before a term"),
     };
