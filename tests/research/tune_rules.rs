@@ -123,7 +123,7 @@ struct Candidate {
     tuned: Votes,
     /// The risk of each row in %, by rules tuned without its vehicle.
     unknown: Vec<f64>,
-    /// These rules, for each fold.
+    /// The rules that were tuned without a fold, for each fold.
     left_out: Vec<Votes>,
 }
 

@@ -244,7 +244,7 @@ fn a_watch_without_any_purpose_ends() {
     let address = address.split_once(',').unwrap().0.to_owned();
     drop(lines);
     let socket = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
-    // It prints something for each vehicle, and then notices that the pipe is closed.
+    // `watch` prints something for each vehicle, and so notices that the pipe is closed.
     for system in (1..=250).cycle().take(1000) {
         let beat = Sender::new(1).packet(
             Version::V2,

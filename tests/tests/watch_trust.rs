@@ -142,7 +142,7 @@ fn only_one_of_two_watches_sends() {
     );
     assert!(vehicle.heard.values("FR_RISK").len() > 2);
     assert_eq!(vehicle.heard_elsewhere.values("FR_RISK").len(), 0);
-    // Both report the risk.
+    // Both watches report the risk.
     for said in [&first, &second] {
         assert_eq!(said.one("left_in_air")["verdict"], "GOOD");
         valid(said);

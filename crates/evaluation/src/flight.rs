@@ -221,8 +221,8 @@ impl Record {
 
 /// The steps of a flight, without scores yet, at the times for which the outcome is known.
 ///
-/// They are in the judged time of the log's header. Without one they are in the times in the air, from 2 s after
-/// take-off to 1 s before landing, and end at an upset.
+/// The steps are in the judged time of the log's header. If the header has none, they are in the times in the air, from
+/// 2 s after take-off to 1 s before landing, and end at an upset.
 fn steps(flight: &Flight, upsets: &[Upset], errors: &ErrorRecord, horizon_s: f64) -> Vec<Step> {
     let settings = VerdictSettings {
         quiet_after_take_off_s: FIRST_STEP_S,

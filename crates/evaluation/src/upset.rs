@@ -20,7 +20,7 @@ const FLIP_S: f64 = 2.0;
 /// An alarm counts as before an upset if it was on within this time before it, in seconds.
 const BEFORE_S: f64 = 10.0;
 
-/// It counts as just after the upset if it was raised within this time after it, in seconds.
+/// An alarm counts as just after an upset if it was raised within this time after it, in seconds.
 const AFTER_S: f64 = 1.0;
 
 /// How an upset was found by alarms.

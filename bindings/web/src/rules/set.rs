@@ -121,7 +121,7 @@ impl RuleSet {
         RuleSet::of(&super::text::document(text))
     }
 
-    /// Its name, inputs, outputs and rules, as JSON.
+    /// The rule set's name, inputs, outputs and rules, as JSON.
     pub fn about(&self) -> Result<String, JsError> {
         let model = self.model();
         let outputs = model.outputs.iter().map(|output| &output.variable);

@@ -24,8 +24,8 @@ const THRUST: &str = "vehicle_thrust_setpoint";
 const DOWN: usize = 2;
 /// The assumption if the motor commands are not logged.
 const COMPUTED: &str = "motor commands computed from torque and thrust set points: only estimates while motors are at their limits";
-/// Both are published together; a thrust that is older than the torque by more than this, in seconds, does not belong
-/// to it.
+/// Thrust and torque are published together. A thrust older than the torque by more than this, in seconds, does not
+/// belong to the torque.
 const LATE_THRUST_S: f64 = 0.1;
 /// The maximum number of topic announcements; a log of PX4 has some hundreds.
 const MOST_ANNOUNCED: usize = 4096;
