@@ -1,4 +1,4 @@
-// Builds the page: target/web/page for a server, and crates/cli/page/studio.html, one file, which `flagred studio` holds.
+// Builds the page: target/web/page for a server, and the single file crates/cli/page/studio.html for `flagred studio`.
 
 import { createHash } from 'node:crypto';
 import { copyFile, mkdir, readFile, readdir, rm, writeFile } from 'node:fs/promises';
@@ -26,7 +26,7 @@ const common = {
   ),
 };
 
-/** What the page may load. Pictures are made by the page itself. */
+/** The policy that limits what the page may load. The page makes its pictures itself. */
 const policy = (scripts, styles, workers) =>
   [
     "default-src 'none'",
@@ -67,17 +67,17 @@ async function served(template) {
   });
 }
 
-/** All in one file. Scripts and styles are named in the policy by their hashes; the worker and the module are data. */
+/** Writes all into one file. The policy lists scripts and styles by hash; the worker and the modules are data. */
 async function oneFile(template) {
   const bundled = async (entry, options) => {
     const { outputFiles } = await build({ ...common, entryPoints: [entry], outdir: page, write: false, ...options });
     return (name) => outputFiles.find((file) => file.path.endsWith(name)).text;
   };
   const part = await bundled('src/main.ts');
-  // Not every browser runs a worker from a blob as a module, so the worker is given what it would otherwise load by its
-  // address.
+  // Not every browser runs a worker from a blob as a module, so the worker contains all that it would otherwise load
+  // from an address.
   const worker = await bundled('src/worker.ts', { format: 'iife', define: { 'import.meta.url': '""' } });
-  // Neither may end the element that it stands in.
+  // The script must not contain text that ends its own `<script>` element.
   const script = part('main.js').replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
   const style = part('main.css').trim();
   const data = (id, bytes) => `<script type="application/octet-stream" id="${id}">${bytes.toString('base64')}</script>`;

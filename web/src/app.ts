@@ -6,18 +6,18 @@ import type { Engine } from './engine';
 export interface BackingFile {
   name: string;
   readOnly: boolean;
-  /** Reads its current text. */
+  /** Reads the current text of the file. */
   read(): Promise<string>;
-  /** Writes it if the file still contains `over`, a text that was read or written before. */
+  /** Writes the file if it still contains `over`, a text that was read or written before. */
   write(text: string, over: string): Promise<void>;
 }
 
 export interface App {
   /** The worker of the room. */
   engine: Engine;
-  /** A worker for rows of data; its module is loaded now. */
+  /** Creates a worker for rows of data, and loads its module. */
   data(): Engine;
-  /** What the address says of the room. */
+  /** The parameters of the room in the address. */
   parameters(): URLSearchParams;
   /** Sets the parameters of the room in the address. */
   navigate(parameters: URLSearchParams): void;
@@ -26,7 +26,7 @@ export interface App {
   file: BackingFile | undefined;
 }
 
-/** An opened room; it is only hidden while another is shown. */
+/** An opened room. It stays open, hidden, while another room is shown. */
 export interface Room {
   /** Called when the address changes, or when the room is shown again. */
   shown?(parameters: URLSearchParams): void;

@@ -15,9 +15,9 @@ export class Cancelled extends Error {
 export interface Engine {
   /** Runs a call in the worker; calls are answered in order. */
   call<K extends Name>(call: K, ...args: Arguments<K>): Promise<Answer<K>>;
-  /** As `call`, and hears how far it is, and what was found so far. */
+  /** As `call`, but also reports the progress and the best result so far. */
   follow<K extends Name>(progress: (share: number, found?: unknown) => void, call: K, ...args: Arguments<K>): Promise<Answer<K>>;
-  /** Gives up whatever runs, and begins with an empty worker. */
+  /** Cancels all calls, and starts with a new worker. */
   restart(): void;
   /** Called when a new worker replaced one that had a state. */
   onRestart?: () => void;
@@ -38,7 +38,7 @@ export function engine(create: () => Worker, first: Promise<Begin>): Engine {
   function begin(): Worker {
     const made = create();
     made.onmessage = ({ data }: MessageEvent<Reply>) => answer(data);
-    // The next one would fail too, so it is created only with the next call.
+    // A new worker would probably fail too, so it is created only with the next call.
     made.onerror = (event) => drop(new Trapped(event.message || 'the worker did not start'));
     return made;
   }
@@ -47,7 +47,7 @@ export function engine(create: () => Worker, first: Promise<Begin>): Engine {
 
   async function send(id: number, call: string, args: unknown[]): Promise<void> {
     const given = await first;
-    // It may have been cancelled meanwhile.
+    // The call may have been cancelled meanwhile.
     if (!waiting.has(id)) return;
     worker ??= begin();
     if (begun !== worker) {

@@ -16,7 +16,7 @@ export async function backingFile(): Promise<BackingFile | undefined> {
   let tag = '';
   // The editor ends lines with \n only; the line ends of the file are preserved.
   let end = '\n';
-  // One after another, so that no answer is older than what was written.
+  // Requests are made one after another, so that no answer is older than what was written.
   let last: Promise<unknown> = Promise.resolve();
   const inTurn = <T>(run: () => Promise<T>): Promise<T> => {
     const next = last.then(run, run);

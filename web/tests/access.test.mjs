@@ -1,4 +1,4 @@
-// Both rooms for readers of every kind: axe-core finds nothing serious or critical, light and dark, phone and desktop.
+// Accessibility of both rooms: axe-core finds nothing serious or critical, light and dark, on a phone and a desktop.
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
@@ -28,7 +28,7 @@ const sizes = { phone: { width: 390, height: 844 }, desktop: { width: 1280, heig
 
 const { chromium, server } = await opened();
 
-/** What is wrong, a line each: which rule, where, and why. */
+/** The problems, one a line: which rule, where, and why. */
 async function violations(page) {
   await page.evaluate(axe);
   const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));

@@ -1,4 +1,4 @@
-// Firefox by WebDriver BiDi, which it speaks itself: no driver is needed beside it.
+// Controls Firefox by WebDriver BiDi, which Firefox supports without a driver.
 
 import { spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
@@ -9,7 +9,7 @@ import WebSocket from 'ws';
 /** The path of Firefox; `undefined` if the machine has none. */
 export const executable = [process.env.FIREFOX, '/usr/bin/firefox-esr', '/usr/bin/firefox'].find((path) => path && existsSync(path));
 
-/** How long a page has until a condition holds. */
+/** How long a test waits for a condition. */
 const PATIENCE_MS = 90_000;
 
 /** Starts Firefox with a new profile, and returns the address of its remote agent. */
@@ -28,7 +28,7 @@ async function start(profile) {
   return { browser, address };
 }
 
-/** Opens a page in a Firefox of its own. */
+/** Opens a page in a new instance of Firefox. */
 export async function firefox(page) {
   const profile = mkdtempSync(join(tmpdir(), 'flagred-firefox-'));
   const { browser, address } = await start(profile);
@@ -56,7 +56,7 @@ export async function firefox(page) {
   const [{ context }] = contexts;
   await send('browsingContext.navigate', { context, url: page, wait: 'complete' });
 
-  /** The value of an expression in the page, if it is a text, a number or a truth value. */
+  /** Evaluates an expression in the page; its value must be a string, a number or a boolean. */
   async function run(expression) {
     const target = { context };
     const { result, exceptionDetails } = await send('script.evaluate', { expression, target, awaitPromise: true });

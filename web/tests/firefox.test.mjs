@@ -1,4 +1,4 @@
-// Firefox, where there is one: both rooms open, compute and react, without a complaint on the console.
+// In Firefox, if it is installed, both rooms open, compute and react, without errors on the console.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -1,4 +1,4 @@
-// Damaged logs: whatever is in them, the page goes on, and says of each what the command line says.
+// Damaged logs: the page continues whatever they contain, and its results are those of the command line.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -11,7 +11,7 @@ const COUNT = 200;
 
 const { chromium, server } = await opened();
 
-/** Numbers from a seed: the generator of Lehmer. */
+/** Pseudo-random numbers from a seed: Lehmer's generator. */
 function random(seed) {
   let state = (seed * 2654435761) % 2147483647 || 1;
   return (below) => {
@@ -20,11 +20,11 @@ function random(seed) {
   };
 }
 
-/** A copy with some wounds: bytes overwritten, lost, repeated, added, or cut off. */
+/** A copy with some damage: bytes overwritten, lost, repeated, added, or cut off. */
 function damaged(bytes, below) {
   let copy = Buffer.from(bytes);
   for (let wounds = 1 + below(8); wounds > 0 && copy.length > 0; wounds--) {
-    // The beginning says what a log is: it is hit more often than its share.
+    // The beginning identifies the format, so it is damaged more often than other parts.
     const at = below(2) ? below(copy.length) : below(Math.min(copy.length, 4096));
     const piece = copy.subarray(at, at + 1 + below(64));
     switch (below(6)) {
@@ -47,8 +47,8 @@ function damaged(bytes, below) {
   return copy;
 }
 
-test(`${COUNT} damaged logs are assessed, or told why not, as on the command line`, { timeout: 900_000 }, async () => {
-  // A piece of the binary log that is long enough to fly, and one that is not.
+test(`${COUNT} damaged logs are assessed or refused as by the command line`, { timeout: 900_000 }, async () => {
+  // A piece of the binary log that is long enough to contain a flight, and one that is not.
   const steady = readFileSync(STEADY);
   const seeds = [
     ['bin', steady.subarray(0, 2_400_000)],
@@ -75,7 +75,7 @@ test(`${COUNT} damaged logs are assessed, or told why not, as on the command lin
     const document = documents.get(name);
     if (badge === 'error') {
       refused++;
-      assert.equal(document, undefined, `${name} is refused in the page alone`);
+      assert.equal(document, undefined, `${name} is refused only in the page`);
       await flights.row(name).locator('.log').click();
       const message = await page.locator('.message pre').textContent();
       const told = `error: ${message.replace('\nhelp: ', '\n  help: ')}\n`;
@@ -85,11 +85,11 @@ test(`${COUNT} damaged logs are assessed, or told why not, as on the command lin
     }
   }
   assert.ok(refused > 5 && refused < COUNT / 2, `${refused} are refused`);
-  // The reports of some, to the byte.
+  // For some logs the reports are compared byte for byte.
   for (const name of names.filter((name) => documents.has(name)).slice(0, 12)) {
     await flights.choose(name);
     const { content } = await flights.download('JSON');
-    assert.ok(content.equals((await command([join(there, name)], '--json')).out), `${name}: the JSON is another`);
+    assert.ok(content.equals((await command([join(there, name)], '--json')).out), `${name}: the JSON differs`);
   }
   assert.deepEqual(complaints, []);
   await context.close();

@@ -1,4 +1,4 @@
-// A log of 100 MB: read and assessed in seconds and in bounded memory, while the page stays free to move.
+// A log of 100 MB is read and assessed in seconds and in limited memory, and the page stays responsive meanwhile.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -15,7 +15,7 @@ const TRIES = 3;
 
 const { chromium, server } = await opened();
 
-/** A DataFlash log that goes on: its messages again and again, each time later. */
+/** A long DataFlash log: the messages of a short one, repeated with later times. */
 function longLog(bytes, length) {
   const lengths = new Map([[128, 89]]);
   const timed = new Set();
@@ -51,7 +51,7 @@ function longLog(bytes, length) {
   }
 }
 
-/** The most memory that a process of the browser which shows pages had, in kB. */
+/** The maximum memory of those processes of the browser that show pages, in kB. */
 async function peakMemory() {
   const session = await chromium.newBrowserCDPSession();
   const { processInfo } = await session.send('SystemInfo.getProcessInfo');
@@ -86,7 +86,7 @@ async function measure(path) {
   const before = await page.evaluate(() => (window.tasks.splice(0), performance.mark('measured').startTime));
   const flights = room(page);
   await flights.take(path);
-  // The questions of the test are tasks too: short ones are asked.
+  // The queries of the test are tasks too, so they are short.
   const { badge, now } = await page.evaluate(async () => {
     const badge = () => document.querySelector('.logs .badge')?.textContent;
     while (!badge() || badge() === '…') await new Promise((resolve) => setTimeout(resolve, 20));
@@ -94,7 +94,7 @@ async function measure(path) {
   });
   const assessed_s = (now - before) / 1000;
   await page.waitForTimeout(1500);
-  // What one does then: move the cursor, zoom, look at all of it.
+  // Then the cursor is moved, and the view zoomed in and out again.
   const area = () => document.querySelector('.report').shadowRoot.querySelector('.area').getBoundingClientRect().toJSON();
   const box = await page.evaluate(area);
   for (let i = 0; i <= 20; i++) await page.mouse.move(box.x + (box.width * i) / 20, box.y + 20);

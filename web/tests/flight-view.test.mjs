@@ -1,4 +1,4 @@
-// What the flight room shows and where: the verdict first, then signals and track beside the risk, many logs as a table, and on paper.
+// What the flight room shows, and where: the verdict first, then signals and track, a table of many logs, and printing.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -32,7 +32,7 @@ for (const [device, options, most_px] of [
   ['desktop', {}, 120],
   ['phone', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }, 160],
 ]) {
-  test(`the verdict and its sentence come first, ${device}`, async () => {
+  test(`the verdict and its explanation come first, ${device}`, async () => {
     const { page, context } = await withLogs([GUST], options);
     const places = await page.evaluate(() => {
       const root = document.querySelector('.report').shadowRoot;
@@ -63,7 +63,7 @@ test('the highest risk is one number', async () => {
   await context.close();
 });
 
-test('many logs are a table that is sorted by its columns', async () => {
+test('several logs are shown in a table that can be sorted by its columns', async () => {
   const there = folder({ 'a-steady.BIN': readFileSync(STEADY), 'b-gust.csv': gustCsv(), 'c-no.log': 'nothing' });
   const { page, context, complaints } = await withLogs(['a-steady.BIN', 'b-gust.csv', 'c-no.log'].map((name) => `${there}/${name}`));
   const names = () => page.locator('.logs .name').allTextContents();
@@ -120,7 +120,7 @@ test('signals are plotted below the risk, with their values at the cursor', asyn
   await page.mouse.move(box.x + box.width * 0.3, box.y + 20);
   await page.waitForTimeout(300);
   await check();
-  // A link has them, and a stretch is drawn anew.
+  // A link contains the signals, and they are redrawn for a stretch.
   const again = await withLogs([GUST], {}, new URL(page.url()).hash);
   await again.page.waitForFunction(() => document.querySelector('.report').shadowRoot.querySelectorAll('[data-part=signals] .panel').length === 5);
   await again.page.getByRole('button', { name: 'Zoom in' }).click();
@@ -132,7 +132,7 @@ test('signals are plotted below the risk, with their values at the cursor', asyn
   await context.close();
 });
 
-test('the cursor keeps the pace of the screen over five signals', async (told) => {
+test('the cursor moves with every frame over five signals', async (told) => {
   const { page, context } = await withLogs([GUST], {}, `#/flight?signals=${FIVE.join()}`);
   await page.waitForFunction(() => document.querySelector('.report').shadowRoot.querySelectorAll('[data-part=signals] .panel').length === 5);
   await page.waitForTimeout(500);
@@ -153,7 +153,7 @@ test('the cursor keeps the pace of the screen over five signals', async (told) =
   await context.close();
 });
 
-test('the track is where the log says, and the cursor is on it', async () => {
+test('the track has the positions of the log, and the cursor is on it', async () => {
   const { page, room, context } = await withLogs([STEADY]);
   const csv = convert(STEADY);
   const [north, east] = ['latitude_deg', 'longitude_deg'].map((name) => column(csv, name).filter(([, value]) => value !== 0 && Number.isFinite(value)));
@@ -177,7 +177,7 @@ test('the track is where the log says, and the cursor is on it', async () => {
   await context.close();
 });
 
-test('the parameters are folded, with a search', async () => {
+test('the parameters are collapsed, and can be searched', async () => {
   const { page, context } = await withLogs([STEADY]);
   const fold = page.locator('.report details.searched');
   assert.equal(await fold.locator('tr').first().isVisible(), false);
@@ -190,7 +190,7 @@ test('the parameters are folded, with a search', async () => {
   await context.close();
 });
 
-test('on paper there is the report alone, in colour', async () => {
+test('only the report is printed, in colour', async () => {
   const { page, context } = await withLogs([GUST]);
   await page.emulateMedia({ media: 'print' });
   for (const control of ['body > header', '.tools', '.timebar', '.moment', '.what-if']) {

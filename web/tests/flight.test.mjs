@@ -1,4 +1,4 @@
-// The flight room says of every log what the command line says, to the byte, and its cursor, zoom and thresholds show why.
+// The results of the flight room are those of the command line, byte for byte; its cursor, zoom and thresholds work.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -23,7 +23,7 @@ async function withLog(path, hash) {
   return opened;
 }
 
-test('every log has the documents of the command line', { timeout: 600_000 }, async () => {
+test('the documents of every log are those of the command line', { timeout: 600_000 }, async () => {
   const { page, room, context, complaints } = await open();
   for (const path of logs()) {
     const name = basename(path);
@@ -37,7 +37,7 @@ test('every log has the documents of the command line', { timeout: 600_000 }, as
     } else {
       await room.choose(name);
       const { content } = await room.download('JSON');
-      assert.ok(content.equals(out), `${name}: the JSON is another`);
+      assert.ok(content.equals(out), `${name}: the JSON differs`);
       assert.equal(badge, JSON.parse(out).verdict);
     }
     await room.remove(name);
@@ -50,10 +50,10 @@ test('report, table and flight CSV are those of the command line', async () => {
   for (const path of [STEADY, GUST]) {
     const { room, context } = await withLog(path);
     const [html, csv] = await Promise.all(['--html', '--csv'].map(async (kind) => (await command([path], ...(kind === '--html' ? [kind, '-'] : [kind]))).out));
-    assert.ok((await room.download('Report (HTML)')).content.equals(html), 'the report is another');
-    assert.ok((await room.download('Steps (CSV)')).content.equals(csv), 'the table is another');
+    assert.ok((await room.download('Report (HTML)')).content.equals(html), 'the report differs');
+    assert.ok((await room.download('Steps (CSV)')).content.equals(csv), 'the table differs');
     const { name, content } = await room.download('Flight CSV');
-    assert.ok(content.equals(convert(path)), 'the flight CSV is another');
+    assert.ok(content.equals(convert(path)), 'the flight CSV differs');
     assert.match(name, /^(steady|gust)\.csv$/);
     await context.close();
   }
@@ -90,14 +90,14 @@ test('a cursor shows the values of all charts and the rules that fire', async ()
   const pointed = await room.time();
   assert.ok(Math.abs(pointed - (49 + 185.1 / 4)) < 1, `${pointed} s`);
   await check(pointed);
-  // The flight's point on the map is where its inputs are.
+  // The point on the map is at the values of the inputs.
   const here = await page.evaluate(() => document.querySelector('.report').shadowRoot.querySelector('.here').getAttribute('d'));
   assert.match(here, /^M[\d.]+ [\d.]+h0$/);
   assert.match(page.url(), /t=9\d\.\d\d/);
   await context.close();
 });
 
-test('a stretch that is selected is drawn anew, with what thinning left out', async () => {
+test('a selected stretch is redrawn, with points that thinning left out', async () => {
   const { page, room, context } = await withLog(STEADY);
   const points = () =>
     page.evaluate(() => {
@@ -117,7 +117,7 @@ test('a stretch that is selected is drawn anew, with what thinning left out', as
   assert.ok(Math.abs(Number(start) - (48.8 + 129.1 / 2)) < 0.5, `it starts at ${start} s`);
   await page.waitForTimeout(400);
   assert.match(page.url(), /from=113\.\d\d&to=119\.\d\d/);
-  // The slider leads elsewhere, with as much to see.
+  // The slider shows another stretch of the same length.
   await page.getByRole('slider', { name: 'Time' }).focus();
   await page.keyboard.press('Home');
   await room.settled();
@@ -128,12 +128,12 @@ test('a stretch that is selected is drawn anew, with what thinning left out', as
   await room.settled();
   assert.equal((await points())[1], whole);
   assert.ok(await page.getByRole('button', { name: 'Zoom out' }).isDisabled());
-  // By the wheel, around the pointer; a link to what is shown leads there.
+  // The wheel zooms around the pointer; a link to the stretch shows it again.
   await page.mouse.move(box.x + box.width * 0.5, box.y + 30);
   await page.keyboard.down('Control');
   for (let i = 0; i < 4; i++) await page.mouse.wheel(0, -200);
   await page.keyboard.up('Control');
-  // The browser hands wheel events on when it draws the next frame.
+  // The browser delivers wheel events when it draws the next frame.
   await page.waitForFunction(
     (start) => document.querySelector('.report').shadowRoot.querySelector('.panel').dataset.start !== start,
     whole,
@@ -166,7 +166,7 @@ test('two fingers zoom, and keys move the cursor', async () => {
   await touch('touchEnd');
   await room.settled();
   const [start, length] = await area.evaluate((element) => [element.closest('.panel').dataset.start, element.closest('.panel').dataset.length].map(Number));
-  // What was a tenth of the chart is four tenths of it.
+  // A tenth of the chart has become four tenths of it.
   assert.ok(Math.abs(length - 185.15 / 4) < 3, `${length} s`);
   assert.ok(Math.abs(start + length / 2 - (49 + 185.15 / 2)) < 3, `from ${start} s`);
   const shown = room.time;
@@ -192,7 +192,7 @@ test('other thresholds give the verdict of a profile that has them', async () =>
   await field('WARN, reached for, s').fill('300');
   await room.verdict('GOOD');
   const { content } = await room.download('JSON');
-  // The report holds the profile as it is now: the command line says the same with it.
+  // The report contains the changed profile, with which the command line gives the same verdict.
   const report = (await room.download('Report (HTML)')).content.toString();
   const [, profile] = /<h2>Profile<\/h2><pre>([^]*?)<\/pre>/.exec(report);
   assert.match(profile, /fail: \{risk: 95, after_s: 0.3, until: \{risk: 65\}\}/);
@@ -200,8 +200,8 @@ test('other thresholds give the verdict of a profile that has them', async () =>
   const text = profile.replaceAll('&gt;', '>').replaceAll('&lt;', '<').replaceAll('&quot;', '"').replaceAll('&amp;', '&');
   const there = folder({ [basename(GUST)]: readFileSync(GUST), 'tried.yaml': text });
   const { out } = await command([`${there}/${basename(GUST)}`], '--json', '--profile', 'tried.yaml');
-  assert.ok(content.equals(out), 'the command line says something else with this profile');
-  // The link has the thresholds, too.
+  assert.ok(content.equals(out), 'the command line gives another result with this profile');
+  // The link contains the thresholds, too.
   await page.waitForTimeout(400);
   const again = await withLog(GUST, new URL(page.url()).hash);
   assert.equal(await again.room.badge(basename(GUST)), 'GOOD');
@@ -215,7 +215,7 @@ test('other thresholds give the verdict of a profile that has them', async () =>
   await context.close();
 });
 
-test('a profile from a file is used, and one with errors is told and changes nothing', async () => {
+test('a profile from a file is used; one with errors is reported and changes nothing', async () => {
   const { page, room, context } = await withLog(GUST);
   const profile = readFileSync(new URL('../../rules/profiles/multirotor.yaml', import.meta.url), 'utf8');
   const choose = (name, text) => page.getByLabel('Profile from a file').setInputFiles({ name, mimeType: 'text/yaml', buffer: Buffer.from(text) });
@@ -225,14 +225,14 @@ test('a profile from a file is used, and one with errors is told and changes not
   await choose('calm.yaml', profile.replace('fail: {risk: 80', 'fail: {risk: 99'));
   await room.verdict('WARN');
   assert.ok(await page.locator('.message').isHidden());
-  // With a rule set beside it, as the command line finds one.
+  // A profile whose rule set is chosen too, as the command line finds it next to the profile.
   const rules = readFileSync(new URL('../../rules/flagred.yaml', import.meta.url), 'utf8').replace('unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_high', 'unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_low');
   const there = folder({ [basename(GUST)]: readFileSync(GUST), 'mine.yaml': profile.replace('rules: flagred ', 'rules: mild.yaml '), 'mild.yaml': rules });
   await page.getByLabel('Profile from a file').setInputFiles([`${there}/mild.yaml`, `${there}/mine.yaml`]);
   const { out } = await command([`${there}/${basename(GUST)}`], '--json', '--profile', 'mine.yaml');
   await room.verdict(JSON.parse(out).verdict);
   await room.settled();
-  assert.ok((await room.download('JSON')).content.equals(out), 'the JSON is another');
+  assert.ok((await room.download('JSON')).content.equals(out), 'the JSON differs');
   await context.close();
 });
 
@@ -252,7 +252,7 @@ test('flights are compared as the command line compares them', async () => {
     ['JSON', ['--json']],
   ]) {
     const { content } = await room.download(words);
-    assert.ok(content.equals((await command(paths, ...args)).out), `${words} is another`);
+    assert.ok(content.equals((await command(paths, ...args)).out), `${words} differs`);
   }
   await page.getByRole('button', { name: 'Zoom in' }).click();
   await room.settled();
@@ -318,9 +318,9 @@ test('nothing in a log is markup', async () => {
   await context.close();
 });
 
-test('a log that is read can be given up, and the next one is read', async () => {
+test('reading of a log can be cancelled, and the next one is read', async () => {
   const { page, room, context } = await open();
-  // Long enough to be caught: the same rows again and again, at later times.
+  // The log is long enough to be cancelled during reading: the same rows repeated at later times.
   const [head, rows] = gustCsv().toString().split(/(?<=t_s,.*\n)/);
   const lines = rows.trimEnd().split('\n');
   const parts = Array.from({ length: 60 }, (_, i) => lines.map((line) => line.replace(/^[\d.]+/, (t) => String(Number(t) + 200 * i))).join('\n'));
@@ -332,7 +332,7 @@ test('a log that is read can be given up, and the next one is read', async () =>
   await context.close();
 });
 
-test('the page as one file reads logs, too', async () => {
+test('the page as a single file reads logs, too', async () => {
   const { page, context, complaints } = await tab(chromium, `${pathToFileURL(studio).href}#/flight?example=gust`);
   const flights = room(page);
   assert.equal(await flights.badge('octocopter-in-a-gust.csv.gz'), 'FAIL');
@@ -343,7 +343,7 @@ test('the page as one file reads logs, too', async () => {
   await context.close();
 });
 
-test('the room opens an example by its link, on a phone too', async () => {
+test('a link to the example opens it, on a phone too', async () => {
   const { page, room, context, complaints } = await open('#/flight?example=gust&t=100&from=90&to=120', {
     viewport: { width: 390, height: 844 },
     hasTouch: true,

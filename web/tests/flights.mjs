@@ -1,4 +1,4 @@
-// What the tests of the flight room share: logs, the command line's words about them, and the room in Chromium.
+// Shared by the tests of the flight room: logs, the command line's output for them, and the room in Chromium.
 
 import { execFile, execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
@@ -12,7 +12,7 @@ const flagred = join(repository, 'target/debug/flagred');
 export const STEADY = join(repository, 'examples/flights/steady.BIN');
 export const GUST = join(repository, 'web/src/flight/gust.csv.gz');
 
-/** Every log that the repository ships, and those beside it where the developers' data is there. */
+/** All logs in the repository, and those of the developers' data if that is present. */
 export function logs() {
   const shared = process.env.FLAGRED_SHARED;
   const folders = shared ? ['flights', 'logs'].map((name) => join(shared, 'data', name)) : [];
@@ -20,14 +20,14 @@ export function logs() {
   return [STEADY, GUST, ...found.filter((path) => /\.(bin|log|ulg|tlog)$/i.test(path) && path !== STEADY)];
 }
 
-/** A folder for what a test writes, with files in it. */
+/** A temporary folder with files. */
 export function folder(files = {}) {
   const made = mkdtempSync(join(tmpdir(), 'flagred-'));
   for (const [name, content] of Object.entries(files)) writeFileSync(join(made, name), content);
   return made;
 }
 
-/** What the command line says of logs in a folder, called by their names alone as in a browser. */
+/** The command line's output for logs in a folder. They are named without a path, as in a browser. */
 export async function command(paths, ...args) {
   const names = paths.map((path) => basename(path));
   const options = { cwd: dirname(paths[0]), maxBuffer: 1 << 30, encoding: 'buffer' };
@@ -52,10 +52,10 @@ export function room(page) {
     async take(...paths) {
       await page.locator('.drop input').setInputFiles(paths);
     },
-    /** The badge of a log, once it has one. */
+    /** Waits for the badge of a log. */
     async badge(name) {
       const badge = row(name).locator('.badge:not(:text("…"))');
-      // The table is hidden while it has one flight only.
+      // The table is hidden while it contains only one flight.
       await badge.waitFor({ timeout: 120_000, state: 'attached' });
       return badge.textContent();
     },
@@ -76,7 +76,7 @@ export function room(page) {
       const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: words }).click()]);
       return { name: file.suggestedFilename(), content: await readFile(await file.path()) };
     },
-    /** Waits until the report is drawn and every value stands at its curve. */
+    /** Waits until the report is drawn and every curve has its value. */
     async settled() {
       await page.locator('.report output').first().waitFor();
       await page.waitForFunction(() => {

@@ -1,4 +1,4 @@
-// Without a network: the page after its first load, and the one file from the disk. It computes, and complains of nothing.
+// Without a network, the page works without errors after its first load, and so does the single file from the disk.
 
 import assert from 'node:assert/strict';
 import { cp, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
@@ -13,7 +13,7 @@ let chromium;
 before(async () => (chromium = await browser()));
 after(() => chromium.close());
 
-/** Does something in each room. */
+/** Uses each room. */
 async function work(page) {
   for (const [room, fill] of Object.entries(rooms)) {
     await page.getByRole('navigation').getByRole('link', { name: room }).click();
@@ -22,7 +22,7 @@ async function work(page) {
   }
 }
 
-test('what was loaded once works without a network', { timeout: 120_000 }, async (t) => {
+test('a page that was loaded once works without a network', { timeout: 120_000 }, async (t) => {
   const server = await serve();
   const { page, context, complaints } = await tab(chromium, server.address);
   t.after(() => context.close());
@@ -34,8 +34,8 @@ test('what was loaded once works without a network', { timeout: 120_000 }, async
   assert.deepEqual(complaints, []);
 });
 
-/** Servers tell browsers to keep files for a while: what is kept must not get into the next build. */
-test('another build takes the place of the one that was loaded', { timeout: 120_000 }, async (t) => {
+/** Browsers keep files for as long as servers tell them to; old files must not become a part of the next build. */
+test('another build replaces the one that was loaded', { timeout: 120_000 }, async (t) => {
   const folder = await mkdtemp(join(tmpdir(), 'flagred-page-'));
   t.after(() => rm(folder, { recursive: true }));
   await cp(built, folder, { recursive: true });
@@ -55,14 +55,14 @@ test('another build takes the place of the one that was loaded', { timeout: 120_
   const colour = () => page.evaluate(() => getComputedStyle(document.getElementById('build') ?? document.body).color);
   for (let tries = 0; (await colour()) !== 'rgb(1, 2, 3)'; tries++) {
     assert.ok(tries < 10, 'the old build stays');
-    // As the browser does some time after a load.
+    // The browser does this itself some time after a load.
     await page.evaluate(async () => (await navigator.serviceWorker.getRegistration()).update());
     await page.waitForTimeout(500);
     await page.reload();
   }
 });
 
-test('the one file works from the disk and asks nobody for anything', { timeout: 120_000 }, async (t) => {
+test('the single file works from the disk and makes no requests', { timeout: 120_000 }, async (t) => {
   const context = await chromium.newContext();
   t.after(() => context.close());
   await context.setOffline(true);
@@ -77,7 +77,7 @@ test('the one file works from the disk and asks nobody for anything', { timeout:
   assert.deepEqual([...new Set(asked)].filter((protocol) => !['file:', 'blob:', 'data:'].includes(protocol)), []);
 });
 
-test('a policy that is broken would be seen', async (t) => {
+test('a violation of the policy would be noticed', async (t) => {
   const { page, context, complaints } = await tab(chromium, pathToFileURL(studio).href);
   t.after(() => context.close());
   await page.getByRole('heading', { level: 1 }).first().waitFor();

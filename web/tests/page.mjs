@@ -1,4 +1,4 @@
-// What the tests of the page share: a server with the page's own policy, and Chromium.
+// Shared by the tests of the page: a server with the page's own policy, and Chromium.
 
 import { createServer } from 'node:http';
 import { readFile } from 'node:fs/promises';
@@ -20,7 +20,7 @@ const types = {
   '.webmanifest': 'application/manifest+json',
 };
 
-/** Serves the page as any server of files would. `close` ends it, as a network does that is gone. */
+/** Serves the page as any file server would. `close` ends the server, as if the network were gone. */
 export async function serve(folder = page, headers = {}) {
   const server = createServer(async (request, response) => {
     const path = normalize(decodeURIComponent(new URL(request.url, 'http://page').pathname));
@@ -36,7 +36,7 @@ export async function serve(folder = page, headers = {}) {
   };
 }
 
-/** Chromium, as the machine has it. */
+/** Starts the installed Chromium. */
 export async function browser() {
   const known = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
   const executablePath = known.find((path) => path && existsSync(path));
@@ -55,7 +55,7 @@ export async function browser() {
   });
 }
 
-/** A page whose errors and broken policies fail the test that asks for them. */
+/** Opens a page. `complaints` receives its errors and warnings, such as violations of the policy. */
 export async function tab(chromium, address, options = {}) {
   const context = await chromium.newContext(options);
   const made = await context.newPage();
@@ -68,7 +68,7 @@ export async function tab(chromium, address, options = {}) {
   return { page: made, context, complaints };
 }
 
-/** Chromium and the page on a server, for the tests of a file; gone when they are done. */
+/** Chromium and the page on a server, for the tests of a file; both are closed after the tests. */
 export async function opened() {
   const chromium = await browser();
   const server = await serve();
@@ -79,5 +79,5 @@ export async function opened() {
   return { chromium, server };
 }
 
-/** Whether the clock on the wall is held against the page, which only a quiet machine can keep to; else it is told. */
+/** Whether times are asserted, which is only reliable on an idle machine; otherwise they are only reported. */
 export const isTimed = process.env.FLAGRED_TIMED !== undefined;

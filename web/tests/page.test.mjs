@@ -1,4 +1,4 @@
-// The page around the rooms: it starts under its policy, from a server and as one file, and tells defects.
+// The page around the rooms: it starts under its policy, from a server and as a single file, and reports bugs.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -6,7 +6,7 @@ import { pathToFileURL } from 'node:url';
 import { gzipSync } from 'node:zlib';
 import { opened, studio, tab } from './page.mjs';
 
-/** What the first load of the page may take, gzipped. */
+/** The maximum size of the first load of the page, gzipped. */
 const MOST_BYTES = 1_000_000;
 
 const { chromium, server } = await opened();
@@ -42,7 +42,7 @@ for (const room of ['flight', 'rules']) {
   });
 }
 
-test('a policy without inline code holds for the page', async () => {
+test('the policy of the page forbids inline code', async () => {
   const { page, context } = await tab(chromium, server.address);
   const policy = await page.locator('meta[http-equiv="Content-Security-Policy"]').getAttribute('content');
   assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);

@@ -1,4 +1,4 @@
-// Defects of flagred: a panic in a worker is told with its words and the page goes on; a worker that cannot start is told.
+// Bugs of flagred: the page reports a panic in a worker and continues, and reports a worker that cannot start.
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
@@ -22,7 +22,7 @@ async function defective(t, room, name) {
 
 const told = (page) => page.getByText(/panicked at .*lib\.rs/).first().waitFor({ timeout: 20_000 });
 
-test('the room for flights tells a panic and goes on', { timeout: 120_000 }, async (t) => {
+test('the room for flights reports a panic and continues', { timeout: 120_000 }, async (t) => {
   const page = await defective(t, 'flight', 'flight_writeCsv');
   await flight(page);
   const ask = async (words) => {
@@ -35,7 +35,7 @@ test('the room for flights tells a panic and goes on', { timeout: 120_000 }, asy
   assert.equal(JSON.parse(await readFile(await file.path(), 'utf8')).verdict, 'FAIL');
 });
 
-test('the room for rules tells a panic and goes on', { timeout: 120_000 }, async (t) => {
+test('the room for rules reports a panic and continues', { timeout: 120_000 }, async (t) => {
   const page = await defective(t, 'rules', 'ruleset_termsSvg');
   await rules(page);
   await page.getByLabel('Download').selectOption({ label: 'Terms as SVG' });
@@ -45,7 +45,7 @@ test('the room for rules tells a panic and goes on', { timeout: 120_000 }, async
   await page.waitForFunction((before) => document.querySelector('.why').textContent !== before, before);
 });
 
-test('a worker that cannot start is told, and not tried without end', { timeout: 60_000 }, async (t) => {
+test('a worker that cannot start is reported, and not restarted forever', { timeout: 60_000 }, async (t) => {
   const { page, context } = await tab(chromium, 'about:blank', { serviceWorkers: 'block' });
   t.after(() => context.close());
   let begun = 0;
@@ -54,5 +54,5 @@ test('a worker that cannot start is told, and not tried without end', { timeout:
   await page.goto(server.address);
   await page.getByText('the worker did not start').waitFor();
   await page.waitForTimeout(1000);
-  assert.ok(begun <= 3, `${begun} workers were begun`);
+  assert.ok(begun <= 3, `${begun} workers were started`);
 });

@@ -1,9 +1,9 @@
-// A compiled module with a defect: one of its functions panics, whatever it is asked.
+// A compiled module with a bug: one of its functions always panics.
 
 const EXPORTS = 7;
 const CODE = 10;
 
-/** A number in LEB128 and where it ends. */
+/** Reads a number in LEB128; returns it and the position after it. */
 function number(bytes, at) {
   for (let value = 0, shift = 0; ; shift += 7) {
     const byte = bytes[at++];
@@ -16,7 +16,7 @@ function leb(value) {
   return value < 0x80 ? [value] : [(value & 0x7f) | 0x80, ...leb(value >> 7)];
 }
 
-/** Where each section begins, by its number. */
+/** The start of each section, by its number. */
 function sections(bytes) {
   const found = new Map();
   for (let at = 8; at < bytes.length; ) {
@@ -52,7 +52,7 @@ export function panicking(module, name) {
     const [size, start] = number(bytes, at);
     at = start + size;
     if (skip > 0) continue;
-    // No locals; i32.const 1, i32.const 0 (an empty text), call, unreachable; nops as long as the function was; end.
+    // No locals; i32.const 1, i32.const 0 (an empty text), call, unreachable; nops up to the old length; end.
     const body = [0x00, 0x41, 1, 0x41, 0, 0x10, ...leb(functions.get('panicNow')), 0x00];
     if (body.length >= size) throw new Error(`\`${name}\` is too short to panic`);
     bytes.fill(0x01, start, at).set(body, start);

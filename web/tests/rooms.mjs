@@ -1,4 +1,4 @@
-// The rooms with something in them, as their users see them.
+// The rooms with content, as users see them.
 
 /** The example of a flight, with its report. */
 export async function flight(page) {

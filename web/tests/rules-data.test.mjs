@@ -1,4 +1,4 @@
-// Rows of data beside the rules: the error is that of the command line, and rules and numbers come from the rows.
+// Rows of data: the error is that of the command line, and rules and numbers are learned from the rows.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -11,7 +11,7 @@ import { opened, repository, tab } from './page.mjs';
 const { chromium, server } = await opened();
 const starter = await readFile(join(repository, 'crates/authoring/src/starter.yaml'), 'utf8');
 
-/** Rows of a fan that turns faster the hotter and damper it is; one has no value. */
+/** Rows of a fan whose speed grows with temperature and humidity; one row has no value. */
 function csv(rows) {
   const lines = ['temperature,humidity,fan'];
   for (let i = 0; i < rows; i++) {
@@ -39,7 +39,7 @@ const choose = (page, text, name = 'rows.csv') => page.getByLabel('Rows of data'
 const figure = async (page, words) => parseFloat((await page.locator('.data dl div', { hasText: words }).locator('dd').textContent()).replace('\u2212', '-'));
 const text = (page) => page.evaluate(() => localStorage.getItem('flagred.rules'));
 
-test('a table that is dropped gives the error of the command line', async (t) => {
+test('for a dropped table the error is that of the command line', async (t) => {
   const requests = [];
   const page = await room(t, requests);
   assert.ok(!requests.some((url) => url.endsWith('data.wasm')), 'the module for data is loaded on demand');
@@ -56,17 +56,17 @@ test('a table that is dropped gives the error of the command line', async (t) =>
   const folder = await mkdtemp(join(tmpdir(), 'flagred-rows-'));
   t.after(() => rm(folder, { recursive: true }));
   await writeFile(join(folder, 'rules.yaml'), starter);
-  // The command takes rows without a measured value for rows to evaluate.
+  // The command evaluates rows without a measured value, instead of leaving them out.
   await writeFile(join(folder, 'rows.csv'), rows.split('\n').filter((line) => !line.endsWith(',')).join('\n'));
   const said = execFileSync('sh', ['-c', `'${join(repository, 'target/debug/flagred')}' eval --suffix _model rules.yaml rows.csv 2>&1 >/dev/null`], { cwd: folder, encoding: 'utf8' });
   const [, rms, mean] = /RMS error ([\d.]+), mean error (-?[\d.]+)/.exec(said);
   assert.equal(await figure(page, 'RMS error'), Number(Number(rms).toPrecision(4)), said);
   assert.ok(Math.abs((await figure(page, 'Mean error')) - Number(mean)) < 1e-3, said);
-  // The worst row leads to its point.
+  // A click on the worst row explains its point.
   const cells = await page.locator('.data tbody tr').first().locator('td').allTextContents();
   await page.locator('.data tbody button').first().click();
   await page.waitForFunction((value) => Number(document.querySelector('[aria-label="temperature, as a number"]').value) === Number(value), cells[1]);
-  // The error follows the text.
+  // The error changes with the text.
   await page.getByRole('slider', { name: 'dry: top' }).focus();
   await page.keyboard.press('ArrowRight');
   await page.waitForFunction((rms) => !document.querySelector('.data dl').textContent.includes(rms), rms);
@@ -88,7 +88,7 @@ test('numbers are tuned in the text, and undo brings the old ones back', async (
   await page.waitForFunction((starter) => localStorage.getItem('flagred.rules') === starter, starter);
 });
 
-test('rules are learned, and a search that is stopped changes nothing that it did not find', async (t) => {
+test('rules are learned, and a search that is stopped uses only what it found', async (t) => {
   const page = await room(t);
   await choose(page, csv(300));
   await page.locator('.data dl').waitFor();
@@ -110,7 +110,7 @@ test('rules are learned, and a search that is stopped changes nothing that it di
   await page.locator('.data .state', { hasText: 'rules learned' }).waitFor({ timeout: 60_000 });
 });
 
-test('a table that does not fit is refused with what to do', async (t) => {
+test('a table that does not fit is refused with help', async (t) => {
   const page = await room(t);
   await choose(page, 'temperatur;humidity;fan\n1;2;3\n');
   await page.locator('.data .refusal', { hasText: 'no column `temperature`' }).waitFor();

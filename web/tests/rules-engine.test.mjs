@@ -1,4 +1,4 @@
-// The package in Chromium says of rule sets what the command line says: bits, documents, completions.
+// The results of the package in Chromium are those of the command line: bits, documents, completions.
 
 import assert from 'node:assert/strict';
 import { execFileSync, spawn } from 'node:child_process';
@@ -37,7 +37,7 @@ function changed(text, line) {
   return `${head}${outputs}${operators.length ? `\noperators: {${operators.join(', ')}}` : ''}\n`;
 }
 
-test('the conformance corpus has the bits on file', async () => {
+test('the results of the conformance corpus have the recorded bits', async () => {
   const known = new Map((await read('tests/conformance.bits')).trim().split('\n').map((line) => [line.split(' ', 2).join(' '), line]));
   const cases = [];
   for (const file of (await readdir(join(repository, 'tests/conformance'))).sort()) {
@@ -54,7 +54,7 @@ test('the conformance corpus has the bits on file', async () => {
       const outputs = set.evaluate(point).map(({ value, coverage, dominantRule: rule, clamped }) =>
         [value === null ? 'none' : bits(value), bits(coverage), rule === null ? 'none' : rule - 1, Number(clamped)].join(','),
       );
-      // Columns, twice the row, have the bits of the single call.
+      // A call with columns, which contain the row twice, gives the bits of the single call.
       const columns = set.evaluateColumns(point.map((value) => [value, value])).flatMap((column) => [...column]);
       const same = set.evaluate(point).flatMap(({ value }) => [value ?? NaN, value ?? NaN]);
       if (!columns.every((value, i) => Object.is(value, same[i]))) outputs.push('columns differ');
@@ -65,7 +65,7 @@ test('the conformance corpus has the bits on file', async () => {
   for (const line of said) assert.equal(line, known.get(line.split(' ', 2).join(' ')));
 });
 
-test('check says what the command line says, of every wrong and every right rule set', async () => {
+test('check gives the findings of the command line, for all wrong and all right rule sets', async () => {
   const files = [];
   for (const folder of ['tests/authoring/err', 'tests/authoring/ok', 'rules', 'rules/profiles', 'tests/examples']) {
     const names = await readdir(join(repository, folder)).catch(() => []);
@@ -74,7 +74,7 @@ test('check says what the command line says, of every wrong and every right rule
   let wrong = 0;
   for (const file of files) {
     const text = await read(file).catch(() => undefined);
-    // A profile whose rule set is another file is refused by the command line alone.
+    // A profile whose rule set is in another file is refused only by the command line.
     if (text === undefined || /^rules: .*(battery|\.yaml)/m.test(text)) continue;
     let said;
     try {
@@ -90,7 +90,7 @@ test('check says what the command line says, of every wrong and every right rule
   assert.ok(wrong >= 107, `${wrong} wrong rule sets`);
 });
 
-test('explain says what the command line says', async () => {
+test('explain gives the explanation of the command line', async () => {
   for (const [file, point] of [
     ['rules/flagred-paper.yaml', { margin: 0.007969, spread: 0.22631 }],
     ['rules/tipper.yaml', { service: 3, food: 8 }],
@@ -147,7 +147,7 @@ test('other formats are read and written as by the command line', async () => {
   }
 });
 
-/** What `flagred lsp` completes at places of a text. */
+/** The completions of `flagred lsp` at places of a text. */
 async function completed(text, offsets) {
   const server = spawn(command, ['lsp', '--stdio']);
   const send = (message) => {
@@ -180,7 +180,7 @@ async function completed(text, offsets) {
   return offsets.map((_, i) => answers.get(i + 1));
 }
 
-test('completion is the language server\'s, counted in the letters of JavaScript', async () => {
+test('completion is that of the language server, with positions in UTF-16 units', async () => {
   const text = (await read('rules/flagred-paper.yaml')).replace('fuzzy: 1', '# 𝛼 °C\nfuzzy: 1').replace(/WITH .*$/m, '');
   const at = (words) => text.indexOf(words) + words.length;
   const offsets = [at('\n  - IF '), at('IF margin IS '), at('THEN risk IS '), at('\noutputs:\n  risk:\n    '), at('defuzzifier: '), text.length];
@@ -199,7 +199,7 @@ test('completion is the language server\'s, counted in the letters of JavaScript
   assert.ok(here[1].some(({ label }) => label === 'low') && here[4].some(({ label }) => label === 'centroid'));
 });
 
-test('names, definitions and renaming count letters as JavaScript does', async () => {
+test('names, definitions and renaming have positions in UTF-16 units', async () => {
   const text = (await read('rules/tipper.yaml')).replace('# The textbook', '# 𝛼𝛽 The textbook');
   const at = text.indexOf('poor OR');
   const [hover, definition, edits] = await page.evaluate(

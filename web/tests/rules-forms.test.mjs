@@ -1,4 +1,4 @@
-// Variables, terms and rules changed by forms: the text follows, its comments stay, and undo brings it back.
+// Forms change variables, terms and rules: the text changes with them, its comments stay, and undo restores it.
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
@@ -25,7 +25,7 @@ async function table(t, options = { viewport: { width: 1280, height: 1000 } }) {
 /** Waits until the editor has this text. */
 const becomes = (page, text) => page.waitForFunction((text) => localStorage.getItem('flagred.rules') === text, text);
 
-test('names are changed everywhere', async (t) => {
+test('a name is changed everywhere', async (t) => {
   const page = await table(t);
   await page.getByLabel('Name of input humidity').fill('moisture');
   await page.getByLabel('Name of input humidity').press('Enter');
@@ -62,7 +62,7 @@ test('a variable with a term and a rule is added and removed', async (t) => {
   await page.getByRole('button', { name: 'Add rule' }).click();
   const ruled = `${three}  - IF noise IS painful THEN fan IS slow\n`;
   await becomes(page, ruled);
-  // All of it is shown: the sliders, the viewer and the shapes.
+  // The new parts are shown by the sliders, the viewer and the shapes.
   await page.getByLabel('noise, as a number').waitFor();
   await page.locator('.viewer tbody tr').nth(5).waitFor();
   await page.locator('.shapes').getByText('painful').waitFor();
@@ -75,7 +75,7 @@ test('a variable with a term and a rule is added and removed', async (t) => {
   await becomes(page, added);
   await page.getByRole('button', { name: 'Remove input noise' }).click();
   await becomes(page, starter);
-  // Each change is a step.
+  // Each change is one step for undo.
   for (let i = 0; i < 6; i++) await page.getByRole('button', { name: 'Undo' }).click();
   await becomes(page, starter);
   assert.ok(await page.getByRole('button', { name: 'Undo' }).isDisabled());
@@ -94,7 +94,7 @@ test('a rule is changed in place, and a text that is not a rule is refused', asy
   await page.getByText('choose a term of an input for the new rule').waitFor();
 });
 
-test('the table fits on a phone, and its tabs move by keys', async (t) => {
+test('the table fits on a phone, and keys switch its tabs', async (t) => {
   const page = await table(t, { viewport: { width: 390, height: 844 } });
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
   assert.ok(wide <= 0, `${wide} pixels too wide`);

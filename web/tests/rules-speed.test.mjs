@@ -1,19 +1,19 @@
-// While a term is dragged, the page draws every frame and the map follows.
+// While a term is dragged, the page draws every frame and updates the map.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { isTimed, opened, tab } from './page.mjs';
 
-/** What a frame may take of a processor at 60 frames a second. */
+/** The maximum processor time of a frame at 60 frames a second. */
 const FRAME_MS = 1000 / 60;
-/** Frames that are counted at 60 a second, within the error of counting. */
+/** The number of frames that counts as 60 a second, given the error of counting. */
 const FEWEST_FRAMES = 57;
 const DRAGGED_S = 2;
 const TRIES = 3;
 
 const { chromium, server } = await opened();
 
-/** Drags a point of the first variable to and fro, a move a frame. */
+/** Drags a point of the first variable to and fro, with one move a frame. */
 async function drag(start) {
   const { page, context, complaints } = await tab(chromium, 'about:blank', { viewport: { width: 1280, height: 1400 } });
   await page.addInitScript(() => {
@@ -74,11 +74,11 @@ for (const start of ['tipper', 'flagred-paper', 'flagred', 'flagred-battery']) {
     }
     assert.ok(!isTimed || most() >= FEWEST_FRAMES, `${most()} frames a second`);
     assert.ok(!isTimed || Math.min(...all.map(({ frame_ms }) => frame_ms)) < FRAME_MS);
-    assert.ok(all.every(({ maps_a_second }) => maps_a_second > 1), 'the map does not follow');
+    assert.ok(all.every(({ maps_a_second }) => maps_a_second > 1), 'the map is not updated');
   });
 }
 
-/** Turns a surface by a drag, a move a frame: the frames a second, and what a frame takes of a processor. */
+/** Turns a surface by a drag, with one move a frame; measures the frames a second, and the processor time of a frame. */
 async function turn(start) {
   const { page, context, complaints } = await tab(chromium, `${server.address}#/rules?start=${start}&show=surface`, { viewport: { width: 1280, height: 1400 } });
   await page.locator('.explanation .value').first().waitFor();

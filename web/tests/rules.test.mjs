@@ -13,7 +13,7 @@ const desktop = { viewport: { width: 1280, height: 1400 } };
 
 const { chromium, server } = await opened();
 
-/** The room, ready; closed at the end of the test, which fails where the page complained. */
+/** Opens the room. It is closed at the end of the test, which fails if the page reported errors or warnings. */
 async function room(t, query = '', options = desktop, address = server.address) {
   const opened = await tab(chromium, `${address}#/rules${query}`, options);
   await opened.page.locator('.explanation .value').first().waitFor();
@@ -24,14 +24,14 @@ async function room(t, query = '', options = desktop, address = server.address) 
   return opened;
 }
 
-/** The editor's text, as it is kept. */
+/** The editor's text, as stored in the browser. */
 const text = (page) => page.evaluate(() => localStorage.getItem('flagred.rules'));
 
 /** Opens a text as a file. */
 const put = (page, content, name = 'rules.yaml') =>
   page.getByLabel('Rule set', { exact: true }).and(page.locator('input')).setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
 
-/** Pastes a text in the place of all that is in the editor. */
+/** Replaces the text of the editor by pasting another. */
 async function paste(page, content) {
   await page.locator('.cm-content').focus();
   await page.keyboard.press('Control+a');
@@ -44,7 +44,7 @@ async function paste(page, content) {
 
 const problems = (page) => page.locator('.problems .count');
 
-/** Selects words in the editor, as a double click does, and types others. */
+/** Selects a text in the editor, as a double click does, and types another. */
 async function retype(page, old, typed) {
   await page.locator('.cm-content').focus();
   await page.keyboard.press('Control+f');
@@ -54,7 +54,7 @@ async function retype(page, old, typed) {
   await page.keyboard.type(typed);
 }
 
-test('a mistake is shown at its place as one types, and in the list', async (t) => {
+test('a mistake is marked during typing, and listed', async (t) => {
   const { page } = await room(t, '?start=flagred-paper');
   await retype(page, 'IF margin', 'IF margn');
   await page.locator('.problems li', { hasText: 'margn' }).first().waitFor();
@@ -68,7 +68,7 @@ test('a mistake is shown at its place as one types, and in the list', async (t) 
   await page.locator('.stale').waitFor({ state: 'hidden' });
 });
 
-test('what can be written is offered, and what a name means', async (t) => {
+test('completions are offered, and a hover explains a name', async (t) => {
   const { page } = await room(t, '?start=tipper');
   await retype(page, 'IS good', 'IS ');
   await page.keyboard.press('Control+Space');
@@ -81,7 +81,7 @@ test('what can be written is offered, and what a name means', async (t) => {
   await page.locator('.cm-hover', { hasText: 'How the guest rates the service' }).waitFor();
 });
 
-test('every wrong rule set is shown with its message, and the page goes on', async (t) => {
+test('for every wrong rule set the message is shown, and the page continues', async (t) => {
   const { page } = await room(t);
   const folder = 'tests/authoring/err';
   const files = (await readdir(join(repository, folder))).filter((name) => name.endsWith('.yaml'));
@@ -106,12 +106,12 @@ test('every wrong rule set is shown with its message, and the page goes on', asy
       { timeout: 10_000 },
     ).catch(() => assert.fail(`${file}: ${first.message}`));
   }
-  // It still works.
+  // The page still works.
   await paste(page, await read('crates/authoring/src/starter.yaml'));
   await page.waitForFunction(() => document.querySelector('.problems .count').textContent === 'no findings');
 });
 
-test('a dragged term changes its numbers alone, as one step for undo', async (t) => {
+test('dragging a term changes only its numbers, as one step for undo', async (t) => {
   const { page } = await room(t, '?start=tipper');
   const before = await read('rules/tipper.yaml');
   const handle = page.getByRole('slider', { name: 'good: mean' });
@@ -147,7 +147,7 @@ test('a point of a term moves by keys, and a comment stays', async (t) => {
   assert.match(await text(page), /dry: \{left_shoulder: \[40\.4, 60\]\} # 1 up to 40, 0 from 60 on/);
 });
 
-test('a click on the map is explained as by the command line', async (t) => {
+test('a click on the map is explained as in the command line', async (t) => {
   const { page } = await room(t, '?start=flagred-paper');
   const box = await page.locator('canvas.decision').boundingBox();
   await page.mouse.click(box.x + box.width * 0.3, box.y + box.height * 0.4);
@@ -179,7 +179,7 @@ test('a click on the map is explained as by the command line', async (t) => {
   assert.ok(Number(moved[0]) > Number(clicked[0]) && Number(moved[1]) > Number(clicked[1]));
 });
 
-test('held inputs, axes and pictures are chosen, and the address tells them', async (t) => {
+test('held inputs, axes and pictures can be chosen, and the address contains them', async (t) => {
   const { page, context } = await room(t, '?start=flagred&x=unsteady_lately&y=throttle_activity&show=surface');
   assert.equal(await page.getByLabel('Input across').inputValue(), 'unsteady_lately');
   assert.equal(await page.getByLabel('Show').inputValue(), 'surface');
@@ -201,7 +201,7 @@ test('held inputs, axes and pictures are chosen, and the address tells them', as
   assert.equal(await other.getByLabel('Input across').inputValue(), 'spread');
 });
 
-test('a link holds the rule set', async (t) => {
+test('a link contains the rule set', async (t) => {
   const { page } = await room(t, '?start=tipper');
   const edited = `${await read('rules/tipper.yaml')}# äöü 𝛼 <b>\n`;
   await put(page, edited);
@@ -218,7 +218,7 @@ test('a link holds the rule set', async (t) => {
   await damaged.getByText('The link is damaged').waitFor();
 });
 
-test('what one was at is there again; where nothing can be kept it is told', async (t) => {
+test('the text is restored after a reload; a browser that stores nothing is reported', async (t) => {
   const { page } = await room(t);
   await put(page, (await read('rules/tipper.yaml')).replace('name: tipper', 'name: mine'));
   await page.waitForFunction(() => localStorage.getItem('flagred.rules')?.includes('name: mine'));
@@ -236,7 +236,7 @@ test('what one was at is there again; where nothing can be kept it is told', asy
   await other.getByText('This browser cannot store the rule set').waitFor();
 });
 
-test('what was one\'s own is not lost to a link or an example', async (t) => {
+test('a link or an example does not discard the user\'s own text', async (t) => {
   const { page } = await room(t);
   const mine = (await read('rules/tipper.yaml')).replace('name: tipper', 'name: mine');
   await paste(page, mine);
@@ -252,7 +252,7 @@ test('what was one\'s own is not lost to a link or an example', async (t) => {
   await page.waitForFunction((mine) => localStorage.getItem('flagred.rules') === mine, mine);
 });
 
-test('the rule viewer shows all rules, how far they hold, and follows the point', async (t) => {
+test('the rule viewer shows all rules and how far they hold, and changes with the point', async (t) => {
   const { page } = await room(t, '?start=tipper');
   const viewer = page.locator('.viewer');
   await viewer.locator('tbody tr').nth(2).waitFor();
@@ -266,7 +266,7 @@ test('the rule viewer shows all rules, how far they hold, and follows the point'
   assert.ok(first[2][1].length > 10, 'the consequent is cut');
   assert.equal(await viewer.locator('tbody tr').first().locator('.strength').textContent(), '0.500');
   assert.match(await viewer.locator('tfoot').textContent(), /\d %/);
-  // The line of an input is dragged.
+  // Dragging the line of an input changes the point.
   const box = await viewer.locator('tbody tr').first().locator('svg.moves').nth(1).boundingBox();
   await page.mouse.click(box.x + box.width * 0.9, box.y + box.height / 2);
   await viewer.getByText('rancid 0', { exact: true }).waitFor();
@@ -297,23 +297,23 @@ test('a surface turns by drag and keys, and turns back', async (t) => {
   assert.equal(await drawn(), front);
 });
 
-test('what is shown is of the text that is open', async (t) => {
+test('everything that is shown belongs to the open text', async (t) => {
   const { page } = await room(t, '?start=tipper&x=food&y=service');
-  // The line under a term is of its point now, also after Undo.
+  // The line under a term is at the current point, also after Undo.
   await page.getByRole('slider', { name: 'good: mean' }).focus();
   await page.keyboard.press('ArrowRight');
   await page.locator('.variable output', { hasText: 'good: mean 5.1' }).waitFor();
   await page.getByRole('button', { name: 'Undo' }).click();
   await page.locator('.variable output', { hasText: /^good: mean 5$/ }).waitFor();
-  // A number that is taken away is there again.
+  // A number that was deleted is restored.
   await page.getByLabel('food, as a number').fill('');
   await page.getByLabel('service, as a number').focus();
   assert.equal(await page.getByLabel('food, as a number').inputValue(), '5');
-  // Another rule set with the same inputs begins with its own axes.
+  // Another rule set with the same inputs starts with its own axes.
   await put(page, (await read('rules/tipper.yaml')).replace('name: tipper', 'name: other'));
   await page.getByRole('heading', { name: 'other' }).waitFor();
   assert.equal(await page.getByLabel('Input across').inputValue(), 'service');
-  // A value outside the part that is shown is not at the end of its slider.
+  // A value outside the shown part is not shown at the end of its slider.
   const { page: flight } = await room(t, '?start=flagred-paper&at=0.25,0.25');
   const slider = flight.getByRole('slider', { name: 'spread' });
   await flight.waitForFunction(() => document.querySelector('[aria-label="spread, as a number"]').value === '0.25');
@@ -331,7 +331,7 @@ test('a file that cannot be read is not offered for reading with losses', async 
   assert.ok((await dialog.getByRole('listitem').count()) > 0);
 });
 
-test('other formats are opened by drop and button, and written', async (t) => {
+test('files in other formats are opened by drop and by button, and are written', async (t) => {
   const { page } = await room(t);
   const fis = execFileSync(join(repository, 'target/debug/flagred'), ['export', '--fis', '--lossy', 'rules/tipper.yaml'], {
     cwd: repository, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'],
@@ -369,7 +369,7 @@ test('other formats are opened by drop and button, and written', async (t) => {
   await page.waitForFunction(() => document.querySelector('.problems .count').textContent.includes('error'));
 });
 
-test('a profile is checked too, and its map is filled as it says', async (t) => {
+test('a profile is checked too', async (t) => {
   const { page } = await room(t, '?start=my-profile');
   assert.doesNotMatch(await problems(page).textContent(), /error/);
   await retype(page, 'mean: motor_command', 'mean: motor_comand');
@@ -388,9 +388,9 @@ test('nothing in a rule set is markup', async (t) => {
   assert.equal(await page.locator('img').count(), 0);
 });
 
-test('a defect is told and the page goes on', async (t) => {
+test('a bug is reported and the page continues', async (t) => {
   const { page, complaints } = await room(t);
-  // A worker that dies at one text.
+  // A worker that crashes at one text.
   await page.evaluate(() => {
     const send = Worker.prototype.postMessage;
     Worker.prototype.postMessage = function (message, ...rest) {
@@ -409,7 +409,7 @@ test('a defect is told and the page goes on', async (t) => {
   assert.deepEqual(complaints, []);
 });
 
-/** The page as `flagred studio FILE` serves it: one file, and the text of a file on disk. */
+/** Serves the page as `flagred studio FILE` does: a single file, and the text of a file on disk. */
 async function studio(t, { readOnly = false } = {}) {
   const html = await readFile(join(repository, 'crates/cli/page/studio.html'));
   const disk = { text: await read('rules/tipper.yaml'), version: 1 };
@@ -433,7 +433,7 @@ async function studio(t, { readOnly = false } = {}) {
   return { disk, address: `http://127.0.0.1:${made.address().port}/` };
 }
 
-test('a file on disk is saved, and a change by somebody else is not lost', async (t) => {
+test('a file on disk is saved, and changes by another program are not lost', async (t) => {
   const { disk, address } = await studio(t);
   const { page } = await room(t, '', desktop, address);
   const state = page.locator('.backing [role=status]');
@@ -448,7 +448,7 @@ test('a file on disk is saved, and a change by somebody else is not lost', async
   assert.ok(disk.text.endsWith('# mine'));
   assert.equal(await state.textContent(), 'saved');
 
-  // Somebody else changes it: read again where nothing is lost, asked where something would be.
+  // After a change by another program, the file is read again if nothing is lost; otherwise the user is asked.
   Object.assign(disk, { text: disk.text.replace('name: tipper', 'name: theirs'), version: 9 });
   await page.locator('.cm-line', { hasText: 'name: theirs' }).waitFor();
   await page.keyboard.type('!');
@@ -479,7 +479,7 @@ for (const [name, options] of Object.entries({
   phone: { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true },
   dark: { ...desktop, colorScheme: 'dark' },
 })) {
-  test(`nobody is shut out: ${name}`, async (t) => {
+  test(`axe finds nothing serious: ${name}`, async (t) => {
     const { page } = await room(t, '?start=flagred-paper', options);
     await retype(page, 'IF margin', 'IF margn');
     await page.locator('.problems li', { hasText: 'margn' }).first().waitFor();

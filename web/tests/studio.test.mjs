@@ -1,4 +1,4 @@
-// `flagred studio` with the page it serves: under the policy it sends, with a file and without.
+// `flagred studio` with its page, under the policy that it sends, with a file and without.
 
 import assert from 'node:assert/strict';
 import { execFile, spawn } from 'node:child_process';
@@ -24,7 +24,7 @@ after(async () => {
   await rm(folder, { recursive: true });
 });
 
-/** Starts it, for as long as a test runs, and gives its address. */
+/** Starts `flagred studio` for the duration of a test, and returns its address. */
 async function serve(t, ...args) {
   const child = spawn(command, ['studio', '--no-browser', '--page', studio, ...args]);
   const ended = once(child, 'exit');
@@ -36,19 +36,19 @@ async function serve(t, ...args) {
   return address;
 }
 
-/** Opens an address in a tab, for as long as a test runs. */
+/** Opens an address in a tab for the duration of a test. */
 async function open(t, address) {
   const opened = await tab(chromium, address);
   t.after(() => opened.context.close());
   return opened;
 }
 
-test('the program holds the page', async () => {
+test('the program contains the page', async () => {
   const { stdout } = await promisify(execFile)(command, ['studio', '--html', '-'], { maxBuffer: 1 << 27 });
-  assert.ok(stdout === (await readFile(studio, 'utf8')), 'it holds another: cargo build -p flagred-cli');
+  assert.ok(stdout === (await readFile(studio, 'utf8')), 'the program contains another page: cargo build -p flagred-cli');
 });
 
-test('it opens with both rooms', async (t) => {
+test('the page opens with both rooms', async (t) => {
   const { page, complaints } = await open(t, await serve(t));
   await page.getByRole('heading', { level: 1 }).first().waitFor();
   assert.match(page.url(), /#\/flight/);
@@ -68,7 +68,7 @@ test('with a file it opens the room for rules, under the policy of the page', as
   assert.equal(policy, `${own}; frame-ancestors 'none'`);
 });
 
-test('what is typed is saved on disk, and what another editor writes is read', async (t) => {
+test('typed text is saved on disk, and changes by another editor are read', async (t) => {
   const text = '# mine\r\nfuzzy: 1\r\n';
   const mine = join(folder, 'mine.yaml');
   await writeFile(mine, text);
@@ -85,7 +85,7 @@ test('what is typed is saved on disk, and what another editor writes is read', a
   await page.locator('.cm-content').filter({ hasText: '# theirs' }).waitFor();
 });
 
-test('another page gets nothing, even if it knows the address', async (t) => {
+test('another page cannot read anything, even if it knows the address', async (t) => {
   const address = await serve(t, file);
   await writeFile(join(folder, 'index.html'), '<!doctype html><title>another page</title>');
   const other = await site(folder);

@@ -1,4 +1,4 @@
-// The style sheets of both rooms are on the page at once: neither touches the other room.
+// The style sheets of both rooms are on the page at the same time; neither must affect the other room.
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
@@ -7,7 +7,7 @@ import { test } from 'node:test';
 import { browser, repository, serve, tab } from './page.mjs';
 import * as rooms from './rooms.mjs';
 
-test('no rule of one room matches in the other', { timeout: 120_000 }, async (t) => {
+test('no style rule of one room matches in the other', { timeout: 120_000 }, async (t) => {
   const chromium = await browser();
   t.after(() => chromium.close());
   const server = await serve();

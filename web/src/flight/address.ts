@@ -1,6 +1,6 @@
 /**
- * The state of the flight room in its address. It can be linked to, except for the logs, which stay on the user's
- * machine.
+ * The state of the flight room in its address. A link can contain it, except for the logs, which stay on the
+ * user's machine.
  */
 
 import type { Stretch, VerdictChanges } from 'flagred';

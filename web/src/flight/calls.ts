@@ -26,7 +26,7 @@ export interface Log {
   file: File;
 }
 
-/** The name of a shipped profile, or a text and the name of its file; and a rule set that replaces the one it names. */
+/** The name of a shipped profile, or a text and its file name; and a rule set to use instead of the one it names. */
 export interface ProfileSource {
   name: string;
   text?: string;
@@ -35,7 +35,7 @@ export interface ProfileSource {
 
 export interface ProfileFacts extends ProfileSource {
   text: string;
-  /** The name in its text. */
+  /** The name in the profile's text. */
   title: string;
   warnings: string;
   verdict: VerdictSettings;

@@ -6,13 +6,13 @@ export interface Chart {
   box: HTMLElement;
   area: HTMLElement;
   plot: SVGSVGElement;
-  /** The time at its left edge, and the length of the stretch that was drawn. */
+  /** The time at the left edge of the chart, and the length of the stretch that was drawn. */
   start_s: number;
   length_s: number;
-  /** The index of the rules' input that it shows. */
+  /** The index of the input of the rules that the chart shows. */
   input: number | undefined;
   unit: string;
-  /** The digits of a value. */
+  /** The number of digits of a value. */
   digits: number;
   /** A line over the chart. It is not a part of the picture, so that moving it does not redraw the picture. */
   cursor: HTMLElement;

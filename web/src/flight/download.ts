@@ -15,7 +15,7 @@ const WORDS: Record<Kind, string> = {
 /** The endings of the file names. */
 export const ENDINGS: Record<Kind, string> = { html: '.html', csv: '.steps.csv', json: '.json', flight: '.csv' };
 
-/** Creates a menu that closes after a choice, or when the user turns elsewhere. */
+/** Creates a menu that closes after a choice, or when the user clicks outside it. */
 export function downloadMenu(choose: (kind: Kind) => void): HTMLElement {
   const body = h('div', { class: 'menu-body' });
   const element = menu('Download', body);
@@ -30,7 +30,7 @@ export function downloadMenu(choose: (kind: Kind) => void): HTMLElement {
   return element;
 }
 
-/** Creates a menu that closes when the user turns elsewhere. */
+/** Creates a menu that closes when the user clicks outside it. */
 export function menu(words: string, body: HTMLElement): HTMLDetailsElement {
   const menu = h('details', { class: 'menu' }, h('summary', { class: 'button' }, words), body);
   document.addEventListener('click', (event) => {

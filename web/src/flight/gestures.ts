@@ -13,8 +13,8 @@ export interface Gestures {
 const LEAST_PX = 8;
 
 /**
- * Handles the pointers on all charts in an element. `areaOf` returns the chart's area of an event. If the charts are in
- * a shadow root, the element is its host, because browsers do not always pass wheel events to listeners of a shadow
+ * Handles the pointers on all charts in an element. `areaOf` returns the area of the chart in which an event
+ * happened. If the charts are in a shadow root, the element is its host, because browsers do not always pass wheel events to listeners of a shadow
  * root.
  */
 export function gestures(element: HTMLElement, areaOf: (event: Event) => HTMLElement | undefined, on: Gestures): void {

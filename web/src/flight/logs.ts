@@ -80,7 +80,7 @@ interface Row {
 export function logList(actions: Actions): LogList {
   const rows = new Map<Entry, Row>();
   let shown: { entries: readonly Entry[]; current: Entry | undefined } = { entries: [], current: undefined };
-  /** The column that is sorted by, and whether it is reversed; in the order of dropping at first. */
+  /** The column by which the table is sorted, and whether in reverse. At first, logs are in the order of dropping. */
   let sorted: { column: number; isReversed: boolean } | undefined;
   const heads = COLUMNS.map(([words], column) => {
     const button = h('button', { type: 'button' }, words);
@@ -156,7 +156,7 @@ export function logList(actions: Actions): LogList {
     inOrder(entries).forEach((entry, i) => {
       let known = rows.get(entry);
       if (!known) rows.set(entry, (known = row(entry)));
-      // Moving an element that has the focus takes it away.
+      // An element that is moved loses the focus.
       if (body.children[i] !== known.element) body.insertBefore(known.element, body.children[i] ?? null);
       known.update(entry === current);
     });

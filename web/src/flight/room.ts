@@ -141,7 +141,7 @@ export function open(root: HTMLElement, app: App): Room {
       if (isUnchanged(changes)) entry.unchanged = entry.brief?.verdict;
     } catch (error) {
       if (error instanceof Cancelled) {
-        // Another log was cancelled, and the worker with it.
+        // Another log was cancelled, which ended the worker.
         entry.state = 'waiting';
         entry.share = 0;
         return;

@@ -32,7 +32,7 @@ interface Known {
   text: string;
   open: RuleText;
   set: RuleSet | undefined;
-  /** The reason why it cannot be used. */
+  /** The reason why the text cannot be used. */
   refusal: string;
 }
 
@@ -75,9 +75,9 @@ export interface Opened {
   text: string;
   isProfile: boolean;
   variables: DrawnVariable[];
-  /** What can be renamed and removed by forms; nothing of a profile. */
+  /** The parts that forms can rename and remove; `null` for a profile. */
   parts: Parts | null;
-  /** Nothing where the rule set cannot be used. */
+  /** `undefined` if the rule set cannot be used. */
   about: About | undefined;
 }
 

@@ -1,4 +1,4 @@
-/** Rows of measured values beside the rules: the error of the rule set on them, and rules and numbers from them. */
+/** Rows of measured values: the error of the rule set on them, and rules and numbers that are learned from them. */
 
 import type { Errors, Made } from 'flagred/data';
 import type { App } from '../app';
@@ -14,14 +14,14 @@ export interface Data {
   element: HTMLElement;
   /** Reads a table. */
   take(file: File): Promise<void>;
-  /** Shows the error of another text, which can be used. */
+  /** Shows the error of another text, which must be usable. */
   show(text: string, inputs: string[]): void;
 }
 
-/** What the section needs of the room. */
+/** The functions of the room that the section uses. */
 export interface Place {
   text(): string;
-  /** Puts a text made from rows in the place of the one it was made from; undo brings that back. */
+  /** Replaces the text by one that was made from rows; undo restores the old text. */
   replace(text: string): void;
   /** Moves the point that is explained. */
   visit(point: number[]): void;
@@ -32,7 +32,7 @@ export function data(app: App, place: Place): Data {
   const worker = () => (engine ??= app.data());
   let csv: Csv | undefined;
   let inputs: string[] = [];
-  /** The text that a search may still change, and what it found so far. */
+  /** The text from which the running search started, and the best text that it has found so far. */
   let search: { text: string; found?: string } | undefined;
 
   const file = h('input', { type: 'file', hidden: true, accept: '.csv,.tsv,.txt', 'aria-label': 'Rows of data' });
@@ -97,7 +97,7 @@ export function data(app: App, place: Place): Data {
     [stop.hidden, progress.hidden] = [!is, !is];
   }
 
-  /** Runs a search; one that was stopped leaves the best text that it found. */
+  /** Runs a search. If it is stopped, the best text that it has found is used. */
   async function run(words: string, work: (csv: Csv, text: string) => Promise<Made>): Promise<void> {
     if (!csv || search) return;
     const mine: { text: string; found?: string } = { text: place.text() };

@@ -1,4 +1,4 @@
-/** What the rules room asks of the worker for data. The table that was read last is kept. */
+/** The calls of the rules room to the worker for data. The table that was read last is kept. */
 
 import { DataTable, type Errors, type Made } from 'flagred/data';
 import type { Tell } from '../calls';
@@ -21,7 +21,7 @@ function table(csv: Csv): DataTable {
 
 export const dataErrors = (_tell: Tell, csv: Csv, rules: string): Errors => table(csv).errors(rules);
 
-/** `tell` hears the step, and the error and the text so far. */
+/** Calls `tell` with the step, and with the error and the text so far. */
 export const dataTune = (tell: Tell, csv: Csv, rules: string): Made =>
   table(csv).tune(rules, (step, error, text) => tell(step, { error, text }));
 

@@ -114,7 +114,7 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
     return {
       from: word?.from ?? context.pos,
       validFor: /^[\w-]*$/,
-      // In the order of the service, which puts likely ones first.
+      // In the order of the service, in which likely completions are first.
       options: found.map(({ label, text, kind, detail }, i) => ({
         label, apply: text, type: kinds[kind], boost: Math.max(99 - i, -99), ...(detail ? { detail } : {}),
       })),
@@ -230,7 +230,7 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
 /** Scrolls past the comments at the head of a text, which are about the command line. */
 const toContent = (text: string) => EditorView.scrollIntoView(/^(?:#[^\n]*\n)*/.exec(text)![0].length, { y: 'start', yMargin: 0 });
 
-/** The one stretch in which two texts differ. */
+/** The part in which two texts differ, from the first difference to the last. */
 function difference(before: string, after: string): { from: number; to: number; insert: string } | undefined {
   if (before === after) return undefined;
   const shorter = Math.min(before.length, after.length);

@@ -37,7 +37,7 @@ export async function drawn(app: App, name: string, text: string, kind: Picture,
   download(`${name}-${kind}.svg`, await app.engine.call('rulesPicture', text, kind, view), 'image/svg+xml');
 }
 
-/** Runs without losses. Where that is refused and losses help, asks whether to run with them. */
+/** Runs without losses. If that is refused, but is possible with losses, asks the user whether to accept them. */
 async function withLosses(title: string, run: (lossy: boolean) => Promise<Exchanged>): Promise<Exchanged | undefined> {
   try {
     return await run(false);
@@ -61,7 +61,7 @@ async function told(title: string, notes: string[]): Promise<void> {
   await dialog(title, notes.length > 0 ? notes : ['Nothing was lost.'], ['Close']);
 }
 
-/** Lines of a message: those that help with the one before, or are part of it, belong to it. */
+/** Groups the lines of a message: help for a line, and its continuation, belong to that line. */
 function items(lines: string[]): string[] {
   const made: string[] = [];
   for (const line of lines) {
@@ -71,7 +71,7 @@ function items(lines: string[]): string[] {
   return made;
 }
 
-/** Shows lines; the answer is the word on the button that was pressed. */
+/** Shows lines; returns the text on the button that was pressed. */
 function dialog(title: string, lines: string[], answers: string[]): Promise<string> {
   return new Promise((resolve) => {
     const buttons = answers.map((answer, i) => h('button', { value: answer, class: i === 0 ? 'main' : '' }, answer));

@@ -1,4 +1,4 @@
-/** The inputs as sliders, which set the explained point. Inputs that are not axes of the map are held there. */
+/** The inputs as sliders, which set the explained point. The map uses them for inputs that are not its axes. */
 
 import type { Variable } from 'flagred';
 import { h, fill } from '../dom';
@@ -30,7 +30,7 @@ export function inputs(moved: (input: number, value: number) => void): Inputs {
       const value = clamp(number.valueAsNumber, Number(number.min), Number(number.max));
       if (Number.isFinite(value)) moved(i, value);
     });
-    // A box that is left empty, or with what is not a number, shows the value that counts.
+    // A box that is empty or contains no number returns to the current value when it loses the focus.
     number.addEventListener('blur', () => (number.value = written(slider.dataset['value'])));
     const role = h('span', { class: 'role soft' });
     const label = h('span', { class: 'name', title: description }, name, unit && h('span', { class: 'soft' }, ` ${unit}`));
@@ -49,7 +49,7 @@ export function inputs(moved: (input: number, value: number) => void): Inputs {
       inputs.forEach((input, i) => {
         const { slider, number, role } = rows[i]!;
         const value = point[i]!;
-        // A value outside the part that is shown needs the whole range: at the end of the part it would look like that end.
+        // A value outside the shown part needs the whole range; otherwise its slider would be at the end of the part.
         const isPart = !isWhole && value >= input.shown[0] && value <= input.shown[1];
         const [low, high] = isPart ? input.shown : [input.low, input.high];
         [slider.min, slider.max] = [String(low), String(high)];

@@ -271,7 +271,7 @@ function axes(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, ink: In
 
 export const titled = ({ name, unit }: Variable): string => (unit ? `${name} [${unit}]` : name);
 
-/** The title of an axis, which says where it does not show the whole range. */
+/** The title of an axis, which says so if the axis does not show the whole range. */
 function part(variable: Variable, axis: { low: number; high: number } | undefined): string {
   const { low, high } = variable;
   if (!axis || (axis.low <= low && axis.high >= high)) return titled(variable);
@@ -326,7 +326,7 @@ function scale(pen: CanvasRenderingContext2D, frame: Frame, width: number, shown
   pen.fillText(titled(shown.output), width - 2, 6);
 }
 
-/** The map in words. */
+/** The description of the map for screen readers. */
 function spoken({ kind, output, x, y, view, cells, point }: Shown): string {
   const [across, up] = view.axes;
   const cell = (axis: typeof across) => (axis ? Math.round(share(point[axis.input]!, axis.low, axis.high) * (view.points - 1)) : 0);

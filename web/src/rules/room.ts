@@ -58,7 +58,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   function refused(error: Error): void {
     app.say(error instanceof Trapped ? `flagred has a defect, but continues: ${error.message}` : error.message);
   }
-  // Runs after it is known which text caused the crash.
+  // This runs only when it is known which text caused the crash.
   engine.onRestart = () => setTimeout(() => edit.text() !== poison && changed(edit.text()));
 
   // The parts of the room.
@@ -217,7 +217,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       const reasons = await engine.call('rulesExplain', now.text, at);
       explain(why, now.about, reasons.explanation);
       ruleViewer.show(reasons, at);
-      // Words that change faster are not read, and laying them out takes time from what moves.
+      // Nobody can read text that changes faster, and its layout would take time from the map and the shapes.
       await new Promise((done) => setTimeout(done, REASON_MS));
     }),
   );
@@ -373,7 +373,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   function put(text: string, from?: string): void {
     start = from;
     values.clear();
-    // The axes of another rule set mean nothing here.
+    // The axes that were chosen for another rule set do not apply.
     choice.output = choice.x = choice.y = '';
     edit.replace(text);
     if (from) store(text);

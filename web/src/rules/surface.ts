@@ -1,10 +1,10 @@
-/** The surface of an output over two inputs, on a canvas: it turns, and its axes have numbers. */
+/** Draws the surface of an output over two inputs on a canvas, with numbers at the axes. It can be turned. */
 
 import type { Colours, Variable } from 'flagred';
 import { dot, titled, type Frame, type Ink, type Shown } from './map';
 import { clamp, short, ticks } from './numbers';
 
-/** The direction of view in degrees: turned about the vertical, and tipped. */
+/** The direction of view in degrees: rotation about the vertical axis, and tilt. */
 export interface Camera {
   turn: number;
   tip: number;
@@ -26,7 +26,7 @@ const HEIGHT = 0.7;
 
 type Place = [x: number, y: number];
 
-/** The corners of the mesh, and the colour of each of its faces; made once for a map, and used for every view of it. */
+/** The corners of the mesh, and the colour of each face. It is made once for a map and used for all views of it. */
 interface Mesh {
   cells: Float64Array;
   colours: Colours;
@@ -74,7 +74,7 @@ export function surface(pen: CanvasRenderingContext2D, frame: Frame, shown: Show
     middle.x + size * ((x - 0.5) * cos + (y - 0.5) * sin),
     middle.y - (z - 0.5) * rise - depth(x, y) * lean,
   ];
-  // The two walls behind the surface, and the two edges before it.
+  // The corner at which the two walls behind the surface meet.
   const far = { x: sin > 0 ? 0 : 1, y: cos > 0 ? 1 : 0 };
   box(pen, shown, ink, place, far);
 
@@ -86,7 +86,7 @@ export function surface(pen: CanvasRenderingContext2D, frame: Frame, shown: Show
       [across[at], down[at]] = place(i / (count - 1), j / (count - 1), heights[at]!);
     }
   }
-  // From the far corner to the near one: what is near covers what is behind it.
+  // Faces are drawn from the far corner to the near one, so that near faces cover those behind them.
   const order = (from: number) => Array.from({ length: count - 1 }, (_, i) => (from ? count - 2 - i : i));
   pen.lineWidth = 1;
   pen.lineJoin = 'round';
@@ -132,7 +132,7 @@ function box(
   pen.textBaseline = 'middle';
   pen.textAlign = 'center';
   const centre = place(0.5, 0.5, 0);
-  /** Writes beside a place at an edge of the floor, away from the middle. */
+  /** Writes next to a place at an edge of the floor, on the side away from the centre. */
   const write = (words: string, [left, top]: Place, distance: number) => {
     const [dx, dy] = [left - centre[0], top - centre[1]];
     const length = Math.hypot(dx, dy) || 1;
@@ -155,7 +155,7 @@ function box(
   for (const tick of ticks(shown.output.low, shown.output.high, 4)) {
     const at = share(tick, shown.output.low, shown.output.high);
     line(place(far.x, near.y, at), place(far.x, far.y, at), place(near.x, far.y, at));
-    // At the floor the numbers of an input stand.
+    // Numbers at the floor would overlap those of an input.
     if (at < 0.02) continue;
     const [from, top] = place(...left!, at);
     pen.textAlign = 'right';
@@ -166,7 +166,7 @@ function box(
   write(titled(shown.y as Variable), place(near.x, 0.5, 0), 34);
 }
 
-/** The point that is explained, on the surface. */
+/** Draws the explained point on the surface. */
 function marked(pen: CanvasRenderingContext2D, shown: Shown, ink: Ink, place: (x: number, y: number, z: number) => Place): void {
   const [x, y] = shown.view.axes;
   if (!x || !y) return;

@@ -1,10 +1,10 @@
-/** The variables, terms and rules as a table beside the text: added, renamed and removed by forms. Each change is an edit of the text. */
+/** A table of variables, terms and rules, which forms add, rename and remove. Each change is an edit of the text. */
 
 import type { DrawnVariable, Edit, Parts } from 'flagred';
 import { fill, h } from '../dom';
 import { short } from './numbers';
 
-/** What the forms change; each answers with the edits, or fails with words for the user. */
+/** The changes that forms make. Each returns the edits of the text, or fails with a message for the user. */
 export interface Changes {
   rename(at: number, name: string): Promise<Edit[]>;
   addVariable(name: string, low: number, high: number, isOutput: boolean): Promise<Edit[]>;
@@ -17,11 +17,11 @@ export interface Changes {
 
 export interface Table {
   element: HTMLElement;
-  /** Shows the parts of a rule set; nothing of a text that has none. */
+  /** Shows the parts of a rule set; the table is empty if `parts` is `null`. */
   show(parts: Parts | null, variables: DrawnVariable[]): void;
 }
 
-/** `change` runs a change of the text and says whether it was made. */
+/** Creates the table. `change` makes a change of the text, and returns whether it was made. */
 export function table(changes: Changes, change: (run: () => Promise<Edit[]>) => Promise<boolean>): Table {
   const element = h('div', { class: 'parts' });
   let shape = '';
@@ -29,7 +29,7 @@ export function table(changes: Changes, change: (run: () => Promise<Edit[]>) => 
   const button = (words: string, label: string, key: string, run: () => Promise<Edit[]>) =>
     h('button', { type: 'button', class: 'small', 'aria-label': label, title: label, 'data-key': key, onclick: () => void change(run) }, words);
 
-  /** A box with a text that is changed in place; where that is refused, the old text is back. */
+  /** A box whose text can be edited; if the change is refused, the old text is restored. */
   function box(label: string, value: string, key: string, run: (value: string) => Promise<Edit[]>): HTMLInputElement {
     const input = h('input', { type: 'text', value, 'aria-label': label, 'data-key': key, spellcheck: 'false', autocapitalize: 'off' });
     input.addEventListener('change', () => {
@@ -43,7 +43,7 @@ export function table(changes: Changes, change: (run: () => Promise<Edit[]>) => 
     return input;
   }
 
-  /** A form whose boxes are empty again once it made a change. */
+  /** A form whose boxes are emptied after a change was made. */
   function form(label: string, run: () => Promise<Edit[]>, ...children: (Node | string)[]): HTMLFormElement {
     const made = h('form', { 'aria-label': label }, ...children);
     made.addEventListener('submit', (event) => {

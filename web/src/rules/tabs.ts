@@ -1,15 +1,15 @@
-/** Two views of one thing, of which one is shown. */
+/** Tabs: several views of the same content, of which one is shown. */
 
 import { h } from '../dom';
 
 export interface Tabs {
   /** The tabs. */
   list: HTMLElement;
-  /** What they show. */
+  /** The element that contains the shown view. */
   panel: HTMLElement;
 }
 
-/** `views` are names and elements, the first is shown; `chosen` hears which one is shown next. */
+/** Creates tabs. `views` are names and elements; the first is shown. `chosen` is called when the user shows another. */
 export function tabs(label: string, views: [name: string, element: HTMLElement][], chosen: () => void): Tabs {
   const id = `${label.replace(/\W+/g, '-')}-panel`;
   const buttons = views.map(([name]) =>

@@ -1,4 +1,4 @@
-/** The rule viewer: a row for each rule with the terms that it reads and concludes, how far each holds at the point, and the result. */
+/** The rule viewer: a row for each rule with its terms, how far each holds at the point, and the result. */
 
 import type { DrawnVariable, ViewedRules } from 'flagred';
 import { fill, h } from '../dom';
@@ -12,7 +12,7 @@ const HEIGHT = 32;
 
 export interface Viewer {
   element: HTMLElement;
-  /** Shows the rules and what holds at a point. */
+  /** Shows the rules, and how far each proposition holds at a point. */
   show(reasons: Reasons, point: number[]): void;
 }
 
@@ -21,13 +21,13 @@ interface Cell {
   variable: number;
   term: string | null;
   curve: number[];
-  /** Where a number is that stands for a set. */
+  /** The position of a term that is a number instead of a set. */
   stick: number | undefined;
   whole: SVGPathElement;
   cut: SVGPathElement;
   line: SVGLineElement | undefined;
   degree: HTMLElement;
-  /** What is drawn of it. */
+  /** A key of what is drawn now, with which the cell is redrawn only after a change. */
   drawn: string;
 }
 
@@ -59,21 +59,21 @@ export function viewer(moved: (input: number, value: number) => void): Viewer {
     return `${path}V${HEIGHT}Z`;
   }
 
-  /** The part of a set that a degree leaves: cut at it, or scaled by it. */
+  /** The part of a set that remains at a degree: cut off at it, or scaled by it. */
   function left(variable: DrawnVariable, curve: number[], stick: number | undefined, degree: number, isScaled: boolean): string {
     if (!(degree > 0)) return '';
     if (stick !== undefined) return `M${across(variable, stick)} ${HEIGHT}V${up(degree)}`;
     return isScaled ? outline(variable, curve, (y) => y * degree) : outline(variable, crossed(curve, degree), (y) => Math.min(y, degree));
   }
 
-  /** The curve of a term, or of its hedges; a number has none, but a place. */
+  /** The curve of a term with its hedges. A term that is a number has a position instead. */
   function form(variable: DrawnVariable, term: string | null, hedged: number[]): Pick<Cell, 'curve' | 'stick'> {
     const drawn = variable.terms.find((known) => known.name === term);
     const curve = hedged.length > 0 ? hedged : (drawn?.curve ?? []);
     return { curve, stick: curve.length === 0 ? drawn?.handles[0]?.x : undefined };
   }
 
-  /** The line of an input is dragged in any row. */
+  /** Makes the line of an input draggable, in every row. */
   function draggable(svg: SVGSVGElement, variable: number): void {
     const move = (event: PointerEvent) => {
       const box = svg.getBoundingClientRect();
@@ -147,7 +147,7 @@ export function viewer(moved: (input: number, value: number) => void): Viewer {
     one.degree.textContent = Number.isNaN(degree) ? '' : short(Number(degree.toFixed(3)));
   }
 
-  /** A line at a value; none where there is no value. */
+  /** Places a line at a value, or hides it if there is no value. */
   function place(line: SVGLineElement, variable: number, value: number | null | undefined): void {
     line.style.display = typeof value === 'number' ? '' : 'none';
     if (typeof value === 'number') set(line, { x1: across(variables[variable]!, value), x2: across(variables[variable]!, value) });
