@@ -375,6 +375,10 @@ fn reached(
                 }
                 false => "raise the threshold in `verdict` above the risk at rest",
             };
+            let help = match limit > 0.0 && limit <= 1.0 && !above {
+                true => format!("risks are in percent: did you mean {}?", limit * 100.0),
+                false => help.into(),
+            };
             found.push(Diagnostic::warning("out-of-reach", place(&["risk"]), message).help(help));
         }
     }

@@ -98,7 +98,7 @@ fn number_advice(text: &str) -> Option<String> {
     }
     let with_point = text.replacen(',', ".", 1);
     if with_point.parse::<f64>().is_ok() {
-        return Some(format!("the decimal mark is a point: `{with_point}`"));
+        return Some(format!("write a decimal point: `{with_point}`"));
     }
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)));
     let number = text.get(..end?)?;

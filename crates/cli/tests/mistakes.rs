@@ -70,7 +70,7 @@ fn the_advice_for_mistakes_works() {
         (
             "explain fan.yaml temperature=24,5 humidity=3",
             2,
-            "the decimal mark is a point: `24.5`",
+            "write a decimal point: `24.5`",
         ),
         (
             "explain fan.yaml temperature=22% humidity=3",

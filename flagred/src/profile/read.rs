@@ -103,8 +103,18 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         let message = format!("this program reads profiles of version {VERSION} only");
         found.push(
             Diagnostic::error("version", version.span.clone(), message)
-                .help("write `flagred: 1`, or take a newer flagred"),
+                .help("write `flagred: 1`, or use a newer version of flagred"),
         );
+    }
+    for key in ["warn", "fail", "thresholds"] {
+        if let Some(entry) = fields.unknown().find(|entry| entry.key == key)
+            && let Some(finding) = found.iter_mut().find(|one| one.span == entry.key_span)
+        {
+            finding.help = Some(
+                "write the levels under `verdict`: `verdict: {warn: {risk: 60}, fail: {risk: 75}}`"
+                    .into(),
+            );
+        }
     }
     let name = required_words(&fields, "name", "write `name: my-profile`", found);
     let rules = required_words(
@@ -234,7 +244,7 @@ fn other_risks(fields: &Fields, defaults: &OtherRisk, found: &mut Found) -> Vec<
     let mut risks = Vec::new();
     for entry in entries.unwrap_or_default() {
         if entry.key == defaults.output {
-            let message = format!("`{}` is the `output` of the profile already", entry.key);
+            let message = format!("`{}` is already the `output` of the profile", entry.key);
             found.push(
                 Diagnostic::error("other-risk", entry.key_span.clone(), message)
                     .help("its levels are in `verdict`; name other outputs here"),
@@ -295,7 +305,7 @@ fn elevated_risk(
         );
         found.push(
             Diagnostic::error("order", low.value.span.clone(), message)
-                .help("the elevated risk falls below `low` and rises above `high`"),
+                .help("the elevated risk falls while the risk is below `low`, and rises while the risk is above `high`"),
         );
     }
     settings

@@ -19,6 +19,9 @@ const MOST: f64 = 0.98;
 /// The number of steps over a range.
 const STEPS: u32 = 200;
 
+/// The share of a range on which a term has its largest degree, from which the other terms of the input are too narrow.
+const NEARLY_ALL: f64 = 0.98;
+
 /// Adds the findings, in the order of the model's parts.
 pub(super) fn of(model: &Model, at: &At<'_>, found: &mut Vec<Diagnostic>) {
     for input in &model.inputs {
@@ -154,7 +157,16 @@ fn constant(input: &Variable, one: &Degrees<'_>, all: &[Degrees<'_>]) -> Option<
             && (one.is_top().zip(&other.at))
                 .any(|(is_top, degree)| is_top && *degree > height - EQUAL)
     };
-    let other = all.iter().find(is_beside)?.term;
+    let Some(other) = all.iter().find(is_beside).map(|other| other.term) else {
+        if share < NEARLY_ALL {
+            return None;
+        }
+        let message = format!(
+            "term `{name}` of input `{of}` is {most} on {} % of the range, so that the other terms have almost no effect",
+            libm::floor(100.0 * share)
+        );
+        return Some((message, help));
+    };
     let message = format!(
         "term `{name}` of input `{of}` is {most} on {} % of the range, also where `{}` is {}",
         libm::floor(100.0 * share),

@@ -97,7 +97,10 @@ impl fmt::Display for EvaluateError {
             EvaluateError::NoFields { message } => f.write_str(message),
             EvaluateError::InputNotFinite => f.write_str("an input is not a finite number"),
             EvaluateError::TooManyCells { cells, most } => match *cells {
-                usize::MAX => write!(f, "the grid has more than {most} cells, the most of a map"),
+                usize::MAX => write!(
+                    f,
+                    "the grid has more than {most} cells, the maximum for a map"
+                ),
                 cells => write!(f, "the grid has {cells} cells; a map has at most {most}"),
             },
             EvaluateError::NoRuleFired { output } => {

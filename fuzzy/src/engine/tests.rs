@@ -157,11 +157,11 @@ fn all_problems_of_a_model_are_reported_at_once() {
         Engine::new(&model).unwrap_err().to_string(),
         @"
     error[duplicate-variable]: the rule set has the variable `x` twice
-      help: inputs and outputs have different names; rename one of them
+      help: inputs and outputs must have different names; rename one of them
     error[wrong-parameter]: term `low` of input `x`: `sd` is -1, but must be greater than 0
-      help: the positions of a membership function ascend, its widths are greater than 0, its degrees lie in [0, 1]
+      help: the positions of a membership function must ascend, its widths must be greater than 0, and its degrees in [0, 1]
     error[wrong-range]: the range of input `x` starts at 1 and ends at 1
-      help: write the least value first, then the greatest
+      help: write the minimum first, then the maximum
     error[value-outside-range]: the value 101 lies outside the range of output `y`
       help: write a value from 0 to 100
     error[weight-outside-range]: rule 1: the weight NaN is outside [0, 1]

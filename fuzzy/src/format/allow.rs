@@ -73,7 +73,7 @@ fn entry(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<A
             && !finding.help.as_deref().is_some_and(|help| help.starts_with("did you mean"))
         {
             finding.help = Some(format!(
-                "only warnings and notes about the rules can be accepted, not errors and claims: {}",
+                "only these warnings and notes about the rules can be accepted (not errors or claims): {}",
                 all_of(&CODES)
             ));
         }

@@ -65,7 +65,7 @@ fn one(
         ..Block::new(entry.key)
     };
     let help = match entry.key {
-        // The rules are below `blocks`, without a block.
+        // The keys of a block are directly below `blocks`, without the name of the block.
         key if KEYS.contains(&key) => "write the name of the block above its keys: `blocks: {main: {rules: [IF ... THEN ...]}}`".into(),
         name => format!("write `{name}: {{rules: [IF ... THEN ...]}}`"),
     };
@@ -85,7 +85,8 @@ fn one(
         let found = words::operators(node, &of, &keys, model.operators, findings);
         for finding in findings.iter_mut().skip(before) {
             if finding.code == "unknown-key" && finding.message.ends_with("`aggregation`") {
-                let help = "an output has an `aggregation`, or the `operators` of the rule set";
+                let help =
+                    "write `aggregation` in an output, or in the `operators` of the rule set";
                 finding.help = Some(help.into());
             }
         }
@@ -99,8 +100,7 @@ fn one(
     }
     let help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`";
     let rules = fields.require("rules", help, findings);
-    let (before, inputs) = (model.rules.len(), &model.inputs);
-    let read = rules.and_then(|node| rules::read(node, before, inputs, spans, findings));
+    let read = rules.and_then(|node| rules::read(node, model, spans, findings));
     spans.rules_unread |= read.is_none();
     let of_block = |rule: Rule| Rule {
         block: index,
@@ -197,7 +197,7 @@ fn threshold(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<
         .filter_map(|(word, comparison)| Some((*comparison, fields.get(word)?)));
     let found: Vec<(Comparison, &Node)> = found.collect();
     let [(comparison, number)] = found.as_slice() else {
-        let message = format!("{what} has one comparison");
+        let message = format!("{what} must have exactly one comparison");
         findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
         return None;
     };

@@ -156,7 +156,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         let message = format!("format version `{}` is not supported", written.text);
         findings.push(
             Diagnostic::error("unsupported-version", node.span.clone(), message).help(format!(
-                "this program reads version {VERSION}; a newer one may read this file"
+                "this program reads version {VERSION}; a newer version of the program may read this file"
             )),
         );
         // In another version, all other keys may have a different meaning.
@@ -230,8 +230,11 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
     };
     (spans.outputs_key, spans.rules_key) = (key("outputs"), key("rules"));
     let Some(node) = fields.get("blocks") else {
-        let rules = fields.require("rules", rules_help, findings);
-        let rules = rules.and_then(|node| rules::read(node, 0, &model.inputs, spans, findings));
+        let rules = match fields.misspells("blocks") {
+            true => None,
+            false => fields.require("rules", rules_help, findings),
+        };
+        let rules = rules.and_then(|node| rules::read(node, &model, spans, findings));
         spans.rules_unread |= rules.is_none();
         model.rules = rules.unwrap_or_default();
         return Some(model);

@@ -73,12 +73,15 @@ pub(super) fn peaks_in_list(items: &[Node]) -> Option<String> {
     (!peaks.is_empty()).then(|| format!("write braces: `{{{}}}`", peaks.join(", ")))
 }
 
-/// Returns a suggestion for peaks such as `{cold:10, hot:35}`, which YAML reads as names.
+/// Returns a suggestion for peaks such as `{cold:10, hot:35}` or `{cold=10, hot=35}`, which YAML reads as names.
 pub(super) fn colons_without_space(entries: &[Entry<'_>]) -> Option<String> {
     let peaks = entries.iter().map(|entry| {
-        let (name, peak) = entry.key.split_once(':')?;
-        peak.parse::<f64>().ok()?;
-        entry.value.is_null().then(|| format!("{name}: {peak}"))
+        let (name, peak) = entry.key.split_once([':', '='])?;
+        peak.trim().parse::<f64>().ok()?;
+        entry
+            .value
+            .is_null()
+            .then(|| format!("{}: {}", name.trim(), peak.trim()))
     });
     let peaks: Vec<String> = peaks.collect::<Option<_>>()?;
     (!peaks.is_empty()).then(|| format!("write `{{{}}}`", peaks.join(", ")))

@@ -10,18 +10,17 @@ use core::ops::Range;
 use super::{RuleSpans, Spans, optional_text};
 use crate::{
     diagnostic::Diagnostic,
-    model::{Beaten, Rule, Variable},
+    model::{Beaten, Model, Rule, Variable},
     rule::{self, Condition, Owner},
     tree::{Fields, Node, Scalar, Value},
 };
 
 pub(super) const KEYS: [&str; 5] = ["rule", "confidence", "support", "against", "note"];
 
-/// Reads the rules of a list; `before` is the number of rules that precede it, `inputs` are those that they read.
+/// Reads the rules of a list, which follow those of the model.
 pub(super) fn read(
     node: &Node,
-    before: usize,
-    inputs: &[Variable],
+    model: &Model,
     spans: &mut Spans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Rule>> {
@@ -30,11 +29,19 @@ pub(super) fn read(
         findings.push(finding.help("begin the line of each rule with `- IF`; rules have no names"));
         return None;
     };
-    let owner = |term: &str| {
-        let mut inputs = inputs.iter();
-        let input = inputs.find(|input| input.terms.iter().any(|one| one.name == term))?;
-        Some(input.name.clone())
+    let owner = |kind: &str, term: &str| {
+        let has_term = |variable: &&Variable| variable.terms.iter().any(|one| one.name == term);
+        let found = match kind {
+            "output" => model
+                .outputs
+                .iter()
+                .map(|output| &output.variable)
+                .find(has_term),
+            _ => model.inputs.iter().find(has_term),
+        };
+        Some(found?.name.clone())
     };
+    let before = model.rules.len();
     let mut rules = Vec::with_capacity(items.len());
     for (i, item) in items.iter().enumerate() {
         // A rule in several entries is reported at its first one.

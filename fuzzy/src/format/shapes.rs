@@ -45,7 +45,7 @@ pub(super) fn read(
         finding.help = match &shape.value.value {
             // For example `{type: triangle, points: [0, 1, 2]}`.
             Value::Scalar(name) if known.clone().any(|known| known == name.text) => Some(format!(
-                "a membership function is the key itself: `{{{}: ...}}`",
+                "write the membership function as the key: `{{{}: ...}}`",
                 name.text
             )),
             _ => suggest(shape.key, known),
@@ -61,7 +61,7 @@ pub(super) fn read(
             && !start.quoted
         {
             let rest = second.key;
-            let message = "a comma in braces ends the formula";
+            let message = "in braces, a comma ends the formula";
             let help = format!(
                 "put the formula in quotes: `function: \"{}, {rest}\"`",
                 start.text
@@ -74,7 +74,7 @@ pub(super) fn read(
         findings.push(
             Diagnostic::error("duplicate-key", second.key_span.clone(), message)
                 .related(shape.key_span.clone(), "the first one")
-                .help("a term has one membership function; for two write two terms"),
+                .help("a term has one membership function; write two terms for two functions"),
         );
     }
     match shape.key {

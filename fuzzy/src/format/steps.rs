@@ -10,7 +10,7 @@ use crate::{
 };
 
 const HELP: &str =
-    "write the limit of each term, and none for the last: `steps: {low: 10, medium: 20, high: }`";
+    "write the limit of each term; the last term has none: `steps: {low: 10, medium: 20, high: }`";
 
 /// Reads the terms of a variable that are defined by limits.
 pub(super) fn read(
@@ -82,7 +82,30 @@ fn limit(what: &str, entry: &Entry<'_>, findings: &mut Vec<Diagnostic>) -> Optio
         _ if entry.value.is_null() => return None,
         _ => entry.value,
     };
-    number.finite(&limit, findings)
+    let before = findings.len();
+    let found = number.finite(&limit, findings);
+    if let Some(finding) = findings.get_mut(before)
+        && let Some(help) = advice(entry.key, number)
+    {
+        finding.help = Some(help);
+    }
+    found
+}
+
+/// Returns a suggestion for a limit such as `[0, 30]`, `<30` or `inf`.
+fn advice(term: &str, limit: &Node) -> Option<String> {
+    let Some(text) = limit.as_text() else {
+        return matches!(limit.value, Value::List(_)).then(|| HELP.into());
+    };
+    let number = text.trim_start_matches(['<', '=', '≤', ' ']);
+    match number.parse::<f64>() {
+        Ok(limit) if limit.is_finite() => Some(format!("write `{term}: {number}`")),
+        Ok(_) => Some(format!("the last term has no limit: write `{term}:`")),
+        Err(_) if text.to_lowercase().contains("inf") => {
+            Some(format!("the last term has no limit: write `{term}:`"))
+        }
+        Err(_) => None,
+    }
 }
 
 /// Returns the node that contains the number of a limit.
@@ -105,9 +128,8 @@ fn order(what: &str, steps: &[(Entry<'_>, Option<f64>)], findings: &mut Vec<Diag
             );
             let span = right.value.span.clone();
             findings.push(
-                Diagnostic::warning("inverted-parameters", span, message).help(
-                    "write the terms from left to right; they count in the order of their limits",
-                ),
+                Diagnostic::warning("inverted-parameters", span, message)
+                    .help("write the terms from left to right; they are ordered by their limits"),
             );
         }
     }
@@ -156,7 +178,7 @@ fn check(
                     span,
                     "inverted-parameters",
                     message,
-                    "give each term a limit of its own",
+                    "give each term a different limit",
                 );
             }
             _ => {}

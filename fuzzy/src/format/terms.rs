@@ -57,7 +57,7 @@ fn term(
             Value::List(items) if items.len() == 4 => "name it: `{trapezoid: [0, 1, 2, 3]}`",
             Value::List(_) => "name it: `{triangle: [0, 1, 2]}`",
             Value::Scalar(scalar) if scalar.as_number().is_some() => {
-                "numbers alone are peaks: `partition: {low: 0, high: 10}` in place of `terms`; a term is a membership function: `{triangle: [0, 1, 2]}`"
+                "numbers without a membership function are peaks: `partition: {low: 0, high: 10}` in place of `terms`; a term is a membership function: `{triangle: [0, 1, 2]}`"
             }
             _ => TERM_HELP,
         }));

@@ -311,7 +311,7 @@ proptest! {
         let texts = model.inputs.iter().chain(outputs).flat_map(|v| [&v.unit, &v.description]);
         let texts = texts.chain(model.rules.iter().map(|rule| &rule.note));
         let texts = texts.chain(model.blocks.iter().map(|block| &block.description)).flatten();
-        // The two fold the line separators of YAML 1.1 differently.
+        // The two libraries fold the line separators of YAML 1.1 differently.
         let separators = ['\u{85}', '\u{2028}', '\u{2029}'];
         let is_alike = |text: &String| !text.trim_matches('\n').is_empty() && !text.contains(separators);
         prop_assume!(texts.chain([&model.name]).all(is_alike));

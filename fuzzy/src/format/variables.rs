@@ -139,7 +139,7 @@ fn samples(
         (Some(number), None) => (number, SamplingRule::Midpoint),
         (None, Some(number)) => (number, SamplingRule::Trapezoid),
         _ => {
-            let message = "`samples` has one sampling rule";
+            let message = "`samples` must have exactly one sampling rule";
             findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
             return None;
         }
@@ -153,7 +153,7 @@ fn samples(
 }
 
 const NO_RULE_HELP: &str = "write `undefined`, `error`, a value as `{value: 50}`, or `previous` for the previous value: \
-     with `{previous: 50}` it is 50 before there is one";
+     with `{previous: 50}` it is 50 until there is a previous value";
 
 /// Reads `undefined`, `error`, `previous`, `{value: 50}` or `{previous: 50}`; `span` is set to the position of the
 /// value.
@@ -222,7 +222,7 @@ fn variable(
     };
     variable.description = optional_text(fields, "description", findings);
     variable.unit = optional_text(fields, "unit", findings);
-    let help = "write the least and the greatest value: `range: [0, 1]`";
+    let help = "write the minimum and the maximum: `range: [0, 1]`";
     if let Some(node) = fields.require("range", help, findings)
         && let Some((low, high)) = range(what, node, findings)
     {
@@ -287,7 +287,7 @@ fn variable(
 }
 
 fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64, f64)> {
-    let help = "write the least and the greatest value: `range: [0, 1]`";
+    let help = "write the minimum and the maximum: `range: [0, 1]`";
     let Value::List(ends) = &node.value else {
         let finding = node.unexpected(&format!("two numbers for the range of {what}"));
         findings.push(finding.help(help));
@@ -349,7 +349,7 @@ fn partition(
             let mut entries = entries.unwrap_or_default();
             if let Some(help) = colons_without_space(&entries) {
                 let message =
-                    format!("a space is missing after the colons of the partition of {what}");
+                    format!("the peaks of the partition of {what} are not separated by `: `");
                 let span = node.span.clone();
                 findings.push(Diagnostic::error("yaml-syntax", span, message).help(help));
                 return;
@@ -417,8 +417,9 @@ fn partition(
     if names.len() < 2 {
         let message = format!("the partition of {what} has fewer than two terms");
         findings.push(
-            Diagnostic::error("wrong-parameter", node.span.clone(), message)
-                .help("add a term, or spell the only one out under `terms`"),
+            Diagnostic::error("wrong-parameter", node.span.clone(), message).help(
+                "add a term, or write the only one with its membership function under `terms`",
+            ),
         );
         peaks = None;
     }
@@ -479,7 +480,7 @@ fn rising(
                 format!("the terms `{other}` and `{name}` of {what} have the same peak {peak}");
             findings.push(
                 Diagnostic::error("inverted-parameters", node.span.clone(), message)
-                    .help("give each term of a partition a peak of its own"),
+                    .help("give each term of a partition a different peak"),
             );
         }
         // An inverted range is reported on its own.

@@ -494,7 +494,7 @@ impl Mistake<'_> {
             Wrong::OpenBracket => {
                 let length = rest.find('(').map_or(0, |at| at + 1);
                 error(length, "the bracket `(` is never closed".into())
-                    .help("add `)` at the end of what belongs together")
+                    .help("add the closing bracket `)`")
             }
             Wrong::Quote => error(
                 found.len(),

@@ -93,7 +93,7 @@ fn a_map_of_too_many_cells_is_refused_with_their_number() {
     let refused = DecisionMap::new(&engine, endless, 0).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "the grid has more than 10000000 cells, the most of a map"
+        "the grid has more than 10000000 cells, the maximum for a map"
     );
 }
 

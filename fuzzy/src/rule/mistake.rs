@@ -63,7 +63,6 @@ const JOINTS: [&str; 3] = ["AND", "OR", "THEN"];
 
 impl Mistake<'_> {
     /// Returns the diagnostic of the syntax error.
-    /// `owner` returns the input that has a term of that name.
     pub(super) fn explain(self, text: &str, owner: Owner<'_>) -> Diagnostic {
         let rest = self.rest.trim_start();
         let start = text.len() - rest.len();
@@ -95,15 +94,20 @@ impl Mistake<'_> {
             Wrong::Joint => {
                 let help = match nearest(found, JOINTS) {
                     _ if found.eq_ignore_ascii_case("WITH") => {
-                        Some("a weight ends the rule: `THEN output IS term WITH 0.5`".into())
+                        Some("write the weight at the end of the rule: `THEN output IS term WITH 0.5`".into())
                     }
                     _ if found.eq_ignore_ascii_case("XOR") => Some(
                         "there is no `XOR`: write `(a AND NOT b) OR (NOT a AND b)` with the conditions a and b"
                             .into(),
                     ),
                     _ if ["FOR", "DURING", "SINCE", "WITHIN"].iter().any(|word| found.eq_ignore_ascii_case(word)) => Some(
-                        "a rule sees one moment: add an input that measures how long, and name a term of that".into(),
+                        "a rule reads the inputs of one moment: add an input that measures the duration, and use a term of that input".into(),
                     ),
+                    // For example `IF x IS low: y IS high`.
+                    _ if found == ":" => Some(match keyword(rest.get(1..).unwrap_or(""), "THEN") {
+                        Some(_) => "remove the colon".into(),
+                        None => "write `THEN` in place of the colon".into(),
+                    }),
                     Some(word) => Some(format!("did you mean `{word}`?")),
                     None => sign(rest).or_else(|| joint(before, rest)),
                 };
@@ -136,7 +140,7 @@ impl Mistake<'_> {
                 start..start + 1,
                 "the bracket `(` is never closed",
             )
-            .help("add `)` at the end of what belongs together"),
+            .help("add the closing bracket `)`"),
             Wrong::EmptyName => {
                 Diagnostic::error("rule-syntax", start..start + 2, "the name is empty")
                     .help("write the name of a variable or a term between the quotes")
@@ -156,7 +160,7 @@ impl Mistake<'_> {
                 span,
                 format!("brackets and NOTs are nested deeper than {DEEPEST_NESTING}"),
             )
-            .help("split the rule into several rules of the same conclusion"),
+            .help("split the rule into several rules with the same conclusion"),
         }
     }
 }
@@ -180,7 +184,7 @@ fn two_words(span: core::ops::Range<usize>, first: &str, second: &str) -> Diagno
         ],
     ) || is(first, &["greater", "smaller", "higher", "lower"])
     {
-        Some("a condition names a term: join the terms that are meant, `(x IS a OR x IS b)`, or give the input a term for these values".to_owned())
+        Some("a condition names a term: join the intended terms, `(x IS a OR x IS b)`, or give the input a term for these values".to_owned())
     } else {
         None
     };
@@ -202,8 +206,8 @@ fn two_words(span: core::ops::Range<usize>, first: &str, second: &str) -> Diagno
     Diagnostic::error("rule-syntax", span, message).help(help)
 }
 
-/// Returns the input that has a term of this name, if the inputs are known.
-pub(crate) type Owner<'a> = &'a dyn Fn(&str) -> Option<String>;
+/// Returns the input or the output, as the first argument requests, that has a term of a name.
+pub(crate) type Owner<'a> = &'a dyn Fn(&str, &str) -> Option<String>;
 
 /// Returns the input of the last condition of a text: `x` of `IF x IS low OR`.
 fn last_input(before: &str) -> Option<&str> {
@@ -241,10 +245,13 @@ fn is_missing(
         }
         // In `x IS low OR high`, the name is a term of the input before it, or of another one.
         let joint = before.split_whitespace().next_back().unwrap_or("");
-        let of = owner(name);
+        let of = owner(kind, name);
         return Some(match last_input(before) {
+            _ if kind == "output" && of.is_some() => {
+                format!("write `{} IS {name}`", of.unwrap_or_default())
+            }
             Some(_) if kind == "output" => {
-                String::from("each conclusion names its output and one term: `output IS term`")
+                String::from("write an output and one term in each conclusion: `output IS term`")
             }
             Some(last) => match of {
                 Some(other) if other != last => {
@@ -260,7 +267,10 @@ fn is_missing(
                     )
                 }
             },
-            None => format!("write `{name} IS` and a term"),
+            None => match of {
+                Some(of) => format!("write `{of} IS {name}`"),
+                None => format!("write `{name} IS` and a term"),
+            },
         });
     }
     let is = |word: &str| found.eq_ignore_ascii_case(word);
@@ -278,6 +288,16 @@ fn is_missing(
         return Some(format!(
             "a condition names a term: write `{name} IS {next}`"
         ));
+    }
+    // For example `x BETWEEN cold AND mild`.
+    if is("BETWEEN")
+        && let [_, low, joint, high, ..] = rest.split_whitespace().collect::<Vec<&str>>().as_slice()
+        && joint.eq_ignore_ascii_case("AND")
+        && [low, high]
+            .iter()
+            .all(|word| is_plain_name(word) && word.parse::<f64>().is_err())
+    {
+        return Some(format!("write `({name} IS {low} OR {name} IS {high})`"));
     }
     if found.starts_with(['<', '>', '≤', '≥', '-', '+', '*', '/']) || is("BETWEEN") {
         return Some(format!(
@@ -365,7 +385,7 @@ fn spoken(name: &str, rest: &str, before: &str) -> Option<String> {
     }
     if is(&CHANGES) {
         return Some(format!(
-            "a rule sees the value of `{name}`, not its change: add an input with the rate of change, and name a term of that"
+            "a rule sees the value of `{name}`, not its change: add an input with the rate of change, and use a term of that input"
         ));
     }
     if found.eq_ignore_ascii_case("IN") {
@@ -423,6 +443,12 @@ fn name_is_missing(what: &str, found: &str) -> Option<String> {
     if what == "the name of an output" && is("IF") {
         return Some("a rule has one `IF`: join the conditions by `AND` before `THEN`".into());
     }
+    if what == "the name of an output" && found == "(" {
+        return Some("write the conclusion without brackets, and a weight as `WITH 0.5`".into());
+    }
+    if !input && is("IS") {
+        return Some("remove the second `IS`".into());
+    }
     if what == "the name of an output" && is("THEN") {
         return Some("remove the second `THEN`".into());
     }
@@ -463,6 +489,9 @@ fn at_start(rest: &str) -> String {
         .any(|word| found_here(rest).eq_ignore_ascii_case(word))
     {
         return format!("write `IF` in place of `{}`", found_here(rest));
+    }
+    if let Some(help) = sign(rest).filter(|_| rest.starts_with(is_curly_quote)) {
+        return help;
     }
     let numbered = rest
         .split_whitespace()
@@ -551,8 +580,14 @@ fn behind_conclusion(before: &str, rest: &str, weighted: bool) -> Option<String>
     if is("or") {
         return Some("conclusions are joined by `AND`; for `OR` write two rules".into());
     }
-    if is("if") || is("when") {
+    if is("if") {
+        return Some("begin the next rule on a line of its own: `- IF ...`".into());
+    }
+    if is("when") {
         return Some("a rule has one `IF`: join conditions by `AND` before `THEN`".into());
+    }
+    if is("then") {
+        return Some("join conclusions by `AND`, or write a second rule".into());
     }
     if is("unless") || is("except") {
         return Some("there is no `UNLESS`: write `AND NOT (condition)` before `THEN`".into());
@@ -576,7 +611,7 @@ fn behind_conclusion(before: &str, rest: &str, weighted: bool) -> Option<String>
         "," => Some("join conclusions by `AND`".into()),
         ";" => Some("remove it; each rule is an item of the list `rules`".into()),
         "(" | "%" | "[" => Some("write a weight after `WITH`: `WITH 0.8`".into()),
-        _ if weighted => Some("a weight ends its rule; remove what follows".into()),
+        _ if weighted => Some("a weight is the end of its rule; remove everything after it".into()),
         _ if is_plain_name(found) => {
             Some("put a name of several words in quotes: `\"very low\"`".into())
         }
@@ -587,6 +622,7 @@ fn behind_conclusion(before: &str, rest: &str, weighted: bool) -> Option<String>
 /// Returns a suggestion for an operator of another language.
 fn sign(rest: &str) -> Option<String> {
     let found = found_here(rest);
+    let found = found.trim_end_matches(['(', ')']);
     let text = match found {
         "&" | "&&" => "write `AND`",
         "|" | "||" => "write `OR`",
@@ -596,7 +632,7 @@ fn sign(rest: &str) -> Option<String> {
         "=>" | "->" => "write `THEN`",
         _ if found.starts_with("//") => "a comment begins with `#`",
         _ if found.starts_with(is_curly_quote) => "write straight quotes: `\"`",
-        _ if found.starts_with('`') => "write a name without quotes, or in quotes: `\"`",
+        _ if found.starts_with('`') => "write a name without quotes, or in double quotes: `\"`",
         _ => return None,
     };
     Some(text.into())

@@ -52,7 +52,7 @@ pub const DEEPEST_NESTING: usize = 64;
 /// # Ok::<(), Box<fuzzy::diagnostic::Diagnostic>>(())
 /// ```
 pub fn parse(text: &str) -> Result<Rule, Box<Diagnostic>> {
-    parse_with_weight(text, &|_| None).map(|(rule, _)| rule)
+    parse_with_weight(text, &|_, _| None).map(|(rule, _)| rule)
 }
 
 /// Parses a rule, and also returns the position of its weight: the number after WITH, or the empty range after the

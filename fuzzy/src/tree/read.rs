@@ -41,6 +41,31 @@ pub struct Entry<'a> {
     pub value: &'a Node,
 }
 
+impl Entry<'_> {
+    /// Returns whether the key is the part of a number behind a decimal comma: `{window_s: 2,5}` has a key `5`.
+    fn is_rest_of_a_number(&self) -> bool {
+        self.value.is_null() && self.key.bytes().all(|c| c.is_ascii_digit())
+    }
+
+    /// Returns a suggestion for a time in milliseconds or microseconds, such as `window_ms: 3000`.
+    fn in_seconds(&self, known: &[&str]) -> Option<String> {
+        let (stem, unit) = self.key.rsplit_once('_')?;
+        let key = known
+            .iter()
+            .find(|key| key.strip_suffix("_s") == Some(stem))?;
+        let in_a_second = match unit {
+            "ms" => 1e3,
+            "us" => 1e6,
+            _ => return None,
+        };
+        let time = self.value.as_number_text()?.parse::<f64>().ok()?;
+        Some(format!(
+            "write the time in seconds: `{key}: {}`",
+            time / in_a_second
+        ))
+    }
+}
+
 impl<'a> Fields<'a> {
     /// Returns the value of a key; `None` if the key or its value is missing.
     #[must_use]
@@ -156,6 +181,20 @@ impl Node {
                 let meant = meant(entry.key, known);
                 finding.help = match foreign::elsewhere(entry.key) {
                     Some(help) if meant.is_empty() => Some(help.into()),
+                    // `window_s: 2,5` in braces is parsed as a key `5` without a value.
+                    _ if entry.is_rest_of_a_number() => entries
+                        .iter()
+                        .take_while(|one| one.key_span != entry.key_span)
+                        .last()
+                        .and_then(|one| {
+                            Some(format!(
+                                "write a decimal point: `{}: {}.{}`",
+                                one.key,
+                                one.value.as_number_text()?,
+                                entry.key
+                            ))
+                        }),
+                    _ if let Some(help) = entry.in_seconds(known) => Some(help),
                     _ => {
                         if meant.is_empty() {
                             unlike.push(entry.key_span.clone());

@@ -26,7 +26,7 @@ impl<'m> Validator<'m> {
         }
         for consequent in &rule.consequents {
             if let Some(output) = self.known_output(&consequent.output) {
-                self.known_term("output", output, &consequent.term);
+                self.known_term("output", output, (&consequent.hedges, &consequent.term));
             }
             let mut hedges = consequent.hedges.iter();
             if let Some(hedge) = hedges.find(|hedge| !hedge.may_conclude()) {
@@ -128,7 +128,7 @@ impl<'m> Validator<'m> {
                 let help = format!("{sets}, or let a linear function read it");
                 self.error("output-in-condition", &name.span, message, &help);
             }
-            Some(term) => self.known_term(kind, variable, term),
+            Some(term) => self.known_term(kind, variable, (&proposition.hedges, term)),
             // A proposition `IS any` without a term is parsed like this.
             None if proposition.hedges.last() == Some(&Hedge::Any) => {}
             None => {
@@ -170,7 +170,13 @@ impl<'m> Validator<'m> {
         found
     }
 
-    pub(super) fn known_term(&mut self, kind: &str, variable: &Variable, term: &Name) {
+    /// Requires that a variable has a term that a rule names. `hedges` are those before the term.
+    pub(super) fn known_term(
+        &mut self,
+        kind: &str,
+        variable: &Variable,
+        (hedges, term): (&[Hedge], &Name),
+    ) {
         // Terms that could not be parsed, and outputs without terms, are reported on their own.
         let is_told = self.unread.contains(&variable.name.as_str())
             || (kind == "output" && variable.terms.is_empty());
@@ -184,6 +190,14 @@ impl<'m> Validator<'m> {
         if term.text.parse::<f64>().is_ok() {
             let help = finding.help.unwrap_or_default();
             finding.help = Some(format!("a rule names a term, not a number; {help}"));
+        }
+        // A term such as `very humid`, whose first word is parsed as a hedge.
+        let hedges = hedges.iter().map(|hedge| hedge.word());
+        let words: Vec<&str> = hedges.chain([term.text.as_str()]).collect();
+        let whole = words.join(" ");
+        let mut terms = variable.terms.iter();
+        if terms.any(|term| term.name.eq_ignore_ascii_case(&whole)) {
+            finding.help = Some(format!("put the name in quotes: `IS \"{whole}\"`"));
         }
         self.findings.push(finding);
     }

@@ -142,12 +142,6 @@ fn is_table(first: &str, second: Option<&str>) -> bool {
 pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     let before = text.get(..finding.span.start)?;
     let start = before.rfind('\n').map_or(0, |at| at + 1);
-    let is_key = |key: &str| {
-        !key.is_empty()
-            && key
-                .chars()
-                .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
-    };
     // For example `{triangle [30, 50, 70]}`.
     let rest = text.get(finding.span.start..)?;
     let key = before
@@ -163,6 +157,13 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
         let finding = Diagnostic::error("yaml-syntax", at..at + key.len(), message);
         return Some(finding.help("write `key: [value, value]`"));
     }
+    // For example `range:[0, 40]` in this line or the one above, or a line above without its colon.
+    if let Some(finding) = brackets_behind_colon(text, start) {
+        return Some(finding);
+    }
+    if let Some(finding) = key_without_colon(before, rest) {
+        return Some(finding);
+    }
     // For example `unit:°C` in the line above.
     let above = before.get(..start)?.trim_end();
     let at = above.rfind('\n').map_or(0, |at| at + 1);
@@ -177,6 +178,49 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
     let message = String::from("a space is missing after a colon");
     let finding = Diagnostic::error("yaml-syntax", at..at + content.len(), message);
     Some(finding.help("write `key: value`"))
+}
+
+fn is_key(key: &str) -> bool {
+    !key.is_empty()
+        && key
+            .chars()
+            .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+}
+
+/// Returns a finding if a line that starts at `start`, or the one before it, begins with a key whose colon is followed
+/// by a bracket.
+fn brackets_behind_colon(text: &str, start: usize) -> Option<Diagnostic> {
+    let above = text.get(..start.saturating_sub(1))?;
+    let above = above.rfind('\n').map_or(0, |at| at + 1);
+    [start, above].into_iter().find_map(|at| {
+        let line = text.get(at..)?.lines().next()?;
+        let content = line.trim_start();
+        let (key, value) = content.split_once(':')?;
+        (is_key(key) && value.starts_with(['[', '{'])).then(|| {
+            let colon = at + line.len() - content.len() + key.len();
+            let message = String::from("a space is missing after a colon");
+            let help = "write `key: [value, value]`, with a space after the colon";
+            Diagnostic::error("yaml-syntax", colon..colon + 1, message).help(help)
+        })
+    })
+}
+
+/// Returns a finding if a line that consists only of a key without a colon is followed by an indented `key: value`.
+fn key_without_colon(before: &str, rest: &str) -> Option<Diagnostic> {
+    let line_start = before.rfind('\n').map_or(0, |at| at + 1);
+    let here = before.get(line_start..)?;
+    let above = before.get(..line_start)?.trim_end();
+    let at = above.rfind('\n').map_or(0, |at| at + 1);
+    let line = above.get(at..)?;
+    let content = line.trim_start();
+    let indent = line.len() - content.len();
+    let is_below = here.len() - here.trim_start().len() > indent;
+    let has_value = here.contains(':') || rest.starts_with(':');
+    (is_key(content) && is_below && has_value).then(|| {
+        let at = at + indent;
+        let message = String::from("a colon is missing after a key");
+        Diagnostic::error("yaml-syntax", at..at + content.len(), message).help("write `key:`")
+    })
 }
 
 /// Adds to the help of a rule that ends too early that the rest of its line is a comment.

@@ -25,7 +25,7 @@ pub(super) fn not_a_table(start: &[u8]) -> Option<Foreign> {
     if let Some(kind) = kind {
         return is(
             kind,
-            "a table is CSV text, with the names of the columns first",
+            "a table is CSV text with the column names in the first line",
         );
     }
     let mut lines = start.split(|byte| *byte == b'\n');

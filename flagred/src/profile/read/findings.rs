@@ -24,7 +24,7 @@ pub(super) fn findings(
 ) -> Vec<CauseWords> {
     let entries = fields.get("findings").and_then(|node| {
         let help =
-            format!("write the words for each input by its name: `findings: {{spread: {WORDS}}}`");
+            format!("write the texts for each input by its name: `findings: {{spread: {WORDS}}}`");
         node.entries("`findings`", "input", &help, found)
     });
     let mut all = Vec::new();
@@ -75,7 +75,7 @@ fn check_code(node: &Node, code: &str, found: &mut Found) {
     let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     if code.is_empty() || !code.chars().all(is_letter) {
         let message = format!("`{code}` is not a code");
-        let help = "write a word of small letters, digits and `_`, such as `sudden_change`";
+        let help = "write lower-case letters, digits and `_`, such as `sudden_change`";
         refuse(node, message, help.into(), found);
     }
 }
@@ -83,11 +83,12 @@ fn check_code(node: &Node, code: &str, found: &mut Found) {
 fn check_brief(node: &Node, brief: &str, found: &mut Found) {
     if let Some(letter) = brief.chars().find(|c| !c.is_ascii()) {
         let message = format!("`{letter}` in `brief` is not an ASCII character");
-        let help = "it is shown by programs that know only ASCII: write letters without accents";
+        let help = "programs that support only ASCII show it: write letters without accents";
         refuse(node, message, help.into(), found);
     } else if brief.len() > LONGEST_BRIEF {
         let message = format!("`brief` takes at most {LONGEST_BRIEF} ASCII characters");
-        let help = "it is part of texts of 50 characters: write two or three short words";
+        let help =
+            "it is a part of messages of at most 50 characters: write two or three short words";
         refuse(node, message, help.into(), found);
     }
 }

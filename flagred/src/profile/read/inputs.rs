@@ -136,7 +136,7 @@ fn input(
         Some((_, statistic)) => {
             if let Some(stray) = fields.entry("of") {
                 let message = format!(
-                    "`of` goes with `share_below`, `share_above` and `percentile`, not with `{key}`"
+                    "`of` is only for `share_below`, `share_above` and `percentile`, not for `{key}`"
                 );
                 found.push(
                     Diagnostic::error("statistic", stray.key_span.clone(), message)
@@ -150,10 +150,30 @@ fn input(
                 && word.as_number().is_none()
             {
                 let message = format!("`{key}` takes a number, and `of` the signal");
-                let number = fields.get("of").and_then(Node::as_number_text);
-                let example = if *key == "percentile" { "95" } else { "0.1" };
-                let number = number.unwrap_or(example);
-                let help = format!("write `{{{key}: {number}, of: {}}}`", word.text);
+                let percent = word
+                    .text
+                    .strip_suffix('%')
+                    .and_then(|text| text.trim().parse::<f64>().ok());
+                let help = match (percent, fields.get("of").and_then(Node::as_text)) {
+                    (Some(percent), of) if *key == "percentile" => format!(
+                        "write `{{{key}: {percent}, of: {}}}`",
+                        of.unwrap_or("motor_margin")
+                    ),
+                    (Some(percent), of) => format!(
+                        "write `{{{key}: {}, of: {}}}`",
+                        percent / 100.0,
+                        of.unwrap_or("motor_margin")
+                    ),
+                    (None, _) => {
+                        let number = fields.get("of").and_then(Node::as_number_text);
+                        let example = if *key == "percentile" { "95" } else { "0.1" };
+                        format!(
+                            "write `{{{key}: {}, of: {}}}`",
+                            number.unwrap_or(example),
+                            word.text
+                        )
+                    }
+                };
                 found
                     .push(Diagnostic::error("wrong-type", behind.span.clone(), message).help(help));
                 return None;
@@ -202,8 +222,7 @@ fn input(
     if let Some(entry) = fields.entry("if_missing")
         && signal.is_made_of_motors()
     {
-        let message =
-            "`if_missing` goes with a signal that a vehicle may lack, not with its motors";
+        let message = "`if_missing` is for signals that a vehicle may lack, and the motor commands are not such a signal";
         let help = "remove it: without the commands of the motors the risk is unknown";
         found.push(Diagnostic::error("if-missing", entry.key_span.clone(), message).help(help));
     }
@@ -360,7 +379,7 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         _ => {
             if found.len() == before {
                 let message = match given.contains(&"unknown_below") {
-                    true => format!("`unknown_below` of {what} goes with `ratio` alone"),
+                    true => format!("`unknown_below` of {what} is only for `ratio`"),
                     false => format!(
                         "{over} is one of `mean`, `std`, `min`, `max`, `motor`, `difference`, `ratio` and `product`"
                     ),
@@ -383,7 +402,7 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
             .collect();
         found.push(
             Diagnostic::error("signal", node.span.clone(), message).help(format!(
-                "write the name alone, or a signal of motors: {}",
+                "write only the name, or a signal of motors: {}",
                 known.join(", ")
             )),
         );

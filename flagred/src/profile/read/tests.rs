@@ -177,7 +177,7 @@ reliability:
     assert_eq!(profile.elevated_risk.low_pct, 20.0);
     assert_eq!(profile.elevated_risk.rise_pct_per_s, 30.0);
     assert_eq!(profile.elevated_risk.fall_pct_per_s, 3.0);
-    // Settings that another risk omits are those of the first risk.
+    // Settings that another risk omits default to those of the first risk.
     let [other] = profile.other_risks.as_slice() else {
         panic!("{:?}", profile.other_risks)
     };

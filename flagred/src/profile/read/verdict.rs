@@ -122,7 +122,16 @@ fn number_or<'n>(node: &'n Node, other: &'n str) -> &'n str {
 fn threshold(fields: &Fields, what: &str, found: &mut Found) -> Threshold {
     let mut limit = |key: &str| {
         let node = fields.get(key)?;
-        let value = node.finite(&format!("`{key}`"), found)?;
+        let before = found.len();
+        let value = node.finite(&format!("`{key}`"), found);
+        let percent = node.as_text().and_then(|text| text.strip_suffix('%'));
+        if let (Some(percent), Some(finding)) = (percent, found.get_mut(before)) {
+            finding.help = Some(format!(
+                "risks are in percent: write `{key}: {}`",
+                percent.trim()
+            ));
+        }
+        let value = value?;
         if !(0.0..=100.0).contains(&value) {
             let message = format!("{what}: `{key}` is a percentage, not {value}");
             found.push(
