@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "RULES")]
     model: PathBuf,
     /// A value for each input: `margin=0.07`
-    #[arg(required_unless_present = "rows", value_name = "INPUT=VALUE")]
+    #[arg(value_name = "INPUT=VALUE")]
     inputs: Vec<String>,
     /// Explain each row of this table: print it with the value, the dominant rule and the shares of the rules for each output
     #[arg(long, alias = "csv", value_name = "POINTS.csv", conflicts_with_all = ["inputs", "json", "svg"])]
@@ -52,12 +52,25 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
                 "to explain each row of a table, use `--rows {text}`"
             )));
         }
-        let inputs = model.inputs.iter();
-        let names = inputs.zip(given.iter().map(Some).chain(std::iter::repeat(None)));
-        let pairs = names.map(|(input, value)| {
-            let value = value.filter(|value| value.parse::<f64>().is_ok());
-            let value = value.map_or("VALUE", String::as_str);
-            format!("{}={value}", input.name)
+        // Numbers after the names, as in `fan = 5`, or in the order of the inputs.
+        let words = given
+            .iter()
+            .flat_map(|word| word.split('='))
+            .filter(|word| !word.is_empty());
+        let words: Vec<&str> = words.collect();
+        let number = |word: &&&str| word.parse::<f64>().is_ok();
+        let is_named = model
+            .inputs
+            .iter()
+            .any(|input| words.contains(&input.name.as_str()));
+        let pairs = model.inputs.iter().enumerate().map(|(i, input)| {
+            let at = words.iter().position(|word| *word == input.name);
+            let named = at.and_then(|at| words.get(at + 1)).filter(number);
+            let value = match is_named {
+                true => named,
+                false => words.iter().filter(number).nth(i),
+            };
+            format!("{}={}", input.name, value.unwrap_or(&"VALUE"))
         });
         let help = format!("write `{}`", pairs.collect::<Vec<_>>().join(" "));
         return Err(Failure::usage(format!("`{text}` does not name an input")).help(help));
@@ -177,8 +190,17 @@ fn values(model: &Model, given: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
         let name = &input.name;
         let found = given.iter().find(|(known, _)| known == name);
         found.map(|(_, value)| *value).ok_or_else(|| {
-            let middle = short((input.low + input.high) / 2.0);
-            let help = format!("add `{name}={middle}`, the middle of its range");
+            let missing = model.inputs.iter();
+            let missing =
+                missing.filter(|input| !given.iter().any(|(name, _)| *name == input.name));
+            let middles = missing
+                .map(|input| format!("{}={}", input.name, short((input.low + input.high) / 2.0)));
+            let middles: Vec<String> = middles.collect();
+            let whose = match middles.as_slice() {
+                [_] => "the middle of its range",
+                _ => "the middles of their ranges",
+            };
+            let help = format!("add `{}`, {whose}", middles.join(" "));
             Failure::usage(format!("input `{name}` has no value")).help(help)
         })
     };

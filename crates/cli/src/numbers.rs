@@ -7,18 +7,22 @@ pub(crate) fn whole<N>(low: N, high: N) -> impl Fn(&str) -> Result<N, String> + 
 where
     N: FromStr + PartialOrd + Display + Copy + Send + Sync + 'static,
 {
+    // A limit of the type only is not worth a mention.
+    let is_open = high.to_string().len() > 15;
     move |text| {
         let number = text.parse().ok();
         number
             .filter(|number| (low..=high).contains(number))
-            .ok_or_else(|| format!("write a whole number from {low} to {high}"))
+            .ok_or_else(|| match is_open {
+                true => format!("write a whole number of at least {low}"),
+                false => format!("write a whole number from {low} to {high}"),
+            })
     }
 }
 
 /// Parses a random seed.
 pub(crate) fn seed(text: &str) -> Result<u64, String> {
-    text.parse()
-        .map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
+    whole(0, u64::MAX)(text)
 }
 
 /// Parses a share: at least 0 and less than 1.

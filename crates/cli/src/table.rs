@@ -144,12 +144,23 @@ impl Format {
         {
             let failure = Failure::usage(format!("the rule set has no variable `{stray}`"));
             let meant = fuzzy::diagnostic::suggest(stray, names.iter().copied());
-            return Err(failure.help_if(meant));
+            return Err(
+                match self
+                    .column
+                    .iter()
+                    .find(|(_, column)| names.contains(&column.as_str()))
+                {
+                    Some((name, column)) => failure.help(format!(
+                        "the variable comes first: `--column {column}={name}`"
+                    )),
+                    None => failure.help_if(meant),
+                },
+            );
         }
         let column = |name: &&str| {
             let named = self.column.iter().find(|(n, _)| n == name);
             let column = named.map_or(*name, |(_, column)| column.as_str());
-            let help = format!("or name the column that contains it with `--column {name}=COLUMN`");
+            let help = format!("name the column that contains it with `--column {name}=COLUMN`");
             header.require(column, &help)
         };
         names.iter().map(column).collect()
@@ -184,8 +195,8 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
         left: Arc::clone(&left),
     });
     let unreadable = |error: io::Error| cannot_read(&file, &error);
-    if let Some(kind) = not_a_table(source.fill_buf().map_err(unreadable)?) {
-        return Err(kind.failure(&file));
+    if let Some(failure) = not_a_table(source.fill_buf().map_err(unreadable)?, &file) {
+        return Err(failure);
     }
     let source = uncommented(source).map_err(unreadable)?;
     let mut csv = csv::ReaderBuilder::new()
@@ -256,8 +267,15 @@ impl Header {
             {
                 return failure.help("the first line must contain the names of the columns, separated as `--delimiter` says");
             }
-            let meant = fuzzy::diagnostic::suggest(name, columns).unwrap_or_default();
-            failure.help(format!("{meant}; {help}"))
+            if self.column("t_s").is_some() && ["motor1", "pwm1"].iter().any(|it| self.column(it).is_some()) {
+                let file = &self.file;
+                return failure.help(format!("it is a flight; `flagred dataset {file} --profile flagred -o rows.csv` makes a table of flights"));
+            }
+            failure.help(match fuzzy::diagnostic::suggest(name, columns) {
+                Some(meant) if meant.ends_with('?') => format!("{meant} If not: {help}"),
+                Some(meant) => format!("{meant}; {help}"),
+                None => help.to_owned(),
+            })
         })
     }
 

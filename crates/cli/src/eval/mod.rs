@@ -103,6 +103,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let message = format!("`{model}` is a table, but the rule set comes first");
         return Err(Failure::usage(message).help(format!("flagred eval {points} {model}")));
     }
+    let points = arguments.points.display().to_string();
+    if points.contains('=') && !arguments.points.exists() {
+        let failure = Failure::usage(format!("`{points}` is not a table"));
+        let model = arguments.model.display();
+        return Err(failure.help(format!(
+            "`flagred explain {model} {points}` evaluates one point"
+        )));
+    }
     let engine = rule_set::load(&arguments.model)?;
     let format = &arguments.format;
     let (header, reader) = table::open(&arguments.points, format.delimiter)?;

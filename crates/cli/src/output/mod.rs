@@ -19,6 +19,9 @@ pub(crate) use self::{
 };
 use crate::failure::Failure;
 
+/// Extensions of rule sets and profiles, here and in other programs.
+pub(crate) const RULES: &[&str] = &["yaml", "yml", "fis", "fll", "fcl", "fml"];
+
 /// Parses the path of an SVG picture. Another extension is refused, since it would not match the contents.
 pub(crate) fn svg_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the picture is SVG", &["svg"])
@@ -31,9 +34,12 @@ pub(crate) fn rules_path(text: &str) -> Result<PathBuf, String> {
 
 /// Parses the path of a text or a table. Other extensions are refused, so that a rule set named by mistake is not replaced.
 pub(crate) fn text_path(text: &str) -> Result<PathBuf, String> {
-    if has_ending(Path::new(text), &["svg"]) {
+    let pictures = ["svg", "png", "pdf", "jpg", "jpeg", "gif", "eps"];
+    if has_ending(Path::new(text), &pictures) {
+        let picture = Path::new(text).with_extension("svg");
         return Err(format!(
-            "the output is text; for a picture write `--svg {text}`"
+            "the output is text; for a picture write `--svg {}`",
+            picture.display()
         ));
     }
     path_of(

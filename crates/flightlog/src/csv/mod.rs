@@ -18,17 +18,37 @@ use crate::input::Input;
 use crate::signal::preferred;
 use crate::{Flight, Format, Motor, Options, ReadError};
 
-/// Whether the first line that is not a comment names a column `t_s`.
-pub(crate) fn looks_like(start: &[u8]) -> bool {
+/// The lines that are neither empty nor comments.
+fn content(start: &[u8]) -> impl Iterator<Item = &[u8]> {
     let start = start.strip_prefix(BOM).unwrap_or(start);
-    start
-        .split(|&byte| byte == b'\n')
-        .map(<[u8]>::trim_ascii)
-        .find(|line| !line.is_empty() && !line.starts_with(b"#"))
-        .is_some_and(|line| {
-            line.split(|&byte| byte == b',')
-                .any(|name| cell(name) == b"t_s")
-        })
+    let lines = start.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"))
+}
+
+fn cells(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(|&byte| byte == b',').map(cell)
+}
+
+/// Whether the first line that is not a comment names a column `t_s`.
+pub(crate) fn has_times(start: &[u8]) -> bool {
+    let mut header = content(start).next().into_iter().flat_map(cells);
+    header.any(|name| name == b"t_s")
+}
+
+/// Whether a text is a flight CSV, or another table, whose column of times may have another name: the first line names
+/// several columns, and the next one has as many cells.
+pub(crate) fn looks_like(start: &[u8]) -> bool {
+    let mut lines = content(start);
+    let (Some(header), row) = (lines.next(), lines.next()) else {
+        return false;
+    };
+    let is_name =
+        |name: &[u8]| name.len() <= 64 && !name.iter().any(|byte| b":{}[]<>;".contains(byte));
+    let columns = cells(header).count();
+    let is_table = columns > 1
+        && cells(header).all(is_name)
+        && row.is_some_and(|row| cells(row).count() == columns);
+    is_table || has_times(start)
 }
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
@@ -103,7 +123,15 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     }
     flight.report.truncated |= rows.is_cut_off();
     let is_ours = header::is_ours(&header);
-    if let Some(refused) = rows.refusal(is_ours) {
+    if record.position().is_none() && !is_ours {
+        let help = "write a row for each sample below the names of the columns";
+        return Err(problem(
+            lines + 1,
+            "the table has a header, but no rows",
+            help,
+        ));
+    }
+    if let Some(refused) = rows.refusal(is_ours, flight.report.messages) {
         return Err(refused);
     }
     let other_unit = rows.other_unit().filter(|_| !is_ours);
@@ -211,7 +239,11 @@ impl Layout {
         }
         let find = |name: &str| names.iter().position(|other| other == name);
         let Some(time) = find("t_s") else {
-            return Err(problem(line, "there is no column `t_s`", HELP));
+            return Err(problem(
+                line,
+                "there is no column `t_s`",
+                &time_help(&names),
+            ));
         };
         let [pwm, motor] = ["pwm", "motor"].map(|stem| numbered(&names, stem));
         if !pwm.is_empty() && !motor.is_empty() {
@@ -278,6 +310,42 @@ impl Layout {
             })
             .collect()
     }
+}
+
+/// Advice for a table without `t_s`: its column of times may have another name.
+fn time_help(names: &[String]) -> String {
+    const NAMES: &[&str] = &[
+        "t",
+        "time",
+        "times",
+        "timestamp",
+        "sec",
+        "secs",
+        "seconds",
+        "elapsed",
+        "clock",
+    ];
+    const UNITS: &[(&str, &str)] = &[
+        ("_ms", "1000"),
+        ("ms", "1000"),
+        ("_us", "1000000"),
+        ("us", "1000000"),
+        ("_s", ""),
+    ];
+    let of = |name: &String| {
+        let lower = name.to_ascii_lowercase();
+        let unit = UNITS
+            .iter()
+            .find_map(|(end, by)| Some((lower.strip_suffix(end)?, *by)));
+        let (stem, by) = unit
+            .filter(|(stem, _)| NAMES.contains(stem))
+            .unwrap_or((&lower, ""));
+        NAMES.contains(&stem).then(|| match by {
+            "" => format!("rename `{name}` to `t_s`; it must be in seconds"),
+            _ => format!("rename `{name}` to `t_s`, and divide its values by {by}"),
+        })
+    };
+    names.iter().find_map(of).unwrap_or_else(|| HELP.to_owned())
 }
 
 /// The columns named `stem` and a number, with these numbers.

@@ -19,6 +19,8 @@ const FURTHEST_S: f64 = 1e14;
 /// The smallest step between motor commands that is recognised as milliseconds.
 const LEAST_STEP_MS: f64 = 2.0;
 const LEAST_STEPS: usize = 5;
+/// The smallest step between motor commands that is recognised as microseconds: 1 kHz.
+const LEAST_STEP_US: f64 = 1000.0;
 
 fn is_far_outside(command: f64) -> bool {
     !command.is_nan() && !(-MOST_OUTSIDE..=1.0 + MOST_OUTSIDE).contains(&command)
@@ -36,6 +38,8 @@ pub(super) struct Rows {
     offset_s: f64,
     /// The time of the previous row, if it went back.
     back_s: Option<f64>,
+    /// The number of rows that are left out because their time goes back.
+    went_back: u64,
     pub(super) boots_s: Vec<f64>,
     pub(super) rebooted_in_air_s: Vec<f64>,
     /// Whether all times so far are whole numbers.
@@ -78,6 +82,7 @@ impl Rows {
             last_was_short: None,
             offset_s: 0.0,
             back_s: None,
+            went_back: 0,
             boots_s: Vec::new(),
             rebooted_in_air_s: Vec::new(),
             is_whole: true,
@@ -221,11 +226,12 @@ impl Rows {
                 String::from_utf8_lossy(bytes)
             ),
         };
-        self.refuse(
-            line,
-            text.clone(),
-            "give every row a time, or delete the row",
-        );
+        let is_clock = bytes.iter().any(u8::is_ascii_digit) && bytes.contains(&b':');
+        let help = match is_clock {
+            true => "write the seconds since the first row, such as 0.25, instead of a time of day",
+            false => "give every row a time, or delete the row",
+        };
+        self.refuse(line, text.clone(), help);
         Err(text)
     }
 
@@ -291,8 +297,12 @@ impl Rows {
     }
 
     /// The reason why the file is refused. The clock of a file that this crate wrote is in seconds.
-    pub(super) fn refusal(&mut self, is_ours: bool) -> Option<ReadError> {
+    pub(super) fn refusal(&mut self, is_ours: bool, messages: u64) -> Option<ReadError> {
         let refused = self.refused.take();
+        if refused.is_none() && self.went_back > messages && !is_ours {
+            let text = format!("the time goes back in {} rows", self.went_back);
+            return Some(problem(1, text, "sort the rows by `t_s`"));
+        }
         let of_clock = || self.milliseconds().or_else(|| self.coarse());
         refused.or_else(|| of_clock().filter(|_| !is_ours))
     }
@@ -317,7 +327,10 @@ impl Rows {
                 // For times from 1e9 s the sum is rounded.
                 Ok((t_s + self.offset_s).max(self.last_s))
             }
-            None => Err("the time goes back".into()),
+            None => {
+                self.went_back += 1;
+                Err("the time goes back".into())
+            }
         }
     }
 
@@ -338,11 +351,11 @@ impl Rows {
         let (line, from, to) = self.first_step?;
         (self.is_whole && steps.len() >= LEAST_STEPS && middle >= LEAST_STEP_MS).then(|| {
             let text = format!("`t_s` jumps from {from} to {to} in one row, but is in seconds");
-            problem(
-                line,
-                text,
-                "divide milliseconds by 1000; rows that are seconds apart are too few for an assessment",
-            )
+            let help = match middle < LEAST_STEP_US {
+                true => "divide milliseconds by 1000; rows that are seconds apart are too few for an assessment",
+                false => "divide microseconds by 1000000",
+            };
+            problem(line, text, help)
         })
     }
 
