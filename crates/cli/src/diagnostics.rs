@@ -134,8 +134,8 @@ fn foreign(bytes: &[u8], shown: &str) -> Option<(&'static str, String)> {
     let has_ending = |ending: &[&str]| crate::output::has_ending(Path::new(shown), ending);
     if has_ending(&["md", "rst", "html"])
         && !bytes
-            .windows(6)
-            .any(|it| it == b"fuzzy:" || it == b"flagre")
+            .split(|byte| *byte == b'\n')
+            .any(|line| line.starts_with(b"fuzzy:") || line.starts_with(b"flagred:"))
     {
         return Some(("a document, not a rule set", RULES.to_owned()));
     }

@@ -14,6 +14,7 @@ use fuzzy::{
 
 use crate::{
     failure::{Exit, Failure},
+    numbers,
     output::{self, Files, print},
     rule_set,
     table::{Format, is_table},
@@ -55,7 +56,7 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
         // Numbers after the names, as in `fan = 5`, or in the order of the inputs.
         let words = given
             .iter()
-            .flat_map(|word| word.split('='))
+            .flat_map(|word| word.split(['=', ':']))
             .filter(|word| !word.is_empty());
         let words: Vec<&str> = words.collect();
         let number = |word: &&&str| word.parse::<f64>().is_ok();
@@ -73,7 +74,11 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
             format!("{}={}", input.name, value.unwrap_or(&"VALUE"))
         });
         let help = format!("write `{}`", pairs.collect::<Vec<_>>().join(" "));
-        return Err(Failure::usage(format!("`{text}` does not name an input")).help(help));
+        let problem = match words.contains(&text) && is_named {
+            true if text.parse::<f64>().is_err() => "has no value",
+            _ => "does not name an input",
+        };
+        return Err(Failure::usage(format!("`{text}` {problem}")).help(help));
     };
     let value = value.trim();
     match value.parse::<f64>() {
@@ -105,18 +110,7 @@ fn number_advice(text: &str) -> Option<String> {
     if text.contains('=') {
         return Some("separate the values by spaces".into());
     }
-    let joined = text.replace([',', '_', ' ', '\''], "");
-    if joined.contains('.') && joined != text && joined.parse::<f64>().is_ok() {
-        return Some(format!("write the number without separators: `{joined}`"));
-    }
-    let with_point = text.replacen(',', ".", 1);
-    if with_point.parse::<f64>().is_ok() {
-        return Some(format!("the decimal mark is a point: `{with_point}`"));
-    }
-    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)));
-    let number = text.get(..end?)?;
-    let is_number = number.parse::<f64>().is_ok();
-    is_number.then(|| format!("write the number without its unit: `{number}`"))
+    numbers::advice(text)
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {

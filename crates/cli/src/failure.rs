@@ -171,7 +171,9 @@ impl From<ReadError> for Failure {
     fn from(error: ReadError) -> Self {
         let failure = Failure::unreadable(&error);
         match &error {
-            ReadError::Io { path, source } if source.kind() == io::ErrorKind::NotFound => {
+            ReadError::Io { path, source }
+                if source.kind() == io::ErrorKind::NotFound && !path.starts_with("http") =>
+            {
                 failure.help(advice::missing(path))
             }
             _ => failure.help_if(error.help()),

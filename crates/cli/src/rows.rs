@@ -16,7 +16,7 @@ use fuzzy::{
 use crate::{
     failure::Failure,
     output::{self, Files, Output, Replace},
-    table::{Format, Table},
+    table::{self, Format, Table},
 };
 
 /// The arguments of a command that makes a rule set of another one.
@@ -75,7 +75,8 @@ pub(crate) struct FromRows {
 
 impl FromRows {
     /// Returns the inputs and the output.
-    pub(crate) fn files(&self) -> Result<(Files, Output), Failure> {
+    pub(crate) fn files(&self, command: &str) -> Result<(Files, Output), Failure> {
+        table::rule_set_first(command, &self.rewrite.model, &self.data)?;
         let Rewrite {
             model,
             output,

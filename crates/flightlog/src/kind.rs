@@ -11,7 +11,8 @@ pub struct Kind {
 }
 
 const UNPACK: &str = "unpack it first";
-const AS_CSV: &str = "save it as text: a table as CSV (UTF-8)";
+const AS_CSV: &str = "save it as CSV (UTF-8)";
+const AS_TEXT: &str = "save it as text, a table as CSV (UTF-8)";
 const COMMAS: &str = "a flight CSV separates cells by commas, and decimals by a point";
 
 /// Signatures: the first bytes of a file, bytes that must follow somewhere, name, and help.
@@ -26,21 +27,21 @@ const SIGNATURES: &[(&[u8], &[u8], &str, &str)] = &[
         "copy its content into a text file",
     ),
     (b"PK\x03\x04", b"xl/workbook", "an Excel file", AS_CSV),
-    (b"PK\x03\x04", b"word/document", "a Word document", AS_CSV),
+    (b"PK\x03\x04", b"word/document", "a Word document", AS_TEXT),
     (
         b"PK\x03\x04",
         b"[Content_Types].xml",
         "an office document",
-        AS_CSV,
+        AS_TEXT,
     ),
     (
         b"PK\x03\x04",
         b"vnd.oasis.opendocument",
         "an office document",
-        AS_CSV,
+        AS_TEXT,
     ),
     (b"PK\x03\x04", b"", "a ZIP archive", UNPACK),
-    (b"\xd0\xcf\x11\xe0", b"", "an old office document", AS_CSV),
+    (b"\xd0\xcf\x11\xe0", b"", "an old office document", AS_TEXT),
     (
         b"\x1f\x8b",
         b"",

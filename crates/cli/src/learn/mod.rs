@@ -84,7 +84,7 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let (_, output) = arguments.rows.files()?;
+    let (_, output) = arguments.rows.files("learn")?;
     let name = arguments.rows.rewrite.model.display().to_string();
     let source = rule_set::read(&arguments.rows.rewrite.model)?;
     let whole = &rule_set::document(&source, &name)?.model;

@@ -21,7 +21,7 @@ pub(super) fn not_a_table(start: &[u8], file: &str) -> Option<Failure> {
         }
         Some(kind) => {
             let other = "a table is CSV text, with the names of the columns first";
-            return is(kind.name, kind.help.unwrap_or(other));
+            return is(kind.name, &kind.help.unwrap_or(other).replace("FILE", file));
         }
         None => {}
     }

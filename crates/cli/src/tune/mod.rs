@@ -143,7 +143,7 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let (mut files, output) = arguments.rows.files()?;
+    let (mut files, output) = arguments.rows.files("tune")?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let checkpoint = files.optional(arguments.checkpoint.as_ref())?;
     let name = arguments.rows.rewrite.model.display().to_string();

@@ -40,6 +40,7 @@ pub(super) struct Rows {
     back_s: Option<f64>,
     /// The number of rows that are left out because their time goes back.
     went_back: u64,
+    first_back: Option<u64>,
     pub(super) boots_s: Vec<f64>,
     pub(super) rebooted_in_air_s: Vec<f64>,
     /// Whether all times so far are whole numbers.
@@ -83,6 +84,7 @@ impl Rows {
             offset_s: 0.0,
             back_s: None,
             went_back: 0,
+            first_back: None,
             boots_s: Vec::new(),
             rebooted_in_air_s: Vec::new(),
             is_whole: true,
@@ -149,7 +151,7 @@ impl Rows {
             return Err(format!("the time is beyond {FURTHEST_S} s"));
         }
         self.is_whole &= t_s.fract() == 0.0;
-        let t_s = self.on_one_clock(t_s)?;
+        let t_s = self.on_one_clock(t_s, line)?;
         // A row with a damaged cell is kept with an unknown value: without it the flight would be shorter.
         let mut damaged = None;
         let mut read = |column: &usize| match number(record, *column) {
@@ -299,17 +301,18 @@ impl Rows {
     /// The reason why the file is refused. The clock of a file that this crate wrote is in seconds.
     pub(super) fn refusal(&mut self, is_ours: bool, messages: u64) -> Option<ReadError> {
         let refused = self.refused.take();
-        if refused.is_none() && self.went_back > messages && !is_ours {
-            let text = format!("the time goes back in {} rows", self.went_back);
-            return Some(problem(1, text, "sort the rows by `t_s`"));
-        }
+        let most_go_back = self.first_back.filter(|_| self.went_back > messages);
+        let backwards = most_go_back.map(|line| {
+            let text = format!("the time goes back, as in {} rows", self.went_back);
+            problem(line, text, "sort the rows by `t_s`")
+        });
         let of_clock = || self.milliseconds().or_else(|| self.coarse());
-        refused.or_else(|| of_clock().filter(|_| !is_ours))
+        refused.or_else(|| backwards.or_else(of_clock).filter(|_| !is_ours))
     }
 
     /// The time on the clock of the first row. A clock that goes back for two rows or more was restarted, as after a
     /// reboot, and continues from the last time before.
-    fn on_one_clock(&mut self, t_s: f64) -> Result<f64, String> {
+    fn on_one_clock(&mut self, t_s: f64, line: u64) -> Result<f64, String> {
         let now_s = t_s + self.offset_s;
         if now_s >= self.last_s {
             self.back_s = None;
@@ -329,6 +332,7 @@ impl Rows {
             }
             None => {
                 self.went_back += 1;
+                self.first_back.get_or_insert(line);
                 Err("the time goes back".into())
             }
         }
