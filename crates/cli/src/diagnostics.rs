@@ -80,7 +80,8 @@ pub(crate) fn read_bytes(file: fs::File, shown: &str) -> Result<Vec<u8>, Failure
 fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
     let bytes = bytes.map_err(|error| {
         let failure = cannot_read(shown, &error);
-        let near = nearest(shown, built_in::profile_names());
+        let stem = shown.strip_suffix(".yaml").unwrap_or(shown);
+        let near = nearest(stem, built_in::profile_names());
         match near.filter(|_| error.kind() == io::ErrorKind::NotFound) {
             Some(name) => failure.help(format!("did you mean the built-in `{name}`?")),
             None => failure,
@@ -120,6 +121,8 @@ fn foreign(bytes: &[u8], shown: &str) -> Option<(&'static str, String)> {
         ));
     }
     match flagred_flightlog::kind_of(bytes) {
+        // The check of rule sets has findings for these.
+        Some(kind) if kind.is_text() => {}
         Some(kind) if kind != Kind::LOG => {
             return Some((kind.name, kind.help.unwrap_or(RULES).replace("FILE", shown)));
         }

@@ -77,6 +77,8 @@ fn files() -> tempfile::TempDir {
             "t_s,motor1\n0,0.5\n4000,0.5\n8000,0.5\n12000,0.5\n16000,0.5\n20000,0.5\n",
         ),
         ("backwards.csv", "t_s,motor1\n4,0.5\n3,0.5\n2,0.5\n1,0.5\n"),
+        ("capital_motors.csv", "t_s,Motor_1\n0,0.5\n"),
+        ("percent.csv", "t_s,motor1\n0,15%\n0.1,15%\n"),
         ("equals.csv", "# pwm_low_us = 1000\nt_s,pwm1\n0,1500\n"),
         ("rows.json", "[{\"temperature\": 20}]\n"),
         (
@@ -492,6 +494,23 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
         "divide microseconds by 1000000",
     ),
     ("assess backwards.csv", 3, "sort the rows by `t_s`"),
+    (
+        "assess capital_motors.csv",
+        3,
+        "there is a column `Motor_1`, but no `motor1`",
+    ),
+    ("assess percent.csv", 3, "without a unit"),
+    ("assess flagred flight.csv", 3, "`--profile flagred`"),
+    (
+        "explain flagred.yaml a=1",
+        3,
+        "did you mean the built-in `flagred`?",
+    ),
+    (
+        "map fan.yaml --output fan",
+        2,
+        "`--of fan` shows this output",
+    ),
     ("assess equals.csv", 3, "write `# pwm_low_us: 1000`"),
     ("assess -", 3, "the command before the pipe printed nothing"),
     (

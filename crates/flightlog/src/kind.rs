@@ -77,17 +77,19 @@ const SIGNATURES: &[(&[u8], &[u8], &str, &str)] = &[
     (b"MATLAB 5.0", b"", MAT, MAT_HELP),
     (b"\x89HDF", b"", MAT, MAT_HELP),
     (b"\x7fELF", b"", "a program", ""),
-    (b"<!DOCTYPE", b"", "a web page", ""),
-    (b"<!doctype", b"", "a web page", ""),
-    (b"<html", b"", "a web page", ""),
+    (b"<!DOCTYPE", b"", WEB_PAGE, ""),
+    (b"<!doctype", b"", WEB_PAGE, ""),
+    (b"<html", b"", WEB_PAGE, ""),
     (
         b"version https://git-lfs",
         b"",
-        "a git-lfs pointer",
+        POINTER,
         "fetch the file itself with `git lfs pull`",
     ),
 ];
 
+const WEB_PAGE: &str = "a web page";
+const POINTER: &str = "a git-lfs pointer";
 const MAT: &str = "a MAT or HDF5 file";
 const MAT_HELP: &str = "in MATLAB, write a fuzzy system by `writeFIS`, a table by `writetable`";
 
@@ -140,16 +142,18 @@ impl Kind {
         help: Some("save it as UTF-8"),
     };
 
-    /// Whether the content is text in UTF-8 or Latin-1.
-    pub(crate) fn is_text(self) -> bool {
-        [
-            Kind::TEXT,
-            Kind::RULES,
-            Kind::PROFILE,
-            Kind::SEMICOLONS,
-            Kind::TABS,
-        ]
-        .contains(&self)
+    /// Text that may be meant for another command.
+    pub(crate) const PLAIN: &[Kind] = &[
+        Kind::TEXT,
+        Kind::RULES,
+        Kind::PROFILE,
+        Kind::SEMICOLONS,
+        Kind::TABS,
+    ];
+
+    /// Whether the content is text.
+    pub fn is_text(self) -> bool {
+        Kind::PLAIN.contains(&self) || [WEB_PAGE, POINTER].contains(&self.name)
     }
 
     /// Returns the kind with the given name.
@@ -209,8 +213,6 @@ pub(crate) fn of_rest(start: &[u8]) -> Kind {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn kinds_are_recognised_by_their_bytes() {
         let cases: [(&[u8], Option<&str>); 9] = [

@@ -178,7 +178,7 @@ const SDLOG2: &[u8] = b"StartTime\0";
 pub fn kind_of(start: &[u8]) -> Option<Kind> {
     match sniff(start) {
         Content::DataFlash | Content::ULog | Content::Tlog | Content::Sdlog2 => Some(Kind::LOG),
-        Content::Other(kind) if !kind.is_text() => Some(kind),
+        Content::Other(kind) if !Kind::PLAIN.contains(&kind) => Some(kind),
         Content::Other(_) | Content::DataFlashText | Content::Csv | Content::Empty => None,
     }
 }

@@ -18,6 +18,7 @@ use self::{
 use crate::{
     failure::Failure,
     output::{RULES, has_ending},
+    profile,
 };
 
 /// Adds advice to an error of clap, in place of options and commands whose names are merely similar.
@@ -75,6 +76,9 @@ pub(crate) fn missing(shown: &str) -> String {
         && is_option(option)
     {
         return format!("an option begins with dashes: `--{option} {value}`");
+    }
+    if profile::is_shipped(shown) {
+        return format!("a built-in profile is chosen by `--profile {shown}`");
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let there = match folder == Path::new("") {

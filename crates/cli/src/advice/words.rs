@@ -128,6 +128,7 @@ pub(super) const RENAMED: &[(&str, &str)] = &[
     ("-c", "--csv"),
     ("-j", "--json"),
     ("--csv --to-csv", "--output"),
+    ("--output-variable --variable --show --z", "--of"),
     ("--template --based-on --like --copy", "--from"),
     ("--3d --three-d --surface3d", "--surface"),
     ("--matlab --octave", "--fis"),

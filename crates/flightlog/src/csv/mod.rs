@@ -250,6 +250,16 @@ impl Layout {
             let text = "there are both `pwm` and `motor` columns";
             return Err(problem(line, text, "keep one kind of them"));
         }
+        if pwm.is_empty() && motor.is_empty() {
+            meant_as_motor(&names).map_or(Ok(()), |(given, name)| {
+                let text = format!("there is a column `{given}`, but no `{name}`");
+                Err(problem(
+                    line,
+                    text,
+                    "rename the columns of the motors: small letters, without separators",
+                ))
+            })?;
+        }
         let (stem, mut motors) = match pwm.is_empty() {
             false => ("pwm", pwm),
             true => ("motor", motor),
@@ -312,6 +322,16 @@ impl Layout {
     }
 }
 
+/// A column such as `Motor_1`, and the name that is meant.
+fn meant_as_motor(names: &[String]) -> Option<(&str, String)> {
+    names.iter().find_map(|given| {
+        let letters = given.chars().filter(|c| c.is_ascii_alphanumeric());
+        let name: String = letters.map(|c| c.to_ascii_lowercase()).collect();
+        let number = name.strip_prefix("motor").or(name.strip_prefix("pwm"))?;
+        number.parse::<u64>().ok().map(|_| (given.as_str(), name))
+    })
+}
+
 /// Advice for a table without `t_s`: its column of times may have another name.
 fn time_help(names: &[String]) -> String {
     const NAMES: &[&str] = &[
@@ -345,6 +365,9 @@ fn time_help(names: &[String]) -> String {
             _ => format!("rename `{name}` to `t_s`, and divide its values by {by}"),
         })
     };
+    if names.first().is_some_and(|name| name.starts_with("sep=")) {
+        return "delete the first line, which is for spreadsheets".to_owned();
+    }
     names.iter().find_map(of).unwrap_or_else(|| HELP.to_owned())
 }
 

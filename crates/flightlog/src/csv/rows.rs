@@ -41,6 +41,8 @@ pub(super) struct Rows {
     /// The number of rows that are left out because their time goes back.
     went_back: u64,
     first_back: Option<u64>,
+    /// The first cell that is not a number: line and reason.
+    first_damaged: Option<(u64, String)>,
     pub(super) boots_s: Vec<f64>,
     pub(super) rebooted_in_air_s: Vec<f64>,
     /// Whether all times so far are whole numbers.
@@ -85,6 +87,7 @@ impl Rows {
             back_s: None,
             went_back: 0,
             first_back: None,
+            first_damaged: None,
             boots_s: Vec::new(),
             rebooted_in_air_s: Vec::new(),
             is_whole: true,
@@ -168,6 +171,8 @@ impl Rows {
             signals.extend(keep.then_some(value));
         }
         if let Some(why) = damaged {
+            self.first_damaged
+                .get_or_insert_with(|| (line, why.clone()));
             report.bad(&format!("line {line}: {why}"));
         }
         self.look_at_units(layout, &commands, line);
@@ -306,6 +311,18 @@ impl Rows {
             let text = format!("the time goes back, as in {} rows", self.went_back);
             problem(line, text, "sort the rows by `t_s`")
         });
+        let without_numbers = self.first_damaged.clone();
+        let without_numbers =
+            without_numbers
+                .filter(|_| self.commands.are_unknown())
+                .map(|(line, why)| {
+                    problem(
+                        line,
+                        why,
+                        "write numbers with a decimal point and without a unit",
+                    )
+                });
+        let backwards = backwards.or(without_numbers);
         let of_clock = || self.milliseconds().or_else(|| self.coarse());
         refused.or_else(|| backwards.or_else(of_clock).filter(|_| !is_ours))
     }
