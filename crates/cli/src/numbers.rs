@@ -78,7 +78,11 @@ fn fraction(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<
 fn real(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<f64, String> {
     let number = text.parse().ok();
     let number = number.filter(|number: &f64| number.is_finite() && is_allowed(*number));
-    number.ok_or_else(|| match advice(text).filter(|_| !text.ends_with('%')) {
+    // The number alone would be another value.
+    let is_other_unit = ["%", "ms", "us", "min", "h"]
+        .iter()
+        .any(|unit| text.ends_with(unit));
+    number.ok_or_else(|| match advice(text).filter(|_| !is_other_unit) {
         Some(advice) => format!("{what}; {advice}"),
         None => what.to_owned(),
     })

@@ -76,7 +76,8 @@ pub(crate) struct FromRows {
 impl FromRows {
     /// Returns the inputs and the output.
     pub(crate) fn files(&self, command: &str) -> Result<(Files, Output), Failure> {
-        table::rule_set_first(command, &self.rewrite.model, &self.data)?;
+        let with_output = format!("{command} --output {}", self.rewrite.output.display());
+        table::rule_set_first(&with_output, &self.rewrite.model, &self.data)?;
         let Rewrite {
             model,
             output,

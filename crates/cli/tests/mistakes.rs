@@ -77,6 +77,7 @@ fn files() -> tempfile::TempDir {
             "t_s,motor1\n0,0.5\n4000,0.5\n8000,0.5\n12000,0.5\n16000,0.5\n20000,0.5\n",
         ),
         ("backwards.csv", "t_s,motor1\n4,0.5\n3,0.5\n2,0.5\n1,0.5\n"),
+        ("no_header.csv", "0,1500,1500\n1,1500,1500\n"),
         ("capital_motors.csv", "t_s,Motor_1\n0,0.5\n"),
         ("percent.csv", "t_s,motor1\n0,15%\n0.1,15%\n"),
         ("equals.csv", "# pwm_low_us = 1000\nt_s,pwm1\n0,1500\n"),
@@ -494,6 +495,13 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
         "divide microseconds by 1000000",
     ),
     ("assess backwards.csv", 3, "sort the rows by `t_s`"),
+    ("assess no_header.csv", 3, "the first line contains numbers"),
+    (
+        "assess flight.csv --step 100ms",
+        2,
+        "write a number of at least 0\n",
+    ),
+    ("--versoin", 2, "'--version'"),
     (
         "assess capital_motors.csv",
         3,
@@ -670,7 +678,7 @@ const OF_OTHER_PROGRAMS: &[(&str, i32, &str)] = &[
     (
         "learn rows.csv fan.yaml -o out.yaml",
         2,
-        "flagred learn fan.yaml rows.csv",
+        "flagred learn --output out.yaml fan.yaml rows.csv",
     ),
     (
         "learn fan.yaml fan_only.csv -o out.yaml",

@@ -155,6 +155,9 @@ fn advice(error: &clap::Error, program: &Command, words: &[String]) -> Option<St
         ErrorKind::UnknownArgument => {
             let word = wrong(ContextKind::InvalidArg)?;
             let Some(command) = words.first().and_then(|word| program.find_subcommand(word)) else {
+                if error.get(ContextKind::SuggestedArg).is_some() {
+                    return None;
+                }
                 return Some(
                     "options are written after the command; `flagred --version` prints the version"
                         .to_owned(),

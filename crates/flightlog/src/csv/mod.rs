@@ -230,6 +230,10 @@ impl Layout {
                 "leave out columns that no profile needs",
             ));
         }
+        if names.iter().all(|name| name.parse::<f64>().is_ok()) {
+            let text = "the first line contains numbers, not the names of the columns";
+            return Err(problem(line, text, HELP));
+        }
         let mut seen = HashSet::new();
         for name in names.iter().filter(|name| !name.is_empty()) {
             if !seen.insert(name) {
