@@ -6,10 +6,7 @@ use clap::error::{ContextKind, ContextValue};
 use flagred_flightlog::ReadError;
 use fuzzy::drawing::{visible, visible_lines};
 
-use crate::{
-    advice,
-    output::{RULES, has_ending},
-};
+use crate::path::{self, RULES, has_ending};
 
 /// The result of a command that completed. For several inputs the last variant in this order counts, so that a finding is never hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -161,7 +158,7 @@ pub(crate) fn cannot_read(shown: &str, error: &io::Error) -> Failure {
         }
         _ => {
             let failure = Failure::unreadable(format!("`{shown}` cannot be read: {error}"));
-            failure.help(advice::missing(shown))
+            failure.help(path::missing(shown))
         }
     }
 }
@@ -174,7 +171,7 @@ impl From<ReadError> for Failure {
             ReadError::Io { path, source }
                 if source.kind() == io::ErrorKind::NotFound && !path.starts_with("http") =>
             {
-                failure.help(advice::missing(path))
+                failure.help(path::missing(path))
             }
             _ => failure.help_if(error.help()),
         }

@@ -31,6 +31,7 @@ mod new;
 mod numbers;
 mod output;
 mod parallel;
+mod path;
 mod plot;
 mod profile;
 mod provenance;

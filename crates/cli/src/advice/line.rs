@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::{Arg, Command};
 
 use super::words::{FILES, OPTIONS, RENAMED};
-use crate::output::has_ending;
+use crate::path::has_ending;
 
 /// A command and the words after it.
 pub(super) struct Line<'a> {

@@ -6,7 +6,7 @@ mod words;
 use std::{ffi::OsString, path::Path};
 
 use clap::{
-    Command, CommandFactory as _,
+    Command,
     error::{ContextKind, ContextValue, ErrorKind},
 };
 use fuzzy::diagnostic::nearest;
@@ -17,8 +17,7 @@ use self::{
 };
 use crate::{
     failure::Failure,
-    output::{RULES, has_ending},
-    profile,
+    path::{RULES, has_ending},
 };
 
 /// Adds advice to an error of clap, in place of options and commands whose names are merely similar.
@@ -61,51 +60,6 @@ pub(crate) fn other_command(error: &clap::Error, words: &[OsString]) -> Option<F
         }
         _ => None,
     }
-}
-
-/// Advice for a file that does not exist.
-pub(crate) fn missing(shown: &str) -> String {
-    let path = Path::new(shown);
-    if shown.starts_with("http") {
-        return "download the file first, and name it".to_owned();
-    }
-    if shown.contains('*') {
-        return "no file matches this pattern".to_owned();
-    }
-    if let Some((option, value)) = shown.split_once('=')
-        && is_option(option)
-    {
-        return format!("an option begins with dashes: `--{option} {value}`");
-    }
-    if profile::is_shipped(shown) {
-        return format!("a built-in profile is chosen by `--profile {shown}`");
-    }
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let there = match folder == Path::new("") {
-        true => Path::new(".").read_dir(),
-        false => folder.read_dir(),
-    };
-    let there = there.into_iter().flatten().flatten();
-    let mut names: Vec<String> = there
-        .filter_map(|file| file.file_name().into_string().ok())
-        .collect();
-    names.sort();
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let same_stem = names
-        .iter()
-        .find(|other| Path::new(other).file_stem() == Some(name.as_ref().as_ref()));
-    let near = || nearest(&name, names.iter().map(String::as_str));
-    match same_stem.map(String::as_str).or_else(near) {
-        Some(near) => format!("did you mean `{}`?", folder.join(near).display()),
-        None => "check the path".to_owned(),
-    }
-}
-
-/// Whether a command has an option of this name.
-fn is_option(name: &str) -> bool {
-    let program = crate::Arguments::command();
-    let mut arguments = program.get_subcommands().flat_map(Command::get_arguments);
-    arguments.any(|argument| argument.get_long() == Some(name))
 }
 
 fn advice(error: &clap::Error, program: &Command, words: &[String]) -> Option<String> {

@@ -13,14 +13,13 @@ use std::{
 
 pub(crate) use flagred_report::table::{cell, number_or_cell};
 
+pub(crate) use crate::path::{RULES, has_ending};
+
 pub(crate) use self::{
     file::{Files, Output, Replace, can_replace, new_file, write_all},
     stdout::Stdout,
 };
 use crate::failure::Failure;
-
-/// Extensions of rule sets and profiles, here and in other programs.
-pub(crate) const RULES: &[&str] = &["yaml", "yml", "fis", "fll", "fcl", "fml"];
 
 /// Parses the path of an SVG picture. Another extension is refused, since it would not match the contents.
 pub(crate) fn svg_path(text: &str) -> Result<PathBuf, String> {
@@ -87,12 +86,6 @@ pub(crate) fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<Pat
         }
         _ => Ok(path),
     }
-}
-
-/// Returns whether the extension of a path is one of these, in small or capital letters.
-pub(crate) fn has_ending(path: &Path, extensions: &[&str]) -> bool {
-    let ending = path.extension();
-    ending.is_some_and(|ending| extensions.iter().any(|e| ending.eq_ignore_ascii_case(e)))
 }
 
 /// Writes a text to a file, or to standard output; a terminal shows its colours.
