@@ -31,7 +31,6 @@ pub mod answers;
 pub mod completion;
 mod document;
 pub mod handles;
-pub mod kind;
 pub mod layout;
 pub mod names;
 mod numbers;

@@ -80,7 +80,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         // A built-in name is the profile of that name, as in `assess`.
         let text = match built_in::profile_at(path) {
             Some(known) => known.text.to_owned(),
-            None => read_text(path)?,
+            None => read_text(path).map_err(|failure| arguments.claims.or_input(path, failure))?,
         };
         let file = path.display().to_string();
         let source = flagred_interchange::source(text);

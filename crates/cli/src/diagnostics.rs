@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use flagred_authoring::kind;
+use flagred_flightlog::Kind;
 use flagred_report::diagnostics::{self, Style};
 use fuzzy::{
     diagnostic::{Diagnostic, Findings, nearest},
@@ -80,34 +80,82 @@ pub(crate) fn read_bytes(file: fs::File, shown: &str) -> Result<Vec<u8>, Failure
 fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
     let bytes = bytes.map_err(|error| {
         let failure = cannot_read(shown, &error);
-        let near = nearest(shown, built_in::profile_names());
+        let stem = shown.strip_suffix(".yaml").unwrap_or(shown);
+        let near = nearest(stem, built_in::profile_names());
         match near.filter(|_| error.kind() == io::ErrorKind::NotFound) {
             Some(name) => failure.help(format!("did you mean the built-in `{name}`?")),
             None => failure,
         }
     })?;
-    match bytes.len() > LARGEST_BYTES {
-        true => {
-            if flagred_flightlog::kind_of(&bytes) == Some("a flight log") {
-                let failure =
-                    Failure::unreadable(format!("`{shown}` is a flight log, not a rule set"));
-                return Err(failure.help(format!("`flagred assess {shown}` assesses a flight")));
-            }
-            let limit = LARGEST_BYTES / 1_000_000;
-            let failure = Failure::unreadable(format!("`{shown}` is larger than {limit} MB"));
-            Err(failure.help("rule sets and profiles are small YAML files"))
-        }
-        false => Ok(bytes),
+    if bytes.len() <= LARGEST_BYTES || flagred_flightlog::kind_of(&bytes).is_some() {
+        return Ok(bytes);
     }
+    let limit = LARGEST_BYTES / 1_000_000;
+    let failure = Failure::unreadable(format!("`{shown}` is larger than {limit} MB"));
+    Err(failure.help("rule sets and profiles are small YAML files"))
 }
 
 /// Decodes the text of a rule set or profile.
 pub(crate) fn text(bytes: Vec<u8>, shown: &str) -> Result<String, Failure> {
-    if let Some(kind) = kind::binary(&bytes) {
-        let failure = Failure::unreadable(format!("`{shown}` is {}", kind.name));
-        return Err(failure.help(kind.help));
+    if let Some((what, help)) = foreign(&bytes, shown) {
+        return Err(Failure::unreadable(format!("`{shown}` is {what}")).help(help));
     }
     decoded(bytes).map_err(|error| error.failure(shown))
+}
+
+/// Returns whether bytes begin with a byte order mark of UTF-16.
+pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
+    matches!(bytes.get(..2), Some([0xff, 0xfe] | [0xfe, 0xff]))
+}
+
+/// Recognises bytes that are not a rule set or profile; also returns what to do.
+fn foreign(bytes: &[u8], shown: &str) -> Option<(&'static str, String)> {
+    const RULES: &str = "a rule set is a text file that begins with `fuzzy: 1`";
+    if is_utf16(bytes) {
+        return None;
+    }
+    if is_utf16_without_mark(bytes) {
+        return Some((
+            "text in UTF-16 without a byte order mark",
+            "save the file as UTF-8".to_owned(),
+        ));
+    }
+    match flagred_flightlog::kind_of(bytes) {
+        // The check of rule sets has findings for these.
+        Some(kind) if kind.is_text() => {}
+        Some(kind) if kind != Kind::LOG => {
+            return Some((kind.name, kind.help.unwrap_or(RULES).replace("FILE", shown)));
+        }
+        None if !flagred_flightlog::is_text_log(bytes) => {}
+        _ => {
+            return Some((
+                "a flight log, not a rule set",
+                format!("`flagred assess {shown}` assesses a flight"),
+            ));
+        }
+    }
+    let has_ending = |ending: &[&str]| crate::output::has_ending(Path::new(shown), ending);
+    if has_ending(&["md", "rst", "html"])
+        && !bytes
+            .split(|byte| *byte == b'\n')
+            .any(|line| line.starts_with(b"fuzzy:") || line.starts_with(b"flagred:"))
+    {
+        return Some(("a document, not a rule set", RULES.to_owned()));
+    }
+    bytes
+        .contains(&0)
+        .then(|| ("not a text file", RULES.to_owned()))
+}
+
+/// In UTF-16, one byte of each ASCII letter is 0.
+fn is_utf16_without_mark(bytes: &[u8]) -> bool {
+    const LOOKED_AT: usize = 1000;
+    let (pairs, _) = bytes.as_chunks::<2>();
+    let pairs = || pairs.iter().take(LOOKED_AT);
+    let halves = pairs()
+        .filter(|pair| (pair[0] == 0) != (pair[1] == 0))
+        .count();
+    2 * halves > pairs().count()
 }
 
 /// The reason why bytes are not valid text.
@@ -182,4 +230,29 @@ fn read_up_to_limit(source: impl Read) -> io::Result<Vec<u8>> {
         .take(LARGEST_BYTES as u64 + 1)
         .read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn other_files_are_recognised_by_their_bytes() {
+        let utf16: Vec<u8> = "fuzzy: 1\nname: ä"
+            .encode_utf16()
+            .flat_map(u16::to_le_bytes)
+            .collect();
+        let cases: [(&[u8], Option<&str>); 7] = [
+            (b"%PDF-1.7\n\xe2", Some("a PDF document")),
+            (b"\xa3\x95\x80", Some("a flight log, not a rule set")),
+            (b"t_s,pwm1\n0,1500\n", Some("a flight log, not a rule set")),
+            (&utf16, Some("text in UTF-16 without a byte order mark")),
+            (&[0; 100], Some("not a text file")),
+            (b"\xff\xfef\0", None),
+            ("fuzzy: 1\nname: ä".as_bytes(), None),
+        ];
+        for (bytes, what) in cases {
+            assert_eq!(foreign(bytes, "x").map(|(what, _)| what), what, "{bytes:?}");
+        }
+    }
 }

@@ -14,6 +14,7 @@ use fuzzy::{
 
 use crate::{
     failure::{Exit, Failure},
+    numbers,
     output::{self, Files, print},
     rule_set,
     table::{Format, is_table},
@@ -25,7 +26,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "RULES")]
     model: PathBuf,
     /// A value for each input: `margin=0.07`
-    #[arg(required_unless_present = "rows", value_name = "INPUT=VALUE")]
+    #[arg(value_name = "INPUT=VALUE")]
     inputs: Vec<String>,
     /// Explain each row of this table: print it with the value, the dominant rule and the shares of the rules for each output
     #[arg(long, alias = "csv", value_name = "POINTS.csv", conflicts_with_all = ["inputs", "json", "svg"])]
@@ -52,15 +53,32 @@ fn assignment(model: &Model, given: &[String], text: &str) -> Result<(String, f6
                 "to explain each row of a table, use `--rows {text}`"
             )));
         }
-        let inputs = model.inputs.iter();
-        let names = inputs.zip(given.iter().map(Some).chain(std::iter::repeat(None)));
-        let pairs = names.map(|(input, value)| {
-            let value = value.filter(|value| value.parse::<f64>().is_ok());
-            let value = value.map_or("VALUE", String::as_str);
-            format!("{}={value}", input.name)
+        // Numbers after the names, as in `fan = 5`, or in the order of the inputs.
+        let words = given
+            .iter()
+            .flat_map(|word| word.split(['=', ':']))
+            .filter(|word| !word.is_empty());
+        let words: Vec<&str> = words.collect();
+        let number = |word: &&&str| word.parse::<f64>().is_ok();
+        let is_named = model
+            .inputs
+            .iter()
+            .any(|input| words.contains(&input.name.as_str()));
+        let pairs = model.inputs.iter().enumerate().map(|(i, input)| {
+            let at = words.iter().position(|word| *word == input.name);
+            let named = at.and_then(|at| words.get(at + 1)).filter(number);
+            let value = match is_named {
+                true => named,
+                false => words.iter().filter(number).nth(i),
+            };
+            format!("{}={}", input.name, value.unwrap_or(&"VALUE"))
         });
         let help = format!("write `{}`", pairs.collect::<Vec<_>>().join(" "));
-        return Err(Failure::usage(format!("`{text}` does not name an input")).help(help));
+        let problem = match words.contains(&text) && is_named {
+            true if text.parse::<f64>().is_err() => "has no value",
+            _ => "does not name an input",
+        };
+        return Err(Failure::usage(format!("`{text}` {problem}")).help(help));
     };
     let value = value.trim();
     match value.parse::<f64>() {
@@ -92,18 +110,7 @@ fn number_advice(text: &str) -> Option<String> {
     if text.contains('=') {
         return Some("separate the values by spaces".into());
     }
-    let joined = text.replace([',', '_', ' ', '\''], "");
-    if joined.contains('.') && joined != text && joined.parse::<f64>().is_ok() {
-        return Some(format!("write the number without separators: `{joined}`"));
-    }
-    let with_point = text.replacen(',', ".", 1);
-    if with_point.parse::<f64>().is_ok() {
-        return Some(format!("write a decimal point: `{with_point}`"));
-    }
-    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)));
-    let number = text.get(..end?)?;
-    let is_number = number.parse::<f64>().is_ok();
-    is_number.then(|| format!("write the number without its unit: `{number}`"))
+    numbers::advice(text)
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -177,8 +184,17 @@ fn values(model: &Model, given: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
         let name = &input.name;
         let found = given.iter().find(|(known, _)| known == name);
         found.map(|(_, value)| *value).ok_or_else(|| {
-            let middle = short((input.low + input.high) / 2.0);
-            let help = format!("add `{name}={middle}`, the middle of its range");
+            let missing = model.inputs.iter();
+            let missing =
+                missing.filter(|input| !given.iter().any(|(name, _)| *name == input.name));
+            let middles = missing
+                .map(|input| format!("{}={}", input.name, short((input.low + input.high) / 2.0)));
+            let middles: Vec<String> = middles.collect();
+            let whose = match middles.as_slice() {
+                [_] => "the middle of its range",
+                _ => "the middles of their ranges",
+            };
+            let help = format!("add `{}`, {whose}", middles.join(" "));
             Failure::usage(format!("input `{name}` has no value")).help(help)
         })
     };

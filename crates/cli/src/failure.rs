@@ -3,7 +3,10 @@
 use std::{fmt, io, io::Write, path::Path};
 
 use clap::error::{ContextKind, ContextValue};
+use flagred_flightlog::ReadError;
 use fuzzy::drawing::{visible, visible_lines};
+
+use crate::path::{self, RULES, has_ending};
 
 /// The result of a command that completed. For several inputs the last variant in this order counts, so that a finding is never hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -139,10 +142,7 @@ pub(crate) fn command_forgotten(error: &clap::Error) -> Option<Failure> {
         return Some(Failure::usage("`version` is not a command").help("`flagred --version`"));
     }
     Path::new(word).exists().then(|| {
-        let path = Path::new(word);
-        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-        let rules = ["yaml", "yml", "fis", "fll", "fcl", "fml"];
-        let help = match rules.iter().any(|rules| ending == *rules) {
+        let help = match has_ending(Path::new(word), RULES) {
             true => format!("`flagred check {word}` lists the errors of a rule set or profile"),
             false => format!("`flagred assess {word}` assesses a flight"),
         };
@@ -158,18 +158,23 @@ pub(crate) fn cannot_read(shown: &str, error: &io::Error) -> Failure {
         }
         _ => {
             let failure = Failure::unreadable(format!("`{shown}` cannot be read: {error}"));
-            failure.help(match shown.contains('*') {
-                true => "no file matches this pattern",
-                false => "check the path",
-            })
+            failure.help(path::missing(shown))
         }
     }
 }
 
 /// A log that cannot be read: exit code 3.
-impl From<flagred_flightlog::ReadError> for Failure {
-    fn from(error: flagred_flightlog::ReadError) -> Self {
-        Failure::unreadable(&error).help_if(error.help())
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        let failure = Failure::unreadable(&error);
+        match &error {
+            ReadError::Io { path, source }
+                if source.kind() == io::ErrorKind::NotFound && !path.starts_with("http") =>
+            {
+                failure.help(path::missing(path))
+            }
+            _ => failure.help_if(error.help()),
+        }
     }
 }
 

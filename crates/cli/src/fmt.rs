@@ -29,6 +29,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let text =
             read_text(path).map_err(|failure| failure.help_if(built_in::help_to_edit(path)))?;
         let file = path.display().to_string();
+        if let Some(format) = flagred_interchange::Format::of(&text) {
+            let message = format!("`{file}` is {}, and only YAML is formatted", format.name());
+            return Err(Failure::unreadable(message)
+                .help(format!("`flagred import {file}` converts it to YAML")));
+        }
         let formatted = formatted(&text).map_err(|why| match why {
             Unformatted::NotYaml(findings) => refuse(&findings, &file, &text),
             Unformatted::Foreign => {

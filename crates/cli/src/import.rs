@@ -76,7 +76,10 @@ fn advice(path: &Path, text: &str) -> Option<&'static str> {
     if is_meant_as_rules(text) {
         return Some("a rule set in YAML needs no import");
     }
-    if is("m") || is("mat") {
+    let is_script = ["mamfis", "sugfis", "newfis"]
+        .iter()
+        .any(|call| text.contains(call));
+    if is("m") || is("mat") || is_script {
         return Some("in MATLAB, `writeFIS(fis, \"name\")` writes `name.fis`; import that file");
     }
     is("py").then_some(

@@ -2,6 +2,7 @@
 //!
 //! Each command has its own file; this one parses the command line and dispatches.
 
+mod advice;
 mod assess;
 mod built_in;
 mod check;
@@ -30,6 +31,7 @@ mod new;
 mod numbers;
 mod output;
 mod parallel;
+mod path;
 mod plot;
 mod profile;
 mod provenance;
@@ -176,6 +178,7 @@ impl Command {
             Command::Simplify(arguments) => simplify::run(&arguments),
             Command::Validate(arguments) => validate::run(&arguments),
             Command::Evaluate(arguments) => {
+                arguments.are_flights()?;
                 output::say(
                     "note: `evaluate` is called `validate` now; the old name is removed in the next release",
                 );
@@ -203,28 +206,38 @@ fn help_of_help(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
 }
 
 /// Parses a command line. `-1` is a value of the option before it, whose parser has the better message.
-fn parse(arguments: Vec<OsString>) -> Result<Arguments, clap::Error> {
+fn parse(arguments: &[OsString]) -> Result<Arguments, clap::Error> {
     let mut command = Arguments::command().mut_subcommands(|subcommand| {
         subcommand.mut_args(|argument| {
             let takes_value = argument.get_action().takes_values() && !argument.is_positional();
             argument.allow_negative_numbers(takes_value)
         })
     });
-    let matches = command.try_get_matches_from_mut(arguments)?;
-    Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+    let parsed = command.try_get_matches_from_mut(arguments);
+    let parsed = parsed.and_then(|matches| {
+        Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+    });
+    parsed.map_err(|mut error| {
+        advice::improve(&mut error, &command, arguments);
+        error
+    })
 }
 
 /// Runs a command line, which begins with the name of the program, and returns its exit code.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> u8 {
-    let code = match parse(help_of_help(arguments)) {
+    let arguments = help_of_help(arguments);
+    let code = match parse(&arguments) {
         Ok(arguments) => match arguments.command.run() {
             Ok(exit) => exit.code(),
             Err(failure) => failure.report(),
         },
-        Err(error) => match failure::command_forgotten(&error) {
-            Some(failure) => failure.report(),
-            None => failure::refuse(&error),
-        },
+        Err(error) => {
+            let other = || advice::other_command(&error, &arguments);
+            match failure::command_forgotten(&error).or_else(other) {
+                Some(failure) => failure.report(),
+                None => failure::refuse(&error),
+            }
+        }
     };
     // A process that is not a Rust program, such as Python, does not flush Rust's buffer when it ends. An output that cannot be
     // written here cannot be reported any more.

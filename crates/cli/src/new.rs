@@ -38,7 +38,10 @@ fn name(text: &str) -> Result<String, String> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = stem.to_lowercase().replace(' ', "-");
     let help = match starter::is_name(&name) {
-        true if path.components().count() > 1 => format!("; write `{name} -o {}`", path.display()),
+        true if path.components().count() > 1 => {
+            let file = path.with_extension("yaml");
+            format!("; write `{name} -o {}`", file.display())
+        }
         true => format!("; write `{name}`"),
         false => String::new(),
     };

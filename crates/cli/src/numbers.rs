@@ -7,58 +7,101 @@ pub(crate) fn whole<N>(low: N, high: N) -> impl Fn(&str) -> Result<N, String> + 
 where
     N: FromStr + PartialOrd + Display + Copy + Send + Sync + 'static,
 {
+    // A limit of the type only is not worth a mention.
+    let is_open = high.to_string().len() > 15;
     move |text| {
         let number = text.parse().ok();
         number
             .filter(|number| (low..=high).contains(number))
-            .ok_or_else(|| format!("write a whole number from {low} to {high}"))
+            .ok_or_else(|| match is_open {
+                true => format!("write a whole number of at least {low}"),
+                false => format!("write a whole number from {low} to {high}"),
+            })
     }
 }
 
 /// Parses a random seed.
 pub(crate) fn seed(text: &str) -> Result<u64, String> {
-    text.parse()
-        .map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
+    whole(0, u64::MAX)(text)
 }
 
 /// Parses a share: at least 0 and less than 1.
 pub(crate) fn share(text: &str) -> Result<f64, String> {
-    real(text)
-        .filter(|share| (0.0..1.0).contains(share))
-        .ok_or_else(|| "write a fraction of at least 0 and less than 1".into())
+    fraction(
+        text,
+        |share| (0.0..1.0).contains(&share),
+        "write a fraction of at least 0 and less than 1",
+    )
 }
 
 /// Parses a degree: above 0, at most 1.
 pub(crate) fn degree_above_0(text: &str) -> Result<f64, String> {
-    real(text)
-        .filter(|degree| *degree > 0.0 && *degree <= 1.0)
-        .ok_or_else(|| "write a number above 0 and at most 1".into())
+    fraction(
+        text,
+        |degree| degree > 0.0 && degree <= 1.0,
+        "write a number above 0 and at most 1",
+    )
 }
 
 /// Parses a degree: from 0 to 1.
 pub(crate) fn degree(text: &str) -> Result<f64, String> {
-    real(text)
-        .filter(|degree| (0.0..=1.0).contains(degree))
-        .ok_or_else(|| "write a number from 0 to 1".into())
+    fraction(
+        text,
+        |degree| (0.0..=1.0).contains(&degree),
+        "write a number from 0 to 1",
+    )
 }
 
 /// Parses a finite number above 0.
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    real(text)
-        .filter(|number| *number > 0.0)
-        .ok_or_else(|| "write a number above 0".into())
+    real(text, |number| number > 0.0, "write a number above 0")
 }
 
 /// Parses a finite number of at least 0.
 pub(crate) fn at_least_0(text: &str) -> Result<f64, String> {
-    real(text)
-        .filter(|number| *number >= 0.0)
-        .ok_or_else(|| "write a number of at least 0".into())
+    real(text, |number| number >= 0.0, "write a number of at least 0")
 }
 
-fn real(text: &str) -> Option<f64> {
-    let number: Option<f64> = text.parse().ok();
-    number.filter(|number| number.is_finite())
+fn fraction(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<f64, String> {
+    let percent = text
+        .strip_suffix('%')
+        .and_then(|text| text.trim().parse::<f64>().ok());
+    match percent
+        .map(|percent| percent / 100.0)
+        .filter(|share| is_allowed(*share))
+    {
+        Some(share) => Err(format!("{what}: `{share}`")),
+        None => real(text, is_allowed, what),
+    }
+}
+
+fn real(text: &str, is_allowed: impl Fn(f64) -> bool, what: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|number: &f64| number.is_finite() && is_allowed(*number));
+    // The number alone would be another value.
+    let is_other_unit = ["%", "ms", "us", "min", "h"]
+        .iter()
+        .any(|unit| text.ends_with(unit));
+    number.ok_or_else(|| match advice(text).filter(|_| !is_other_unit) {
+        Some(advice) => format!("{what}; {advice}"),
+        None => what.to_owned(),
+    })
+}
+
+/// Advice for a number with a decimal comma, separators of thousands or a unit.
+pub(crate) fn advice(text: &str) -> Option<String> {
+    let joined = text.replace([',', '_', ' ', '\''], "");
+    if joined.contains('.') && joined != text && joined.parse::<f64>().is_ok() {
+        return Some(format!("write the number without separators: `{joined}`"));
+    }
+    let with_point = text.replacen(',', ".", 1);
+    if with_point != text && with_point.parse::<f64>().is_ok() {
+        return Some(format!("write a decimal point: `{with_point}`"));
+    }
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)));
+    let number = text.get(..end?)?;
+    let is_number = number.parse::<f64>().is_ok();
+    is_number.then(|| format!("write the number without its unit: `{number}`"))
 }
 
 #[cfg(test)]
@@ -73,7 +116,15 @@ mod tests {
             assert_eq!(error, "write a whole number from 2 to 100", "{wrong}");
         }
         assert!(share("1").is_err() && share("nan").is_err());
-        assert!(degree("1.01").is_err() && degree("50%").is_err());
+        assert!(degree("1.01").is_err());
+        assert_eq!(
+            degree("50%").unwrap_err(),
+            "write a number from 0 to 1: `0.5`"
+        );
+        assert_eq!(
+            positive("5s").unwrap_err(),
+            "write a number above 0; write the number without its unit: `5`"
+        );
         assert!(degree_above_0("0").is_err() && positive("inf").is_err());
         assert_eq!(at_least_0("0"), Ok(0.0));
     }

@@ -2,7 +2,7 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
 
 use clap::ValueEnum;
@@ -16,7 +16,7 @@ use fuzzy::{
 use crate::{
     failure::Failure,
     output::{self, Files, Output, Replace},
-    table::{Format, Table},
+    table::{self, Format, Table},
 };
 
 /// The arguments of a command that derives a rule set from another one.
@@ -75,7 +75,9 @@ pub(crate) struct FromRows {
 
 impl FromRows {
     /// Returns the inputs and the output.
-    pub(crate) fn files(&self) -> Result<(Files, Output), Failure> {
+    pub(crate) fn files(&self, command: &str) -> Result<(Files, Output), Failure> {
+        let with_output = format!("{command} --output {}", self.rewrite.output.display());
+        table::rule_set_first(&with_output, &self.rewrite.model, &self.data)?;
         let Rewrite {
             model,
             output,
@@ -126,6 +128,20 @@ impl Claims {
         Ok(rising
             .chain(falling.map(|claim| Monotone::new(claim, Direction::Decreasing)))
             .collect())
+    }
+
+    /// Adds advice to the failure of reading a file whose name is meant as a further input of a claim.
+    pub(crate) fn or_input(&self, path: &Path, failure: Failure) -> Failure {
+        let option = match (self.rising.is_empty(), self.falling.is_empty()) {
+            _ if path.exists() || path.extension().is_some() => return failure,
+            (true, true) => return failure,
+            (false, _) => "--rising",
+            (true, false) => "--falling",
+        };
+        failure.help(format!(
+            "for a second input repeat the option: `{option} {}`",
+            path.display()
+        ))
     }
 
     /// Returns an error for claims about inputs that the rule set does not have.
@@ -263,7 +279,7 @@ pub(crate) fn columns(
         let table = table?;
         let columns = format.columns(names, &table.header)?;
         let optional = |name: Option<&str>| {
-            name.map(|name| table.header.require(name, "or leave that option out"))
+            name.map(|name| table.header.require(name, "leave that option out"))
                 .transpose()
         };
         let weight = optional(weight)?;
@@ -370,17 +386,23 @@ pub(crate) fn in_columns(
     (data, refused)
 }
 
-/// Reports rows that cannot be used, as a failure.
-pub(crate) fn refuse(refused: &[String], purpose: &str) -> Failure {
+/// Reports rows that cannot be used, of `rows` in all, as a failure.
+pub(crate) fn refuse(refused: &[String], rows: usize, purpose: &str) -> Failure {
     const SHOWN: usize = 20;
     let mut shown: Vec<String> = refused.iter().take(SHOWN).cloned().collect();
     let more = refused.len().saturating_sub(SHOWN);
     shown.extend((more > 0).then(|| format!("and {more} more")));
     let count = refused.len();
-    Failure::unreadable(format!(
+    let outside = refused.iter().filter(|why| why.contains("outside")).count();
+    let failure = Failure::unreadable(format!(
         "{count} row{} cannot be {purpose}, and nothing was written",
         if count == 1 { "" } else { "s" }
     ))
-    .details(shown)
-    .help("correct or remove these rows, leave them out with `--skip-bad-rows`, or clamp values outside a range with `--clamp`")
+    .details(shown);
+    match outside > 1 && 2 * outside > rows {
+        true => failure.help(format!(
+            "{outside} of {rows} rows are outside a range, so their unit is probably another one: convert the values, or correct the `range` in the rule set"
+        )),
+        false => failure.help("correct or remove these rows, leave them out with `--skip-bad-rows`, or clamp values outside a range with `--clamp`"),
+    }
 }

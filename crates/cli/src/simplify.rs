@@ -114,7 +114,11 @@ fn rows(arguments: &Arguments, model: &Model) -> Result<(Vec<Vec<f64>>, Vec<Stri
         [None; 2],
     )?;
     if !refused.is_empty() && !format.skip_bad_rows {
-        return Err(rows::refuse(&refused, "compared"));
+        return Err(rows::refuse(
+            &refused,
+            refused.len() + rows.len(),
+            "compared",
+        ));
     }
     let column = |input: usize| {
         let rows = rows.iter();

@@ -2,21 +2,21 @@
 
 mod cell;
 mod foreign;
+mod header;
 
 use std::{
     fs::File,
     io::{self, BufRead, BufReader, Cursor, Read},
-    path::Path,
+    path::{Path, PathBuf},
     sync::{
         Arc,
         atomic::{AtomicUsize, Ordering},
     },
 };
 
-use fuzzy::diagnostic::quoted;
-
 pub(crate) use cell::Cell;
 use foreign::not_a_table;
+pub(crate) use header::Header;
 
 use crate::{
     failure::{Failure, cannot_read},
@@ -126,6 +126,32 @@ pub(crate) fn is_table(path: &Path) -> bool {
     has_ending(path, &["csv", "tsv"])
 }
 
+/// Refuses a table in place of the rule set, before `others`.
+pub(crate) fn rule_set_first(
+    command: &str,
+    model: &Path,
+    others: &[PathBuf],
+) -> Result<(), Failure> {
+    let Some(rules) = others
+        .iter()
+        .find(|other| !is_table(other))
+        .filter(|_| is_table(model))
+    else {
+        return Ok(());
+    };
+    let tables = others
+        .iter()
+        .filter(|other| *other != rules)
+        .map(PathBuf::as_path);
+    let line = [rules.as_path(), model].into_iter().chain(tables);
+    let line: Vec<String> = line.map(|path| path.display().to_string()).collect();
+    let message = format!(
+        "`{}` is a table, but the rule set comes first",
+        model.display()
+    );
+    Err(Failure::usage(message).help(format!("flagred {command} {}", line.join(" "))))
+}
+
 impl Format {
     /// The first of these options that differs from its default.
     pub(crate) fn given(&self) -> Option<&'static str> {
@@ -144,25 +170,27 @@ impl Format {
         {
             let failure = Failure::usage(format!("the rule set has no variable `{stray}`"));
             let meant = fuzzy::diagnostic::suggest(stray, names.iter().copied());
-            return Err(failure.help_if(meant));
+            return Err(
+                match self
+                    .column
+                    .iter()
+                    .find(|(_, column)| names.contains(&column.as_str()))
+                {
+                    Some((name, column)) => failure.help(format!(
+                        "the variable comes first: `--column {column}={name}`"
+                    )),
+                    None => failure.help_if(meant),
+                },
+            );
         }
         let column = |name: &&str| {
             let named = self.column.iter().find(|(n, _)| n == name);
             let column = named.map_or(*name, |(_, column)| column.as_str());
-            let help = format!("or name the column that contains it with `--column {name}=COLUMN`");
+            let help = format!("name the column that contains it with `--column {name}=COLUMN`");
             header.require(column, &help)
         };
         names.iter().map(column).collect()
     }
-}
-
-/// The first row of a table.
-pub(crate) struct Header {
-    /// The name of the table for messages.
-    pub(crate) file: String,
-    /// The names of the columns, without surrounding spaces.
-    pub(crate) names: Vec<String>,
-    delimiter: u8,
 }
 
 /// Opens a table and reads its header; `-` is standard input. Rows may have more or fewer cells than the header, and cells
@@ -184,8 +212,8 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
         left: Arc::clone(&left),
     });
     let unreadable = |error: io::Error| cannot_read(&file, &error);
-    if let Some(kind) = not_a_table(source.fill_buf().map_err(unreadable)?) {
-        return Err(kind.failure(&file));
+    if let Some(failure) = not_a_table(source.fill_buf().map_err(unreadable)?, &file) {
+        return Err(failure);
     }
     let source = uncommented(source).map_err(unreadable)?;
     let mut csv = csv::ReaderBuilder::new()
@@ -211,96 +239,6 @@ pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failu
         delimiter,
     };
     Ok((header, Reader { csv, left }))
-}
-
-impl Header {
-    /// Returns the index of a column.
-    pub(crate) fn column(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|column| column == name)
-    }
-
-    /// Returns the index of a required column; `help` is added to the message if it is missing.
-    pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
-        if name.is_empty() {
-            // A column without a name in the header cannot be requested.
-            return Err(Failure::usage("a column must have a name").help(help));
-        }
-        if self.names.iter().filter(|column| *column == name).count() > 1 {
-            let name = quoted(name);
-            let message = format!("`{}` has the column `{name}` more than once", self.file);
-            return Err(Failure::unreadable(message).help("rename all of them except one"));
-        }
-        self.column(name).ok_or_else(|| {
-            let failure = Failure::unreadable(format!("`{}` has no column `{name}`", self.file));
-            if self.names.first().is_some_and(|name| name.starts_with("sep=")) {
-                return failure.help("delete the first line, and use `--delimiter` instead");
-            }
-            if let Some(other) = self.other_delimiter() {
-                return failure.help(format!(
-                    "its cells seem to be separated by another character: add `--delimiter {other}`"
-                ));
-            }
-            if self.names.iter().all(|name| name.parse::<f64>().is_ok()) {
-                return failure
-                    .help("the first line contains numbers; it must contain the names of the columns");
-            }
-            let columns = self.names.iter().map(String::as_str);
-            let columns = columns.filter(|name| !name.is_empty());
-            // Different capitals are the most frequent mistake.
-            if let Some(column) = columns.clone().find(|it| it.eq_ignore_ascii_case(name)) {
-                let column = quoted(column);
-                return failure.help(format!("did you mean `{column}`? then add `--column {name}={column}`"));
-            }
-            if let [only] = self.names.as_slice()
-                && only.contains(' ')
-            {
-                return failure.help("the first line must contain the names of the columns, separated as `--delimiter` says");
-            }
-            let meant = fuzzy::diagnostic::suggest(name, columns).unwrap_or_default();
-            failure.help(format!("{meant}; {help}"))
-        })
-    }
-
-    /// The probable delimiter, if it differs from the chosen one.
-    fn other_delimiter(&self) -> Option<&'static str> {
-        let [only] = self.names.as_slice() else {
-            return None;
-        };
-        let all = [(b';', "';'"), (b'\t', "tab"), (b',', "','"), (b'|', "'|'")];
-        let mut found = all
-            .into_iter()
-            .filter(|(byte, _)| *byte != self.delimiter && only.as_bytes().contains(byte));
-        found.next().map(|(_, word)| word)
-    }
-
-    /// Advice for a row whose number of cells is not that of the header.
-    pub(crate) fn misfit_help(&self) -> String {
-        match self.other_delimiter() {
-            Some(other) => format!(
-                "its cells seem to be separated by another character: add `--delimiter {other}`"
-            ),
-            None if self.delimiter == b',' => {
-                "write as many cells in every row as in the header; a decimal comma splits a number, so write a point".to_owned()
-            }
-            None => "write as many cells in every row as in the header".to_owned(),
-        }
-    }
-
-    /// Returns the problem of a row with `cells` cells, if any.
-    pub(crate) fn misfit(&self, cells: usize) -> Option<String> {
-        let expected = self.names.len();
-        (cells != expected).then(|| {
-            format!(
-                "{cells} cell{}, but the header has {expected}",
-                if cells == 1 { "" } else { "s" }
-            )
-        })
-    }
-
-    /// The name of a column.
-    pub(crate) fn name(&self, column: usize) -> &str {
-        self.names.get(column).map_or("", String::as_str)
-    }
 }
 
 /// A whole table.

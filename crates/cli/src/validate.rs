@@ -46,6 +46,21 @@ pub(crate) struct Arguments {
     svg: Option<PathBuf>,
 }
 
+impl Arguments {
+    /// Refuses a rule set in place of a flight: `eval` was meant.
+    pub(crate) fn are_flights(&self) -> Result<(), Failure> {
+        let mut flights = self.flights.iter();
+        let Some(rules) = flights.find(|path| output::has_ending(path, output::RULES)) else {
+            return Ok(());
+        };
+        let others = self.flights.iter().filter(|path| *path != rules);
+        let names = [rules].into_iter().chain(others);
+        let names: Vec<String> = names.map(|path| path.display().to_string()).collect();
+        let message = format!("`{}` is a rule set, not a flight", rules.display());
+        Err(Failure::usage(message).help(format!("flagred eval {}", names.join(" "))))
+    }
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let inputs = arguments.flights.iter().chain(&arguments.rows).cloned();
     let inputs = inputs.chain(arguments.profiles.iter().map(PathBuf::from));
@@ -116,10 +131,13 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
     let evaluation = scored(estimators, |done| {
         Evaluation::of_flights(estimators, arguments.horizon, records, left_out, done)
     });
-    let evaluation = evaluation.ok_or_else(|| {
-        Failure::unreadable("there are no steps to evaluate in these files").help(
+    let evaluation = evaluation.ok_or_else(|| match files.len() {
+        0 => Failure::unreadable("there are no files in these folders").help("name flight logs, or folders that contain some"),
+        // The reason was reported.
+        1 if exit == Exit::Unreadable => Failure::shown(3),
+        _ => Failure::unreadable("there are no steps to evaluate in these files").help(
             "a log needs motor commands, attitude, and 20 s in the air; `flagred inspect` shows what it contains",
-        )
+        ),
     })?;
     Ok((evaluation, exit))
 }
@@ -129,7 +147,7 @@ fn rows(path: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
     let table = Table::read(path, b',')?;
     table.header.require(
         flagred_evaluation::ERROR,
-        "critical moments cannot be identified without an attitude error",
+        "`flagred dataset --profile NAME` writes a table with it: critical moments are identified by the attitude error",
     )?;
     let rows = Rows {
         columns: table.header.names.iter().map(String::as_str).collect(),

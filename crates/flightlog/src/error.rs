@@ -2,6 +2,8 @@
 
 use std::io::ErrorKind;
 
+use crate::Kind;
+
 /// An error that prevents reading a log. A damaged log is not an error: its undamaged part is read, and its
 /// [`Report`](crate::Report) counts the damage.
 ///
@@ -83,30 +85,18 @@ impl ReadError {
                 ErrorKind::IsADirectory => Some("name the logs in it"),
                 _ => None,
             },
+            Self::Empty { path } if path == STDIN => {
+                Some("the command before the pipe printed nothing")
+            }
             Self::Empty { .. } => {
                 Some("the download or copy may have failed: download the log again")
-            }
-            Self::NotALog { what, .. } if what.contains("git-lfs") => {
-                Some("fetch the log itself with `git lfs pull`")
             }
             Self::NotRead { .. } => Some(
                 "it cannot be converted to ULog: write a flight CSV (docs/flight-csv.md) of its OUT0 messages, or fly with PX4 1.4 or newer, which logs as ULog (.ulg)",
             ),
-            Self::NotALog { what, .. } if what == TEXT => Some(
-                "a flight CSV begins with the names of its columns, separated by commas: `t_s`, and `pwm1` or `motor1` and so on; a text log of ArduPilot begins with `FMT` lines",
-            ),
-            Self::NotALog { what, .. } if what == RULES => {
-                Some("`flagred check` examines a rule set")
-            }
-            Self::NotALog { what, .. } if what == PROFILE => {
-                Some("`flagred assess --profile PROFILE FLIGHT` assesses a flight with it")
-            }
-            Self::NotALog { what, .. } if what == SEMICOLONS => {
-                Some("a flight CSV separates cells by commas, and numbers have a decimal point")
-            }
-            Self::NotALog { .. } => Some(
+            Self::NotALog { what, .. } => Kind::named(what).and_then(|kind| kind.help).or(Some(
                 "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",
-            ),
+            )),
             Self::Csv { help, .. } => Some(help),
             Self::Range { help, .. } => Some(help),
         }
@@ -136,17 +126,8 @@ impl ReadError {
 /// Description of a log in PX4's first format.
 pub(crate) const SDLOG2: &str = "an sdlog2 log (.px4log) of PX4 before ULog";
 
-/// Description of a text file that is not a log.
-pub(crate) const TEXT: &str = "a text file";
-
-/// Description of a rule set.
-pub(crate) const RULES: &str = "a rule set";
-
-/// Description of a profile.
-pub(crate) const PROFILE: &str = "a profile";
-
-/// Description of a table with separators other than commas.
-pub(crate) const SEMICOLONS: &str = "a table with semicolons between its cells";
+/// The name of standard input in messages.
+pub(crate) const STDIN: &str = "standard input";
 
 /// The path in an error until the caller sets it.
 pub(crate) const UNNAMED: &str = "the log";

@@ -77,7 +77,10 @@ pub enum Gap {
     NeverArmed,
     /// The vehicle never left the ground while motor commands were logged.
     #[error("the vehicle was never in the air")]
-    NeverInAir,
+    NeverInAir {
+        /// The format of the log.
+        format: Format,
+    },
     /// The log does not record when the vehicle was in the air.
     #[error("the log does not report when the vehicle was in the air")]
     AirUnknown {
@@ -114,8 +117,13 @@ impl Gap {
             Self::NotAMultirotor { .. }
             | Self::MotorsMissing { .. }
             | Self::NoCommandsInAir
-            | Self::NeverArmed
-            | Self::NeverInAir => return None,
+            | Self::NeverArmed => return None,
+            Self::NeverInAir { format } => match format {
+                Csv => {
+                    "column `in_air` is 0 in every row: write 1 in the air, or leave the column out if every row counts"
+                }
+                _ => return None,
+            },
             Self::TooFewMotors { .. } => {
                 "a flight CSV has a column for each motor: pwm1, pwm2 .. or motor1, motor2 ..; for another vehicle use a profile that reads no motor"
             }
@@ -268,7 +276,7 @@ impl Flight {
         let never = |intervals: &crate::Intervals| intervals.spans.is_empty();
         match (&self.armed, &self.in_air) {
             (Some(armed), _) if never(armed) => Some(Gap::NeverArmed),
-            (_, Some(in_air)) if never(in_air) => Some(Gap::NeverInAir),
+            (_, Some(in_air)) if never(in_air) => Some(Gap::NeverInAir { format }),
             (_, None) => Some(Gap::AirUnknown { format }),
             _ => None,
         }

@@ -64,7 +64,7 @@ impl<'r> Input<'r> {
             Ok(read) => self.end += read,
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(error) if self.compressed => {
-                self.failure = Some(format!("the gzip stream is truncated or damaged: {error}"));
+                self.failure = Some(format!("the gzip file is truncated or damaged ({error})"));
                 self.at_end = true;
             }
             Err(error) => return Err(error),

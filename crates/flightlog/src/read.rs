@@ -4,8 +4,9 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::error::{self, PROFILE, RULES, SEMICOLONS, TEXT, UNNAMED, io_error};
+use crate::error::{self, UNNAMED, io_error};
 use crate::input::Input;
+use crate::kind::{self, Kind};
 use crate::{Commands, Flight, PulseRange, Range, ReadError, csv, dataflash, geometry, tlog, ulog};
 
 /// Options for reading a log.
@@ -72,8 +73,7 @@ impl Options {
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Flight, ReadError> {
     let path = path.as_ref();
     if path == Path::new("-") {
-        return read(io::stdin().lock(), options)
-            .map_err(|error| error.with_path("standard input"));
+        return read(io::stdin().lock(), options).map_err(|error| error.with_path(error::STDIN));
     }
     let name = path.display().to_string();
     let file = File::open(path).and_then(|file| match file.metadata()?.is_dir() {
@@ -130,10 +130,10 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
                 what: error::SDLOG2.into(),
             });
         }
-        Content::Other(what) => {
+        Content::Other(kind) => {
             return Err(ReadError::NotALog {
                 path: UNNAMED.into(),
-                what: what.into(),
+                what: kind.name.into(),
             });
         }
     };
@@ -167,40 +167,25 @@ enum Content {
     Csv,
     Empty,
     Sdlog2,
-    Other(&'static str),
+    Other(Kind),
 }
-
-/// Signatures of other files that users may pass by mistake.
-const OTHER_FILES: &[(&[u8], &str)] = &[
-    (b"\x89PNG", "a PNG picture"),
-    (b"\xff\xd8\xff", "a JPEG picture"),
-    (b"GIF8", "a GIF picture"),
-    (b"%PDF", "a PDF document"),
-    (b"PK\x03\x04", "a ZIP archive (unpack it first)"),
-    (b"7z\xbc\xaf", "a 7z archive (unpack it first)"),
-    (b"\x28\xb5\x2f\xfd", "a zstd archive (unpack it first)"),
-    (b"\xfd7zXZ", "an xz archive (unpack it first)"),
-    (b"BZh", "a bzip2 archive (unpack it first)"),
-    (b"\x7fELF", "a program"),
-    (b"<!DOCTYPE", "a web page"),
-    (b"<html", "a web page"),
-    (b"version https://git-lfs", "a git-lfs pointer"),
-];
 
 /// The label of the only field of sdlog2's time messages.
 const SDLOG2: &[u8] = b"StartTime\0";
 
-/// What a file is by its first bytes: a flight log in a binary format, or a file of another kind that is not text; `None`
-/// for text.
-pub fn kind_of(start: &[u8]) -> Option<&'static str> {
+/// Returns the kind of a file by its first bytes: a flight log in a binary format, or a file of another kind that is not
+/// text; `None` for text.
+pub fn kind_of(start: &[u8]) -> Option<Kind> {
     match sniff(start) {
-        Content::DataFlash | Content::ULog | Content::Tlog | Content::Sdlog2 => {
-            Some("a flight log")
-        }
-        Content::Other(what) if [TEXT, RULES, PROFILE, SEMICOLONS].contains(&what) => None,
-        Content::Other(what) => Some(what),
-        Content::DataFlashText | Content::Csv | Content::Empty => None,
+        Content::DataFlash | Content::ULog | Content::Tlog | Content::Sdlog2 => Some(Kind::LOG),
+        Content::Other(kind) if !Kind::PLAIN.contains(&kind) => Some(kind),
+        Content::Other(_) | Content::DataFlashText | Content::Csv | Content::Empty => None,
     }
+}
+
+/// Returns whether a text begins like a flight CSV or a text log.
+pub fn is_text_log(start: &[u8]) -> bool {
+    matches!(sniff(start), Content::DataFlashText) || csv::has_times(start)
 }
 
 /// The kind of content, from the first bytes of a log or, if these are damaged, from the following ones.
@@ -208,8 +193,8 @@ fn sniff(start: &[u8]) -> Content {
     if start.is_empty() {
         return Content::Empty;
     }
-    if let Some((_, what)) = OTHER_FILES.iter().find(|(sign, _)| start.starts_with(sign)) {
-        return Content::Other(what);
+    if let Some(kind) = kind::signed(start) {
+        return Content::Other(kind);
     }
     if dataflash::looks_like(start) {
         // PX4 before ULog used the same encoding with its own messages.
@@ -230,24 +215,5 @@ fn sniff(start: &[u8]) -> Content {
     if csv::looks_like(start) {
         return Content::Csv;
     }
-    match std::str::from_utf8(&start[..start.len().min(1024)]) {
-        Err(error) if error.error_len().is_some() => Content::Other("an unknown binary file"),
-        Ok(text) => Content::Other(text_of(text)),
-        Err(_) => Content::Other(TEXT),
-    }
-}
-
-/// The kind of a text that is not a log.
-fn text_of(text: &str) -> &'static str {
-    let starts = |key: &str| text.lines().any(|line| line.starts_with(key));
-    let header = text.lines().find(|line| !line.starts_with('#'));
-    if starts("fuzzy:") {
-        RULES
-    } else if starts("flagred:") {
-        PROFILE
-    } else if header.is_some_and(|header| header.contains(';') && !header.contains(',')) {
-        SEMICOLONS
-    } else {
-        TEXT
-    }
+    Content::Other(kind::of_rest(start))
 }

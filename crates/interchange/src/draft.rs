@@ -79,20 +79,20 @@ impl<'t> Draft<'t> {
 
     /// Parses a number; reports an error if it is not one.
     pub(crate) fn number(&mut self, word: &str) -> Option<f64> {
-        let number = number(word);
-        if number.is_none() {
+        let parsed = number(word);
+        if parsed.is_none() {
             let message = format!("`{word}` is not a number");
-            self.error(
-                "not-a-number",
-                word,
-                message,
-                match word.to_lowercase().contains("pi") {
-                    true => "write it out in digits: 0.7853981633974483 for pi/4",
-                    false => "write a number in digits, such as `0.5`",
-                },
-            );
+            let with_point = word.replacen(',', ".", 1);
+            let help = match word.to_lowercase().contains("pi") {
+                true => "write it out in digits: 0.7853981633974483 for pi/4".to_owned(),
+                false if word.contains(',') && number(&with_point).is_some() => {
+                    format!("write a decimal point: `{with_point}`")
+                }
+                false => "write a number in digits, such as `0.5`".to_owned(),
+            };
+            self.error("not-a-number", word, message, &help);
         }
-        number
+        parsed
     }
 
     /// Whether the parameters of a shape, in numbers and in words, are finite where they must be; otherwise an error is

@@ -279,6 +279,15 @@ const ONE_MESSAGE_BYTES: u64 = 256;
 
 /// Describes the damage of a log that could be read in part.
 pub fn damage(report: &flagred_flightlog::Report) -> String {
+    if let Some(reason) = report
+        .reason
+        .as_ref()
+        .filter(|reason| reason.contains("gzip"))
+    {
+        return format!(
+            "the rest of the flight is missing: {reason}; copy or download the file again"
+        );
+    }
     if report.truncated && report.bad_messages == 0 && report.skipped_bytes <= ONE_MESSAGE_BYTES {
         let (last, are) = match report.skipped_bytes {
             1 => ("last byte".to_owned(), "is"),

@@ -103,7 +103,7 @@ pub(super) fn foreign(text: &str) -> Option<Diagnostic> {
         return foreign(
             first,
             message,
-            "name the rule set first, and then the table",
+            "name a file with a rule set; a command that also reads a table takes it after the rule set",
         );
     }
     None
@@ -247,8 +247,6 @@ fn program(first: &str) -> Option<&'static str> {
         Some("a text in the FuzzyLite Language (FLL)")
     } else if begins(&["<"]) {
         Some("XML")
-    } else if is_toml(first) {
-        Some("TOML")
     } else if begins(&["import ", "from "]) {
         Some("Python")
     } else if ["mamfis", "sugfis", "newfis", "readfis"]
@@ -256,6 +254,8 @@ fn program(first: &str) -> Option<&'static str> {
         .any(|call| folded.contains(call))
     {
         Some("a script of MATLAB")
+    } else if is_toml(first) {
+        Some("TOML")
     } else {
         None
     }

@@ -98,10 +98,18 @@ struct Plan {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model, &arguments.points])?;
     let output = files.output(&arguments.output, Replace::Yes)?;
-    if table::is_table(&arguments.model) && !table::is_table(&arguments.points) {
-        let (model, points) = (arguments.model.display(), arguments.points.display());
-        let message = format!("`{model}` is a table, but the rule set comes first");
-        return Err(Failure::usage(message).help(format!("flagred eval {points} {model}")));
+    table::rule_set_first(
+        "eval",
+        &arguments.model,
+        std::slice::from_ref(&arguments.points),
+    )?;
+    let points = arguments.points.display().to_string();
+    if points.contains('=') && !arguments.points.exists() {
+        let failure = Failure::usage(format!("`{points}` is not a table"));
+        let model = arguments.model.display();
+        return Err(failure.help(format!(
+            "`flagred explain {model} {points}` evaluates one point"
+        )));
     }
     let engine = rule_set::load(&arguments.model)?;
     let format = &arguments.format;

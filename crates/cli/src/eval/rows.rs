@@ -138,7 +138,10 @@ impl<'p> Evaluator<'p> {
         if !record.as_slice().is_ascii() {
             let mut cells = record.iter().enumerate();
             if let Some((column, _)) = cells.find(|(_, text)| str::from_utf8(text).is_err()) {
-                problems.push(format!("column `{}`: invalid UTF-8", header.name(column)));
+                problems.push(format!(
+                    "column `{}`: not UTF-8; save the table as UTF-8",
+                    header.name(column)
+                ));
             }
         }
         if problems.is_empty() {

@@ -124,6 +124,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let message = format!("`{}` is both the target and an input", arguments.target);
         return Err(Failure::usage(message).help("name the other columns with `--input`"));
     }
+    if let Some(rules) = arguments
+        .data
+        .iter()
+        .find(|path| output::has_ending(path, output::RULES))
+    {
+        let failure = Failure::usage(format!(
+            "`{}` is a rule set, and `identify` reads only tables",
+            rules.display()
+        ));
+        return Err(failure.help(
+            "`flagred learn` and `flagred tune` start from a rule set; otherwise leave it out",
+        ));
+    }
     rows::distinct(&arguments.data)?;
     let mut files = Files::reading(&arguments.data)?;
     let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
@@ -139,6 +152,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let failed = |error: TuneError| failure(arguments, &names, &error);
     check_columns(names.len()).map_err(failed)?;
     let (data, refused) = data(arguments, tables, &names)?;
+    if let [first, others @ ..] = data.truths.as_slice()
+        && others.iter().all(|other| other == first)
+    {
+        let failure = Failure::unreadable(format!("`{}` is {first} in all rows", arguments.target));
+        return Err(failure.help(
+            "name another column with `--target`, or add rows with other values of this one",
+        ));
+    }
     let settings = settings(arguments);
     let identified = identify(&names, &arguments.target, &data, &settings).map_err(failed)?;
     let judged = match arguments.no_validation {
@@ -201,11 +222,28 @@ fn settings(arguments: &Arguments) -> Identification {
 
 /// The columns of a table that may be inputs, and those without a number.
 fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<String>), Failure> {
+    let has = |name: &str| table.header.column(name).is_some();
+    let mut joined = arguments.input.iter().chain(&arguments.ignore);
+    if let Some(joined) =
+        joined.find(|name| !has(name) && name.contains(',') && name.split(',').all(has))
+    {
+        let option = if arguments.input.is_empty() {
+            "--ignore"
+        } else {
+            "--input"
+        };
+        let options: Vec<String> = joined
+            .split(',')
+            .map(|name| format!("{option} {name}"))
+            .collect();
+        let failure = Failure::usage(format!("`{joined}` is several columns"));
+        return Err(failure.help(format!("repeat the option: `{}`", options.join(" "))));
+    }
     if !arguments.input.is_empty() {
         return Ok((arguments.input.clone(), Vec::new()));
     }
     for ignored in &arguments.ignore {
-        table.header.require(ignored, "or leave that option out")?;
+        table.header.require(ignored, "leave that option out")?;
     }
     let special = [
         Some(&arguments.target),
@@ -274,7 +312,11 @@ fn data(
     )?;
     let (data, refused) = rows::in_columns(read, names.len(), Loss::Squared);
     if !refused.is_empty() && (!arguments.format.skip_bad_rows || data.is_empty()) {
-        return Err(rows::refuse(&refused, "used"));
+        return Err(rows::refuse(
+            &refused,
+            refused.len() + data.truths.len(),
+            "used",
+        ));
     }
     Ok((data, refused))
 }

@@ -84,7 +84,7 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let (_, output) = arguments.rows.files()?;
+    let (_, output) = arguments.rows.files("learn")?;
     let name = arguments.rows.rewrite.model.display().to_string();
     let source = rule_set::read(&arguments.rows.rewrite.model)?;
     let whole = &rule_set::document(&source, &name)?.model;
@@ -116,7 +116,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
     }
     if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || rows.is_empty()) {
-        return Err(rows::refuse(&refused, "learned from"));
+        return Err(rows::refuse(
+            &refused,
+            refused.len() + rows.len(),
+            "learned from",
+        ));
     }
     let learned = learner.finish();
     if learned.model.rules.is_empty() {

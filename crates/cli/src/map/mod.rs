@@ -211,6 +211,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if let Some(table) = &arguments.check {
         return check::against(table, &evaluated);
     }
+    if let Some(name) = arguments.output.as_ref().and_then(|path| path.to_str())
+        && evaluated.engine.output_names().any(|output| output == name)
+    {
+        let failure = Failure::usage(format!(
+            "`{name}` is an output of the rule set, and `--output` names a file"
+        ));
+        return Err(failure.help(format!("`--of {name}` shows this output")));
+    }
     let shown = evaluated.engine.model().outputs.get(evaluated.output);
     if let Some(shown) = shown.filter(|shown| shown.keeps_previous()) {
         output::say(&format!(

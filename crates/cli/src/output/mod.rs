@@ -13,6 +13,8 @@ use std::{
 
 pub(crate) use flagred_report::table::{cell, number_or_cell};
 
+pub(crate) use crate::path::{RULES, has_ending};
+
 pub(crate) use self::{
     file::{Files, Output, Replace, can_replace, new_file, write_all},
     stdout::Stdout,
@@ -31,9 +33,12 @@ pub(crate) fn rules_path(text: &str) -> Result<PathBuf, String> {
 
 /// Parses the path of a text or a table. Other extensions are refused, so that a rule set named by mistake is not replaced.
 pub(crate) fn text_path(text: &str) -> Result<PathBuf, String> {
-    if has_ending(Path::new(text), &["svg"]) {
+    let pictures = ["svg", "png", "pdf", "jpg", "jpeg", "gif", "eps"];
+    if has_ending(Path::new(text), &pictures) {
+        let picture = Path::new(text).with_extension("svg");
         return Err(format!(
-            "the output is text; for a picture write `--svg {text}`"
+            "the output is text; for a picture write `--svg {}`",
+            picture.display()
         ));
     }
     path_of(
@@ -81,12 +86,6 @@ pub(crate) fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<Pat
         }
         _ => Ok(path),
     }
-}
-
-/// Returns whether the extension of a path is one of these, in lower or upper case.
-pub(crate) fn has_ending(path: &Path, extensions: &[&str]) -> bool {
-    let ending = path.extension();
-    ending.is_some_and(|ending| extensions.iter().any(|e| ending.eq_ignore_ascii_case(e)))
 }
 
 /// Writes a text to a file, or to standard output; a terminal shows its colours.

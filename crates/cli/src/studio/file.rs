@@ -6,12 +6,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use flagred_authoring::{kind, provenance::digits};
+use flagred_authoring::provenance::digits;
 use sha2::{Digest, Sha256};
 
 use crate::{
     built_in,
-    diagnostics::{read_bytes, text},
+    diagnostics::{is_utf16, read_bytes, text},
     failure::Failure,
     output::{Files, Replace, can_replace},
 };
@@ -95,7 +95,7 @@ impl EditedFile {
             )));
         }
         let bytes = read_bytes(file, &shown)?;
-        if self.read_only.is_none() && kind::is_utf16(&bytes) {
+        if self.read_only.is_none() && is_utf16(&bytes) {
             let message = format!("`{shown}` is in UTF-16, but the page would save it in UTF-8");
             return Err(Failure::unreadable(message)
                 .help("convert the file to UTF-8, or show it with `--read-only`"));

@@ -1,32 +1,29 @@
 //! Files that are not tables, recognised by their first bytes.
 
-use crate::failure::Failure;
+use crate::{diagnostics::is_utf16, failure::Failure};
 
-/// A file that is not a table.
-pub(super) struct Foreign {
-    is: &'static str,
-    help: &'static str,
-}
-
-impl Foreign {
-    pub(super) fn failure(&self, file: &str) -> Failure {
-        let file = if file == "-" { "standard input" } else { file };
-        Failure::unreadable(format!("`{file}` is {}, not a table", self.is)).help(self.help)
-    }
-}
-
-/// Recognises other files by their first bytes.
-pub(super) fn not_a_table(start: &[u8]) -> Option<Foreign> {
-    let is = |is, help| Some(Foreign { is, help });
-    if flagred_authoring::kind::is_utf16(start) {
+/// Returns the failure for a file that is not a table.
+pub(super) fn not_a_table(start: &[u8], file: &str) -> Option<Failure> {
+    let shown = if file == "-" { "standard input" } else { file };
+    let is = |what, help: &str| {
+        let failure = Failure::unreadable(format!("`{shown}` is {what}, not a table"));
+        Some(failure.help(help))
+    };
+    if is_utf16(start) {
         return is("text in UTF-16", "save it as UTF-8");
     }
-    let kind = flagred_flightlog::kind_of(start);
-    if let Some(kind) = kind {
-        return is(
-            kind,
-            "a table is CSV text with the column names in the first line",
-        );
+    match flagred_flightlog::kind_of(start) {
+        Some(flagred_flightlog::Kind::LOG) => {
+            let help = format!(
+                "`flagred dataset {file} --profile flagred -o rows.csv` makes a table of flights"
+            );
+            return is("a flight log", &help);
+        }
+        Some(kind) => {
+            let other = "a table is CSV text with the column names in the first line";
+            return is(kind.name, &kind.help.unwrap_or(other).replace("FILE", file));
+        }
+        None => {}
     }
     let mut lines = start.split(|byte| *byte == b'\n');
     if lines.any(|line| line.starts_with(b"fuzzy:") || line.starts_with(b"flagred:")) {
@@ -35,5 +32,11 @@ pub(super) fn not_a_table(start: &[u8]) -> Option<Foreign> {
             "name the rule set first, then the tables: see `--help`",
         );
     }
-    None
+    match start.trim_ascii_start().first() {
+        Some(b'[' | b'{') => is(
+            "JSON",
+            "write a row for each object, below the names of the columns, separated by commas",
+        ),
+        _ => None,
+    }
 }

@@ -143,7 +143,7 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let (mut files, output) = arguments.rows.files()?;
+    let (mut files, output) = arguments.rows.files("tune")?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let checkpoint = files.optional(arguments.checkpoint.as_ref())?;
     let name = arguments.rows.rewrite.model.display().to_string();
@@ -241,7 +241,7 @@ fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Fai
     let read = rows::in_range(read, model);
     let (data, refused) = rows::in_columns(read, model.inputs.len(), arguments.loss());
     if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
-        let failure = rows::refuse(&refused, "used");
+        let failure = rows::refuse(&refused, refused.len() + data.truths.len(), "used");
         return Err(match arguments.loss() {
             Loss::Squared => failure,
             Loss::Log | Loss::Ranking => failure.help(

@@ -68,6 +68,17 @@ impl FromStr for Endpoint {
 }
 
 fn unknown(text: &str) -> String {
+    // For example `14550`, `udp:14550` and `udp://:14550`.
+    let port = text
+        .rsplit(':')
+        .next()
+        .and_then(|port| port.parse::<u16>().ok());
+    let before = text.rsplit_once(':').map_or("", |(before, _)| before);
+    if let Some(port) = port
+        .filter(|_| ["", "udp", "udp:", "udp://", "udp:0.0.0.0", "udp://0.0.0.0"].contains(&before))
+    {
+        return format!("to listen on a port, write `udpin:0.0.0.0:{port}`");
+    }
     format!(
         "`{text}` is not an endpoint: write `udpin:`, `udpout:`, `tcp:` or `tcpin:` and an address with a port, or a serial port such as `/dev/ttyACM0:57600`"
     )

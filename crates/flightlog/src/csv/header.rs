@@ -17,6 +17,24 @@ pub(super) struct HeaderLine {
     value: String,
 }
 
+/// Keys that change an assessment.
+const KEYS: &[&str] = &[
+    "pwm_low_us",
+    "pwm_high_us",
+    "effective_low",
+    "effective_high",
+    "motors",
+    "frame",
+    "frame_class",
+    "frame_type",
+    "vehicle_kind",
+    "armed",
+    "in_air",
+    "end_s",
+    "rebooted_in_air_s",
+    "utc_at_zero_s",
+];
+
 /// Reads the `# key: value` lines at the top, and returns them with the number of lines.
 pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64), ReadError> {
     let mut header = Vec::new();
@@ -34,7 +52,15 @@ pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64
         input.read_until(b'\n', &mut text).map_err(io_error)?;
         lines += 1;
         let text = String::from_utf8_lossy(&text);
-        if let Some((key, value)) = text.trim().trim_start_matches('#').split_once(':') {
+        let text = text.trim().trim_start_matches('#').trim();
+        // Without this message the value would be missing.
+        if let Some((key, value)) = text.split_once('=')
+            && KEYS.contains(&key.trim())
+        {
+            let help = format!("write `# {}: {}`", key.trim(), value.trim());
+            return Err(problem(lines, format!("`{text}` has no colon"), &help));
+        }
+        if let Some((key, value)) = text.split_once(':') {
             header.push(HeaderLine {
                 line: lines,
                 key: key.trim().into(),

@@ -1,34 +1,55 @@
 //! Flight CSV: `t_s`, the motor commands and any signals; see `docs/flight-csv.md`.
 
 mod header;
+mod layout;
 mod rows;
 mod write;
 
 use std::cell::Cell;
-use std::collections::HashSet;
 use std::io::{self, Read};
 
 use csv::{ByteRecord, ReaderBuilder};
 
 use self::header::{apply_header, read_header};
+use self::layout::Layout;
 use self::rows::Rows;
 use crate::error::io_error;
 use crate::geometry;
 use crate::input::Input;
 use crate::signal::preferred;
-use crate::{Flight, Format, Motor, Options, ReadError};
+use crate::{Flight, Format, Options, ReadError};
+
+/// The lines that are neither empty nor comments.
+fn content(start: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let start = start.strip_prefix(BOM).unwrap_or(start);
+    let lines = start.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"))
+}
+
+fn cells(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(|&byte| byte == b',').map(cell)
+}
 
 /// Whether the first line that is not a comment names a column `t_s`.
+pub(crate) fn has_times(start: &[u8]) -> bool {
+    let mut header = content(start).next().into_iter().flat_map(cells);
+    header.any(|name| name == b"t_s")
+}
+
+/// Whether a text is a flight CSV, or another table, whose column of times may have another name: the first line names
+/// several columns, and the next one has as many cells.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
-    let start = start.strip_prefix(BOM).unwrap_or(start);
-    start
-        .split(|&byte| byte == b'\n')
-        .map(<[u8]>::trim_ascii)
-        .find(|line| !line.is_empty() && !line.starts_with(b"#"))
-        .is_some_and(|line| {
-            line.split(|&byte| byte == b',')
-                .any(|name| cell(name) == b"t_s")
-        })
+    let mut lines = content(start);
+    let (Some(header), row) = (lines.next(), lines.next()) else {
+        return false;
+    };
+    let is_name =
+        |name: &[u8]| name.len() <= 64 && !name.iter().any(|byte| b":{}[]<>;".contains(byte));
+    let columns = cells(header).count();
+    let is_table = columns > 1
+        && cells(header).all(is_name)
+        && row.is_some_and(|row| cells(row).count() == columns);
+    is_table || has_times(start)
 }
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
@@ -103,7 +124,15 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     }
     flight.report.truncated |= rows.is_cut_off();
     let is_ours = header::is_ours(&header);
-    if let Some(refused) = rows.refusal(is_ours) {
+    if record.position().is_none() && !is_ours {
+        let help = "write a row for each sample below the names of the columns";
+        return Err(problem(
+            lines + 1,
+            "the table has a header, but no rows",
+            help,
+        ));
+    }
+    if let Some(refused) = rows.refusal(is_ours, flight.report.messages) {
         return Err(refused);
     }
     let other_unit = rows.other_unit().filter(|_| !is_ours);
@@ -141,9 +170,6 @@ fn problem(line: u64, problem: impl Into<String>, help: &str) -> ReadError {
 /// The maximum length of a row in bytes, with the comments above it. A file with longer header lines is not recognised
 /// as a flight CSV.
 const LONGEST_ROW: usize = 1_000_000;
-const MOST_COLUMNS: usize = 4096;
-/// The maximum number of motors: ArduPilot has up to 32 outputs, and its frames up to 12 motors.
-const MOST_MOTORS: usize = 32;
 
 fn too_long(line: u64) -> ReadError {
     let text = format!("the row is longer than {LONGEST_ROW} bytes");
@@ -169,125 +195,6 @@ impl Read for Bounded<'_, '_> {
         self.left.set(self.left.get().saturating_sub(count));
         Ok(count)
     }
-}
-
-/// The meaning of the columns.
-struct Layout {
-    time: usize,
-    /// The column of each motor, in order.
-    motors: Vec<usize>,
-    /// `pwm` or `motor`.
-    stem: &'static str,
-    in_air: Option<usize>,
-    /// Column and name of each signal, and whether it is kept.
-    signals: Vec<(usize, String, bool)>,
-    /// The number of columns that a row must have.
-    columns: usize,
-}
-
-impl Layout {
-    fn new(names: &ByteRecord, line: u64, options: &Options) -> Result<Self, ReadError> {
-        let names: Vec<String> = names
-            .iter()
-            .map(|name| String::from_utf8_lossy(cell(name)).into_owned())
-            .collect();
-        if names.len() > MOST_COLUMNS {
-            let text = format!(
-                "there are {} columns, more than {MOST_COLUMNS}",
-                names.len()
-            );
-            return Err(problem(
-                line,
-                text,
-                "leave out columns that no profile needs",
-            ));
-        }
-        let mut seen = HashSet::new();
-        for name in names.iter().filter(|name| !name.is_empty()) {
-            if !seen.insert(name) {
-                let text = format!("the column `{name}` occurs twice");
-                return Err(problem(line, text, "give each column a different name"));
-            }
-        }
-        let find = |name: &str| names.iter().position(|other| other == name);
-        let Some(time) = find("t_s") else {
-            return Err(problem(line, "there is no column `t_s`", HELP));
-        };
-        let [pwm, motor] = ["pwm", "motor"].map(|stem| numbered(&names, stem));
-        if !pwm.is_empty() && !motor.is_empty() {
-            let text = "there are both `pwm` and `motor` columns";
-            return Err(problem(line, text, "keep one kind of them"));
-        }
-        let (stem, mut motors) = match pwm.is_empty() {
-            false => ("pwm", pwm),
-            true => ("motor", motor),
-        };
-        motors.sort_unstable();
-        if motors.len() > MOST_MOTORS {
-            let text = format!("there are {} motors, more than {MOST_MOTORS}", motors.len());
-            return Err(problem(line, text, "give other columns different names"));
-        }
-        if let Some((0, _)) = motors.first() {
-            let text = format!("there is a column `{stem}0`");
-            return Err(problem(line, text, "number the motors from 1 without gaps"));
-        }
-        for (index, &(number, _)) in motors.iter().enumerate() {
-            if number != index as u64 + 1 {
-                let text = format!(
-                    "there is a column `{stem}{number}` but no `{stem}{}`",
-                    index + 1
-                );
-                return Err(problem(line, text, "number the motors from 1 without gaps"));
-            }
-        }
-        let motors: Vec<usize> = motors.into_iter().map(|(_, column)| column).collect();
-        let in_air = find("in_air");
-        let signals = names
-            .iter()
-            .enumerate()
-            .filter(|(column, name)| {
-                *column != time
-                    && Some(*column) != in_air
-                    && !motors.contains(column)
-                    && !name.is_empty()
-            })
-            .map(|(column, name)| (column, name.clone(), options.wants(name)))
-            .collect();
-        Ok(Self {
-            columns: names
-                .iter()
-                .rposition(|name| !name.is_empty())
-                .map_or(0, |last| last + 1),
-            time,
-            motors,
-            stem,
-            in_air,
-            signals,
-        })
-    }
-
-    fn motors(&self) -> Vec<Motor> {
-        (1..=self.motors.len())
-            .map(|number| {
-                let name = format!("{}{number}", self.stem);
-                Motor {
-                    number: u16::try_from(number).unwrap_or(u16::MAX),
-                    source: format!("column `{name}`"),
-                    output: name,
-                }
-            })
-            .collect()
-    }
-}
-
-/// The columns named `stem` and a number, with these numbers.
-fn numbered(names: &[String], stem: &str) -> Vec<(u64, usize)> {
-    let number = |name: &String| name.strip_prefix(stem)?.parse().ok();
-    names
-        .iter()
-        .enumerate()
-        .filter_map(|(column, name)| Some((number(name)?, column)))
-        .collect()
 }
 
 /// The unit from the suffix of a name, as in `roll_deg`.

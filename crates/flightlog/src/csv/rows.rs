@@ -1,5 +1,7 @@
 //! The rows of a flight CSV.
 
+mod refusal;
+
 use csv::ByteRecord;
 
 use super::{Layout, cell, problem, unit_of};
@@ -10,15 +12,11 @@ use crate::{Commands, Intervals, ReadError, Report, Series};
 /// Fractions up to this far outside 0 to 1 are rounding errors or slightly exceeded limits.
 const MOST_OUTSIDE: f64 = 0.5;
 const HELP_FRACTIONS: &str = "name columns of pulse widths in us `pwm1`.. and add the limits; divide percent by 100; for DShot see docs/flight-csv.md";
-const HELP_PULSES: &str = "name columns of fractions from 0 to 1 `motor1`..; divide percent by 100 first; for DShot see docs/flight-csv.md";
 const HELP_SHORT: &str = "give every row a cell for each column, empty where the value is unknown";
 /// The furthest accepted time from 0, in seconds. It admits 64-bit counts of microseconds before
 /// and after conversion. If a single damaged time beyond this limit were accepted, all later times
 /// would seem to go back.
 const FURTHEST_S: f64 = 1e14;
-/// The smallest step between motor commands that is recognised as milliseconds.
-const LEAST_STEP_MS: f64 = 2.0;
-const LEAST_STEPS: usize = 5;
 
 fn is_far_outside(command: f64) -> bool {
     !command.is_nan() && !(-MOST_OUTSIDE..=1.0 + MOST_OUTSIDE).contains(&command)
@@ -36,6 +34,11 @@ pub(super) struct Rows {
     offset_s: f64,
     /// The time of the previous row, if it went back.
     back_s: Option<f64>,
+    /// The number of rows that are left out because their time goes back.
+    went_back: u64,
+    first_back: Option<u64>,
+    /// The first cell that is not a number: line and reason.
+    first_damaged: Option<(u64, String)>,
     pub(super) boots_s: Vec<f64>,
     pub(super) rebooted_in_air_s: Vec<f64>,
     /// Whether all times so far are whole numbers.
@@ -78,6 +81,9 @@ impl Rows {
             last_was_short: None,
             offset_s: 0.0,
             back_s: None,
+            went_back: 0,
+            first_back: None,
+            first_damaged: None,
             boots_s: Vec::new(),
             rebooted_in_air_s: Vec::new(),
             is_whole: true,
@@ -144,7 +150,7 @@ impl Rows {
             return Err(format!("the time is beyond {FURTHEST_S} s"));
         }
         self.is_whole &= t_s.fract() == 0.0;
-        let t_s = self.on_one_clock(t_s)?;
+        let t_s = self.on_one_clock(t_s, line)?;
         // A row with a damaged cell is kept with an unknown value: without it the flight would be shorter.
         let mut damaged = None;
         let mut read = |column: &usize| match number(record, *column) {
@@ -161,6 +167,8 @@ impl Rows {
             signals.extend(keep.then_some(value));
         }
         if let Some(why) = damaged {
+            self.first_damaged
+                .get_or_insert_with(|| (line, why.clone()));
             report.bad(&format!("line {line}: {why}"));
         }
         self.look_at_units(layout, &commands, line);
@@ -221,11 +229,12 @@ impl Rows {
                 String::from_utf8_lossy(bytes)
             ),
         };
-        self.refuse(
-            line,
-            text.clone(),
-            "give every row a time, or delete the row",
-        );
+        let is_clock = bytes.iter().any(u8::is_ascii_digit) && bytes.contains(&b':');
+        let help = match is_clock {
+            true => "write the seconds since the first row, such as 0.25, instead of a time of day",
+            false => "give every row a time, or delete the row",
+        };
+        self.refuse(line, text.clone(), help);
         Err(text)
     }
 
@@ -275,31 +284,14 @@ impl Rows {
         }
     }
 
-    /// An error for a column whose cells are mostly not pulse widths, because all motors would seem to be at a limit.
-    /// Single such cells are damage.
-    pub(super) fn other_unit(&self) -> Option<ReadError> {
-        let mut columns = (1..).zip(&self.pulses);
-        let (number, pulses) = columns.find(|(_, pulses)| pulses.outside > pulses.known / 2)?;
-        let (line, raw) = pulses.first?;
-        let text = format!("`pwm{number}` is {raw}, not a pulse width in us");
-        Some(problem(line, text, HELP_PULSES))
-    }
-
     /// The first and last time of the rows; without rows, an empty span.
     pub(super) fn span_s(&self) -> (f64, f64) {
         (self.first_s, self.last_s)
     }
 
-    /// The reason why the file is refused. The clock of a file that this crate wrote is in seconds.
-    pub(super) fn refusal(&mut self, is_ours: bool) -> Option<ReadError> {
-        let refused = self.refused.take();
-        let of_clock = || self.milliseconds().or_else(|| self.coarse());
-        refused.or_else(|| of_clock().filter(|_| !is_ours))
-    }
-
     /// The time on the clock of the first row. A clock that goes back for two rows or more was restarted, as after a
     /// reboot, and continues from the last time before.
-    fn on_one_clock(&mut self, t_s: f64) -> Result<f64, String> {
+    fn on_one_clock(&mut self, t_s: f64, line: u64) -> Result<f64, String> {
         let now_s = t_s + self.offset_s;
         if now_s >= self.last_s {
             self.back_s = None;
@@ -317,7 +309,11 @@ impl Rows {
                 // For times from 1e9 s the sum is rounded.
                 Ok((t_s + self.offset_s).max(self.last_s))
             }
-            None => Err("the time goes back".into()),
+            None => {
+                self.went_back += 1;
+                self.first_back.get_or_insert(line);
+                Err("the time goes back".into())
+            }
         }
     }
 
@@ -325,38 +321,6 @@ impl Rows {
         self.air_changes
             .last()
             .map_or(!self.has_air, |(_, state)| *state)
-    }
-
-    /// An error for times that look like milliseconds or microseconds: whole numbers, with most steps between motor
-    /// commands at least 2.
-    fn milliseconds(&self) -> Option<ReadError> {
-        let times = self.commands.t_s();
-        let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
-        let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
-        steps.sort_by(f64::total_cmp);
-        let middle = *steps.get(steps.len() / 2)?;
-        let (line, from, to) = self.first_step?;
-        (self.is_whole && steps.len() >= LEAST_STEPS && middle >= LEAST_STEP_MS).then(|| {
-            let text = format!("`t_s` jumps from {from} to {to} in one row, but is in seconds");
-            problem(
-                line,
-                text,
-                "divide milliseconds by 1000; rows that are seconds apart are too few for an assessment",
-            )
-        })
-    }
-
-    /// An error for whole numbers that repeat: milliseconds at 1 kHz and above, or a clock of whole seconds. The two
-    /// cannot be distinguished, so the rows are not spread over time. Fractions that repeat need no spreading, because
-    /// windows are longer than the resolution of such a clock.
-    fn coarse(&self) -> Option<ReadError> {
-        let (line, t_s) = self.first_repeated?;
-        (self.is_whole && self.repeated >= LEAST_STEPS).then(|| {
-            let text = format!(
-                "`t_s` is {t_s} as in the row before, and a whole number in every row: the clock is too coarse"
-            );
-            problem(line, text, "write seconds with decimals; divide milliseconds by 1000")
-        })
     }
 
     /// The times in the air; `None` if the column exists but is empty. The log may continue after the last row.

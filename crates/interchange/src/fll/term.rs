@@ -87,8 +87,9 @@ pub(crate) fn of_shape(
     };
     if numbers.len() < used || numbers.len() > used + 1 {
         let message = format!(
-            "`{shape}` has {used} parameters and a height, found {} numbers",
-            numbers.len()
+            "`{shape}` has {used} parameters and a height, found {} number{}",
+            numbers.len(),
+            if numbers.len() == 1 { "" } else { "s" }
         );
         let help = match shapes::named(Format::Fll, shape) {
             Some((known, _)) => {

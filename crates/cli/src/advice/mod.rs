@@ -1,0 +1,174 @@
+//! Advice for command lines that clap rejects: words of other programs, and options and files in the wrong place.
+
+mod line;
+mod words;
+
+use std::{ffi::OsString, path::Path};
+
+use clap::{
+    Command,
+    error::{ContextKind, ContextValue, ErrorKind},
+};
+use fuzzy::diagnostic::nearest;
+
+use self::{
+    line::{Line, has_word, in_shell, value_of},
+    words::{COMMANDS, VALUES},
+};
+use crate::{
+    failure::Failure,
+    path::{RULES, has_ending},
+};
+
+/// Adds advice to an error of clap, in place of options and commands whose names are merely similar.
+pub(crate) fn improve(error: &mut clap::Error, program: &Command, words: &[OsString]) {
+    let words: Vec<String> = words
+        .iter()
+        .skip(1)
+        .map(|word| word.to_string_lossy().into_owned())
+        .collect();
+    let advice = match error.kind() {
+        ErrorKind::MissingRequiredArgument => required(error, program, &words),
+        _ => advice(error, program, &words).into_iter().collect(),
+    };
+    if advice.is_empty() {
+        return;
+    }
+    for similar in [
+        ContextKind::SuggestedArg,
+        ContextKind::SuggestedSubcommand,
+        ContextKind::SuggestedValue,
+    ] {
+        error.remove(similar);
+    }
+    let advice = advice.into_iter().map(Into::into).collect();
+    error.insert(ContextKind::Suggested, ContextValue::StyledStrs(advice));
+}
+
+/// Recognises a command line that belongs to another command.
+pub(crate) fn other_command(error: &clap::Error, words: &[OsString]) -> Option<Failure> {
+    let words: Vec<&str> = words.iter().filter_map(|word| word.to_str()).collect();
+    let is_rules = |word: &str| has_ending(Path::new(word), RULES);
+    match (error.kind(), words.as_slice()) {
+        (ErrorKind::ValueValidation, [_, "convert", rest @ ..]) => {
+            let rules = rest.iter().find(|word| is_rules(word))?;
+            let output = rest.iter().find(|word| is_rules(word) && *word != rules)?;
+            let failure = Failure::usage(format!(
+                "`{rules}` is a rule set; `convert` converts flight logs"
+            ));
+            Some(failure.help(format!("flagred import {rules} --output {output}")))
+        }
+        _ => None,
+    }
+}
+
+fn advice(error: &clap::Error, program: &Command, words: &[String]) -> Option<String> {
+    let wrong = |kind| match error.get(kind) {
+        Some(ContextValue::String(word)) => Some(word.as_str()),
+        _ => None,
+    };
+    match error.kind() {
+        ErrorKind::InvalidSubcommand => {
+            let word = wrong(ContextKind::InvalidSubcommand)?;
+            let known = COMMANDS.iter().find(|(others, _)| has_word(others, word));
+            let names: Vec<&str> = program.get_subcommands().map(Command::get_name).collect();
+            let near = || nearest(word, names).map(|name| format!("did you mean `{name}`?"));
+            known.map(|(_, advice)| (*advice).to_owned()).or_else(near)
+        }
+        ErrorKind::InvalidValue => {
+            let word = wrong(ContextKind::InvalidValue)?;
+            let Some(ContextValue::Strings(possible)) = error.get(ContextKind::ValidValue) else {
+                return None;
+            };
+            let is_file = Path::new(word).exists();
+            match words.first().map(String::as_str) {
+                Some("show") if is_file => {
+                    return Some(
+                        "`show` prints what is built in; open a file in an editor".to_owned(),
+                    );
+                }
+                Some("schema") if is_file => {
+                    return Some(format!(
+                        "`schema` describes formats; `flagred check {word}` checks a file"
+                    ));
+                }
+                _ => {}
+            }
+            let word = word.to_ascii_lowercase();
+            let means = |here: &&String| {
+                ***here == word
+                    || VALUES
+                        .iter()
+                        .any(|(others, it)| it == here && has_word(others, &word))
+            };
+            possible
+                .iter()
+                .find(means)
+                .map(|here| format!("write `{here}`"))
+        }
+        ErrorKind::UnknownArgument => {
+            let word = wrong(ContextKind::InvalidArg)?;
+            let Some(command) = words.first().and_then(|word| program.find_subcommand(word)) else {
+                if error.get(ContextKind::SuggestedArg).is_some() {
+                    return None;
+                }
+                return Some(
+                    "options are written after the command; `flagred --version` prints the version"
+                        .to_owned(),
+                );
+            };
+            let line = Line {
+                command,
+                words: words.get(1..).unwrap_or_default(),
+            };
+            match word.starts_with('-') {
+                true => line.option(word, program),
+                false => line.argument(word),
+            }
+        }
+        ErrorKind::WrongNumberOfValues => {
+            // For example `--range 1000-2000`.
+            let option = wrong(ContextKind::InvalidArg)?.split(' ').next()?;
+            let value = value_of(words, option)?;
+            let parts = value.split(|c: char| !c.is_ascii_digit());
+            let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+            (parts.len() == 2).then(|| format!("write `{option} {}`", parts.join(" ")))
+        }
+        _ => None,
+    }
+}
+
+/// Explains the arguments that are missing, by their help.
+fn required(error: &clap::Error, program: &Command, words: &[String]) -> Vec<String> {
+    let command = words.first().and_then(|word| program.find_subcommand(word));
+    let (Some(command), Some(ContextValue::Strings(missing))) =
+        (command, error.get(ContextKind::InvalidArg))
+    else {
+        return Vec::new();
+    };
+    let line = Line {
+        command,
+        words: words.get(1..).unwrap_or_default(),
+    };
+    let positionals = line.positionals();
+    let missing = missing.iter().filter_map(|shown| {
+        if shown.contains('|') {
+            return Some("choose one of these options".to_owned());
+        }
+        let argument = command
+            .get_arguments()
+            .find(|argument| argument.to_string() == *shown)?;
+        let name = argument.get_value_names()?.first()?;
+        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+        let mut others = positionals
+            .iter()
+            .skip(1)
+            .filter(|word| !Path::new(word).exists());
+        let output = others.find(|word| has_ending(Path::new(word), &[ending]));
+        Some(match output.filter(|_| argument.get_id() == "output") {
+            Some(file) => format!("write `--output {}`", in_shell(file)),
+            None => format!("`{shown}`: {}", argument.get_help()?),
+        })
+    });
+    missing.collect()
+}

@@ -1,0 +1,61 @@
+//! Paths that the user names: their extensions, and advice for files that do not exist.
+
+use std::path::Path;
+
+use clap::{Command, CommandFactory as _};
+use flagred::shipped::PROFILES;
+use fuzzy::diagnostic::nearest;
+
+/// Extensions of rule sets and profiles, here and in other programs.
+pub(crate) const RULES: &[&str] = &["yaml", "yml", "fis", "fll", "fcl", "fml"];
+
+/// Returns whether the extension of a path is one of these, in small or capital letters.
+pub(crate) fn has_ending(path: &Path, extensions: &[&str]) -> bool {
+    let ending = path.extension();
+    ending.is_some_and(|ending| extensions.iter().any(|e| ending.eq_ignore_ascii_case(e)))
+}
+
+/// Advice for a file that does not exist.
+pub(crate) fn missing(shown: &str) -> String {
+    let path = Path::new(shown);
+    if shown.starts_with("http") {
+        return "download the file first, and name it".to_owned();
+    }
+    if shown.contains('*') {
+        return "no file matches this pattern".to_owned();
+    }
+    if let Some((option, value)) = shown.split_once('=')
+        && is_option(option)
+    {
+        return format!("an option begins with dashes: `--{option} {value}`");
+    }
+    if PROFILES.iter().any(|known| known.name == shown) {
+        return format!("a built-in profile is chosen by `--profile {shown}`");
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let there = match folder == Path::new("") {
+        true => Path::new(".").read_dir(),
+        false => folder.read_dir(),
+    };
+    let there = there.into_iter().flatten().flatten();
+    let mut names: Vec<String> = there
+        .filter_map(|file| file.file_name().into_string().ok())
+        .collect();
+    names.sort();
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let same_stem = names
+        .iter()
+        .find(|other| Path::new(other).file_stem() == Some(name.as_ref().as_ref()));
+    let near = || nearest(&name, names.iter().map(String::as_str));
+    match same_stem.map(String::as_str).or_else(near) {
+        Some(near) => format!("did you mean `{}`?", folder.join(near).display()),
+        None => "check the path".to_owned(),
+    }
+}
+
+/// Whether a command has an option of this name.
+fn is_option(name: &str) -> bool {
+    let program = crate::Arguments::command();
+    let mut arguments = program.get_subcommands().flat_map(Command::get_arguments);
+    arguments.any(|argument| argument.get_long() == Some(name))
+}

@@ -1,0 +1,111 @@
+//! The first row of a table: the names of its columns.
+
+use fuzzy::diagnostic::quoted;
+
+use crate::failure::Failure;
+
+/// The first row of a table.
+pub(crate) struct Header {
+    /// The name of the table for messages.
+    pub(crate) file: String,
+    /// The names of the columns, without surrounding spaces.
+    pub(crate) names: Vec<String>,
+    pub(super) delimiter: u8,
+}
+
+impl Header {
+    /// Returns the index of a column.
+    pub(crate) fn column(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|column| column == name)
+    }
+
+    /// Returns the index of a required column; `help` is added to the message if it is missing.
+    pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
+        if name.is_empty() {
+            // A column without a name in the header cannot be requested.
+            return Err(Failure::usage("a column must have a name").help(help));
+        }
+        if self.names.iter().filter(|column| *column == name).count() > 1 {
+            let name = quoted(name);
+            let message = format!("`{}` has the column `{name}` more than once", self.file);
+            return Err(Failure::unreadable(message).help("rename all of them except one"));
+        }
+        self.column(name).ok_or_else(|| {
+            let failure = Failure::unreadable(format!("`{}` has no column `{name}`", self.file));
+            if self.names.first().is_some_and(|name| name.starts_with("sep=")) {
+                return failure.help("delete the first line, and use `--delimiter` instead");
+            }
+            if let Some(other) = self.other_delimiter() {
+                return failure.help(format!(
+                    "its cells seem to be separated by another character: add `--delimiter {other}`"
+                ));
+            }
+            if self.names.iter().all(|name| name.parse::<f64>().is_ok()) {
+                return failure
+                    .help("the first line contains numbers; it must contain the names of the columns");
+            }
+            let columns = self.names.iter().map(String::as_str);
+            let columns = columns.filter(|name| !name.is_empty());
+            // Different capitals are the most frequent mistake.
+            if let Some(column) = columns.clone().find(|it| it.eq_ignore_ascii_case(name)) {
+                let column = quoted(column);
+                return failure.help(format!("did you mean `{column}`? then add `--column {name}={column}`"));
+            }
+            if let [only] = self.names.as_slice()
+                && only.contains(' ')
+            {
+                return failure.help("the first line must contain the names of the columns, separated as `--delimiter` says");
+            }
+            if self.column("t_s").is_some() && ["motor1", "pwm1"].iter().any(|it| self.column(it).is_some()) {
+                let file = &self.file;
+                return failure.help(format!("it is a flight; `flagred dataset {file} --profile flagred -o rows.csv` makes a table of flights"));
+            }
+            failure.help(match fuzzy::diagnostic::suggest(name, columns) {
+                Some(meant) if meant.ends_with('?') => format!("{meant} If not: {help}"),
+                Some(meant) => format!("{meant}; {help}"),
+                None => help.to_owned(),
+            })
+        })
+    }
+
+    /// The probable delimiter, if it differs from the chosen one.
+    fn other_delimiter(&self) -> Option<&'static str> {
+        let [only] = self.names.as_slice() else {
+            return None;
+        };
+        let all = [(b';', "';'"), (b'\t', "tab"), (b',', "','"), (b'|', "'|'")];
+        let mut found = all
+            .into_iter()
+            .filter(|(byte, _)| *byte != self.delimiter && only.as_bytes().contains(byte));
+        found.next().map(|(_, word)| word)
+    }
+
+    /// Advice for a row whose number of cells is not that of the header.
+    pub(crate) fn misfit_help(&self) -> String {
+        match self.other_delimiter() {
+            Some(other) => format!(
+                "its cells seem to be separated by another character: add `--delimiter {other}`"
+            ),
+            None if self.delimiter == b',' => {
+                "write as many cells in every row as in the header; a decimal comma splits a number, so write a point".to_owned()
+            }
+            None => "write as many cells in every row as in the header".to_owned(),
+        }
+    }
+
+    /// Returns the problem of a row with `cells` cells, if any.
+    pub(crate) fn misfit(&self, cells: usize) -> Option<String> {
+        let expected = self.names.len();
+        (cells != expected).then(|| {
+            format!(
+                "{cells} cell{}, but the header has {expected}",
+                if cells == 1 { "" } else { "s" }
+            )
+        })
+    }
+
+    /// The name of a column.
+    pub(crate) fn name(&self, column: usize) -> &str {
+        self.names.get(column).map_or("", String::as_str)
+    }
+}

@@ -1,0 +1,79 @@
+//! Reasons why the rows of a flight CSV are refused as a whole: other units, other clocks, a wrong order.
+
+use super::{Rows, problem};
+use crate::ReadError;
+
+const HELP_PULSES: &str = "name columns of fractions from 0 to 1 `motor1`..; divide percent by 100 first; for DShot see docs/flight-csv.md";
+/// The smallest step between motor commands that is recognised as milliseconds.
+const LEAST_STEP_MS: f64 = 2.0;
+const LEAST_STEPS: usize = 5;
+/// The smallest step between motor commands that is recognised as microseconds: 1 kHz.
+const LEAST_STEP_US: f64 = 1000.0;
+
+impl Rows {
+    /// The reason why the file is refused. The clock of a file that this crate wrote is in seconds.
+    pub(in crate::csv) fn refusal(&mut self, is_ours: bool, messages: u64) -> Option<ReadError> {
+        let refused = self.refused.take();
+        let most_go_back = self.first_back.filter(|_| self.went_back > messages);
+        let backwards = most_go_back.map(|line| {
+            let text = format!("the time goes back, as in {} rows", self.went_back);
+            problem(line, text, "sort the rows by `t_s`")
+        });
+        let without_numbers = self.first_damaged.clone();
+        let without_numbers =
+            without_numbers
+                .filter(|_| self.commands.are_unknown())
+                .map(|(line, why)| {
+                    problem(
+                        line,
+                        why,
+                        "write numbers with a decimal point and without a unit",
+                    )
+                });
+        let backwards = backwards.or(without_numbers);
+        let of_clock = || self.milliseconds().or_else(|| self.coarse());
+        refused.or_else(|| backwards.or_else(of_clock).filter(|_| !is_ours))
+    }
+
+    /// An error for a column whose cells are mostly not pulse widths, because all motors would seem to be at a limit.
+    /// Single such cells are damage.
+    pub(in crate::csv) fn other_unit(&self) -> Option<ReadError> {
+        let mut columns = (1..).zip(&self.pulses);
+        let (number, pulses) = columns.find(|(_, pulses)| pulses.outside > pulses.known / 2)?;
+        let (line, raw) = pulses.first?;
+        let text = format!("`pwm{number}` is {raw}, not a pulse width in us");
+        Some(problem(line, text, HELP_PULSES))
+    }
+
+    /// An error for times that look like milliseconds or microseconds: whole numbers, with most steps between motor
+    /// commands at least 2.
+    fn milliseconds(&self) -> Option<ReadError> {
+        let times = self.commands.t_s();
+        let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+        let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+        steps.sort_by(f64::total_cmp);
+        let middle = *steps.get(steps.len() / 2)?;
+        let (line, from, to) = self.first_step?;
+        (self.is_whole && steps.len() >= LEAST_STEPS && middle >= LEAST_STEP_MS).then(|| {
+            let text = format!("`t_s` jumps from {from} to {to} in one row, but is in seconds");
+            let help = match middle < LEAST_STEP_US {
+                true => "divide milliseconds by 1000; rows that are seconds apart are too few for an assessment",
+                false => "divide microseconds by 1000000",
+            };
+            problem(line, text, help)
+        })
+    }
+
+    /// An error for whole numbers that repeat: milliseconds at 1 kHz and above, or a clock of whole seconds. The two
+    /// cannot be distinguished, so the rows are not spread over time. Fractions that repeat need no spreading, because
+    /// windows are longer than the resolution of such a clock.
+    fn coarse(&self) -> Option<ReadError> {
+        let (line, t_s) = self.first_repeated?;
+        (self.is_whole && self.repeated >= LEAST_STEPS).then(|| {
+            let text = format!(
+                "`t_s` is {t_s} as in the row before, and a whole number in every row: the clock is too coarse"
+            );
+            problem(line, text, "write seconds with decimals; divide milliseconds by 1000")
+        })
+    }
+}

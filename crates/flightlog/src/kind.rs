@@ -1,0 +1,240 @@
+//! Kinds of files that are not flight logs, so that a message can name them.
+
+/// A kind of file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Kind {
+    /// What the file is, such as `a PDF document`.
+    pub name: &'static str,
+    /// What to do, if that does not depend on the expected kind.
+    pub help: Option<&'static str>,
+}
+
+const UNPACK: &str = "unpack it first";
+const AS_CSV: &str = "save it as CSV (UTF-8)";
+const AS_TEXT: &str = "save it as text, a table as CSV (UTF-8)";
+const COMMAS: &str = "a flight CSV separates cells by commas, and numbers have a decimal point";
+
+/// Signatures: the first bytes of a file, bytes that must follow somewhere, name, and help.
+const SIGNATURES: &[(&[u8], &[u8], &str, &str)] = &[
+    (b"\x89PNG", b"", "a PNG picture", ""),
+    (b"\xff\xd8\xff", b"", "a JPEG picture", ""),
+    (b"GIF8", b"", "a GIF picture", ""),
+    (
+        b"%PDF",
+        b"",
+        "a PDF document",
+        "copy its content into a text file",
+    ),
+    (b"PK\x03\x04", b"xl/workbook", "an Excel file", AS_CSV),
+    (b"PK\x03\x04", b"word/document", "a Word document", AS_TEXT),
+    (
+        b"PK\x03\x04",
+        b"[Content_Types].xml",
+        "an office document",
+        AS_TEXT,
+    ),
+    (
+        b"PK\x03\x04",
+        b"vnd.oasis.opendocument",
+        "an office document",
+        AS_TEXT,
+    ),
+    (b"PK\x03\x04", b"", "a ZIP archive", UNPACK),
+    (b"\xd0\xcf\x11\xe0", b"", "an old office document", AS_TEXT),
+    (
+        b"\x1f\x8b",
+        b"",
+        "compressed by gzip",
+        "unpack it first: `gunzip FILE`",
+    ),
+    (b"7z\xbc\xaf", b"", "a 7z archive", UNPACK),
+    (
+        b"\x28\xb5\x2f\xfd",
+        b"",
+        "compressed by zstd",
+        "unpack it first: `unzstd FILE`",
+    ),
+    (
+        b"\xfd7zXZ",
+        b"",
+        "compressed by xz",
+        "unpack it first: `unxz FILE`",
+    ),
+    (
+        b"BZh",
+        b"",
+        "compressed by bzip2",
+        "unpack it first: `bunzip2 FILE`",
+    ),
+    (b"PAR1", b"", "a Parquet file", "write it as CSV"),
+    (
+        b"\x93NUMPY",
+        b"",
+        "a NumPy array",
+        "write it by `numpy.savetxt` as CSV",
+    ),
+    (b"MATLAB 5.0", b"", MAT, MAT_HELP),
+    (b"\x89HDF", b"", MAT, MAT_HELP),
+    (b"\x7fELF", b"", "a program", ""),
+    (b"<!DOCTYPE", b"", WEB_PAGE, ""),
+    (b"<!doctype", b"", WEB_PAGE, ""),
+    (b"<html", b"", WEB_PAGE, ""),
+    (
+        b"version https://git-lfs",
+        b"",
+        POINTER,
+        "fetch the file itself with `git lfs pull`",
+    ),
+];
+
+const WEB_PAGE: &str = "a web page";
+const POINTER: &str = "a git-lfs pointer";
+const MAT: &str = "a MAT or HDF5 file";
+const MAT_HELP: &str = "in MATLAB, write a fuzzy system by `writeFIS`, a table by `writetable`";
+
+/// Kinds that are recognised without a signature.
+const OTHERS: &[Kind] = &[
+    Kind::LOG,
+    Kind::BINARY,
+    Kind::TEXT,
+    Kind::RULES,
+    Kind::PROFILE,
+    Kind::SEMICOLONS,
+    Kind::TABS,
+    Kind::UTF_16,
+];
+
+impl Kind {
+    /// A flight log.
+    pub const LOG: Kind = Kind {
+        name: "a flight log",
+        help: None,
+    };
+    const BINARY: Kind = Kind {
+        name: "an unknown binary file",
+        help: None,
+    };
+    const TEXT: Kind = Kind {
+        name: "a text file",
+        help: Some(
+            "a flight CSV begins with the names of its columns, separated by commas: `t_s`, and `pwm1` or `motor1` and so on; a text log of ArduPilot begins with `FMT` lines",
+        ),
+    };
+    const RULES: Kind = Kind {
+        name: "a rule set",
+        help: Some("`flagred check` examines a rule set"),
+    };
+    const PROFILE: Kind = Kind {
+        name: "a profile",
+        help: Some("`flagred assess --profile PROFILE FLIGHT` assesses a flight with it"),
+    };
+    const SEMICOLONS: Kind = Kind {
+        name: "a table with semicolons between its cells",
+        help: Some(COMMAS),
+    };
+    const TABS: Kind = Kind {
+        name: "a table with tabs between its cells",
+        help: Some(COMMAS),
+    };
+    const UTF_16: Kind = Kind {
+        name: "text in UTF-16",
+        help: Some("save it as UTF-8"),
+    };
+
+    /// Text that may be meant for another command.
+    pub(crate) const PLAIN: &[Kind] = &[
+        Kind::TEXT,
+        Kind::RULES,
+        Kind::PROFILE,
+        Kind::SEMICOLONS,
+        Kind::TABS,
+    ];
+
+    /// Whether the content is text.
+    pub fn is_text(self) -> bool {
+        Kind::PLAIN.contains(&self) || [WEB_PAGE, POINTER].contains(&self.name)
+    }
+
+    /// Returns the kind with the given name.
+    pub(crate) fn named(name: &str) -> Option<Kind> {
+        let signed = SIGNATURES.iter().map(kind);
+        let mut kinds = OTHERS.iter().copied().chain(signed);
+        kinds.find(|kind| kind.name == name)
+    }
+}
+
+fn kind(&(.., name, help): &(&[u8], &[u8], &'static str, &'static str)) -> Kind {
+    Kind {
+        name,
+        help: Some(help).filter(|help| !help.is_empty()),
+    }
+}
+
+/// Returns the kind of a file with a signature.
+pub(crate) fn signed(start: &[u8]) -> Option<Kind> {
+    let contains =
+        |part: &[u8]| part.is_empty() || start.windows(part.len()).any(|bytes| bytes == part);
+    let mut signatures = SIGNATURES.iter();
+    let found = signatures.find(|(first, then, ..)| start.starts_with(first) && contains(then));
+    found.map(kind)
+}
+
+/// The kind of a file that is not a log and has no signature.
+pub(crate) fn of_rest(start: &[u8]) -> Kind {
+    let start = &start[..start.len().min(1024)];
+    // A character may be cut off at the end.
+    let is_utf8 =
+        std::str::from_utf8(start).map_or_else(|error| error.error_len().is_none(), |_| true);
+    let is_control = |byte: &u8| *byte < 0x20 && !byte.is_ascii_whitespace();
+    if start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff") {
+        return Kind::UTF_16;
+    }
+    if !is_utf8 && start.iter().any(is_control) {
+        return Kind::BINARY;
+    }
+    let text = String::from_utf8_lossy(start);
+    let starts = |key: &str| text.lines().any(|line| line.starts_with(key));
+    let header = text.lines().find(|line| !line.starts_with('#'));
+    let separates =
+        |sign: char| header.is_some_and(|header| header.contains(sign) && !header.contains(','));
+    if starts("fuzzy:") {
+        Kind::RULES
+    } else if starts("flagred:") {
+        Kind::PROFILE
+    } else if separates(';') {
+        Kind::SEMICOLONS
+    } else if separates('\t') {
+        Kind::TABS
+    } else {
+        Kind::TEXT
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn kinds_are_recognised_by_their_bytes() {
+        let cases: [(&[u8], Option<&str>); 9] = [
+            (b"%PDF-1.7\n\xe2", Some("a PDF document")),
+            (b"PK\x03\x04\x14", Some("a ZIP archive")),
+            (
+                b"PK\x03\x04\x14[Content_Types].xml..xl/workbook.xml",
+                Some("an Excel file"),
+            ),
+            (b"\x1f\x8b\x08", Some("compressed by gzip")),
+            (b"\xa3\x95\x80", Some("a flight log")),
+            (b"\xff\xfef\0", Some("text in UTF-16")),
+            (b"\xfe\0\x01", Some("an unknown binary file")),
+            (b"name,ort\n1,M\xfcnchen\n", None),
+            ("fuzzy: 1\nname: ä".as_bytes(), None),
+        ];
+        for (bytes, name) in cases {
+            assert_eq!(
+                crate::kind_of(bytes).map(|kind| kind.name),
+                name,
+                "{bytes:?}"
+            );
+        }
+    }
+}
