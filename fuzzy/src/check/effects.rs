@@ -158,7 +158,10 @@ fn constant(input: &Variable, one: &Degrees<'_>, all: &[Degrees<'_>]) -> Option<
                 .any(|(is_top, degree)| is_top && *degree > height - EQUAL)
     };
     let Some(other) = all.iter().find(is_beside).map(|other| other.term) else {
-        if share < NEARLY_ALL {
+        // Limits of crisp steps near an end of the range are intended.
+        let x = |step: u32| input.low + (input.high - input.low) * (f64::from(step) / 2000.0);
+        let is_between = |degree: f64| degree > EQUAL && degree < one.most - EQUAL;
+        if share < NEARLY_ALL || !(0..=2000).any(|step| is_between(one.term.membership(x(step)))) {
             return None;
         }
         let message = format!(

@@ -80,7 +80,7 @@ pub fn schema() -> Node {
         (
             "allow",
             list(
-                "The findings of `flagred check` that the author accepts, each with a reason",
+                "The findings of a check that the author accepts, each with a reason",
                 reference("allowed"),
                 None,
             ),

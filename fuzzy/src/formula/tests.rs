@@ -156,7 +156,7 @@ fn mistakes_are_reported_with_their_position() {
     let long = "1 + ".repeat(600) + "1";
     assert!(mistake(&long).contains("more than 1000 parts"));
     let wide = "1 + (".repeat(40) + "1" + &")".repeat(40);
-    assert!(mistake(&wide).contains("more than 32 numbers"));
+    assert!(mistake(&wide).contains("more than 32 intermediate results"));
 }
 
 /// Generates formulas that can be written as text.

@@ -161,13 +161,13 @@ fn every_mistake_has_a_position_and_help() {
             "IF (margin IS low THEN r IS h",
             "(",
             "the bracket `(` is never closed",
-            "add `)`",
+            "add the closing bracket `)`",
         ),
         (
             "IF (margin IS low",
             "(",
             "the bracket `(` is never closed",
-            "add `)`",
+            "add the closing bracket `)`",
         ),
         (
             "IF (margin IS low s IS low) THEN r IS h",
@@ -263,7 +263,7 @@ fn every_mistake_has_a_position_and_help() {
             "IF margin IS low THEN r IS h WITH 0.5 x",
             "x",
             "expected the end of the rule after the conclusion, found `x`",
-            "a weight ends its rule",
+            "a weight is the end of its rule",
         ),
         (
             "IF margin IS low ; THEN r IS h",
