@@ -113,3 +113,32 @@ fn words_have_their_published_centroids() {
         "{very_little:?}"
     );
 }
+
+#[test]
+fn short_forms_have_the_interval_of_their_pairs() {
+    let interval = |food: &str, tip: &str| {
+        let text = format!(
+            "
+fuzzy: 1
+name: dinner
+inputs: {{food: {{range: [0, 10], {food}}}}}
+outputs: {{tip: {{range: [0, 30], {tip}}}}}
+rules: [IF food IS bad THEN tip IS small, IF food IS good THEN tip IS large]
+"
+        );
+        let model: Model = text.parse().unwrap();
+        let outcome = Engine::new(&model).unwrap().evaluate(&[4.0]).unwrap()[0];
+        (outcome.low().unwrap(), outcome.high().unwrap())
+    };
+    let short = interval(
+        "partition: [bad, good], blur: 0.1",
+        "terms: {small: {triangle: [0, 6, 18], blur: 0.05}, large: {triangle: [12, 24, 30], lower_scale: 0.9, lower_lag: [0.5, 0.25]}}",
+    );
+    let pairs = interval(
+        "terms: {bad: {upper: {left_shoulder: [1, 11]}, lower: {left_shoulder: [-1, 9]}}, good: {upper: {right_shoulder: [-1, 9]}, lower: {right_shoulder: [1, 11]}}}",
+        "terms: {small: {upper: {trapezoid: [-1.5, 4.5, 7.5, 19.5]}, lower: {triangle: [1.5, 6.5, 16.5], height: 0.8333333333333334}},
+                 large: {upper: {triangle: [12, 24, 30]}, lower: {triangle: [18, 24, 28.5], height: 0.9}}}",
+    );
+    assert!((short.0 - pairs.0).abs() < 1e-12 && (short.1 - pairs.1).abs() < 1e-12);
+    assert!(short.0 < short.1);
+}

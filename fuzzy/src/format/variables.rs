@@ -4,7 +4,7 @@ use alloc::{collections::BTreeMap, format, string::String, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    TermSpans, VariableSpans,
+    TermSpans, VariableSpans, footprints,
     notation::{bare_numbers, colons_without_space, likely_defuzzifier, meant_by, peaks_in_list},
     optional_text, steps,
     terms::{terms, unread},
@@ -19,19 +19,21 @@ use crate::{
     tree::{Entry, Fields, Node, Value},
 };
 
-pub(super) const INPUT_KEYS: [&str; 6] = [
+pub(super) const INPUT_KEYS: [&str; 7] = [
     "description",
     "unit",
     "range",
     "partition",
+    "blur",
     "steps",
     "terms",
 ];
-pub(super) const OUTPUT_KEYS: [&str; 11] = [
+pub(super) const OUTPUT_KEYS: [&str; 12] = [
     "description",
     "unit",
     "range",
     "partition",
+    "blur",
     "steps",
     "terms",
     "defuzzifier",
@@ -280,6 +282,21 @@ fn variable(
                     finding.help =
                         Some(format!("indent {} under `{}:`", all_of(&stray), empty.key));
                 }
+            }
+        }
+    }
+    if let Some(blur) = fields.entry("blur") {
+        match fields.entry("partition") {
+            Some(_) => {
+                footprints::blur_partition(what, blur.value, &mut variable, &mut spans, findings);
+            }
+            None if fields.misspells("partition") => {}
+            None => {
+                let message = format!("{what} has `blur` but no `partition`");
+                let finding = Diagnostic::error("unknown-key", blur.key_span.clone(), message);
+                findings.push(
+                    finding.help("write `blur` in each term: `{triangle: [0, 2, 4], blur: 0.1}`"),
+                );
             }
         }
     }

@@ -9,6 +9,7 @@ mod blocks;
 mod builder;
 pub(crate) mod chain;
 pub(crate) mod document;
+pub(crate) mod footprint;
 mod partition;
 #[cfg(any(feature = "check", feature = "learn"))]
 mod plateau;
