@@ -46,11 +46,11 @@ pub(crate) enum Reduction {
 /// The terms of a fuzzy output.
 #[derive(Debug, Clone)]
 pub(crate) struct Set {
-    low: f64,
-    high: f64,
-    joint: Joint,
-    lower: Curves,
-    upper: Curves,
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) joint: Joint,
+    pub(super) lower: Curves,
+    pub(super) upper: Curves,
 }
 
 /// A term that is a single point.
@@ -65,9 +65,9 @@ pub(crate) struct Singleton {
 /// A number with the bounds of its weight.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Weighted {
-    at: f64,
-    lower: f64,
-    upper: f64,
+    pub(super) at: f64,
+    pub(super) lower: f64,
+    pub(super) upper: f64,
 }
 
 /// An end of the interval.
@@ -177,7 +177,7 @@ impl Reduction {
 }
 
 impl Set {
-    fn interval(
+    pub(super) fn interval(
         &self,
         lower: Strengths<'_>,
         upper: Strengths<'_>,
@@ -227,13 +227,13 @@ impl Set {
     }
 }
 
-fn has_area(piece: &Piece<'_>) -> bool {
+pub(super) fn has_area(piece: &Piece<'_>) -> bool {
     let inside = |curve: super::piece::Curve<'_>| (curve.degree)(0.5) > 0.0;
     piece.left > 0.0 || piece.right > 0.0 || piece.curve.is_some_and(inside)
 }
 
 /// Returns the interval of `sum(w x) / sum(w)` over all weights between their bounds; `None` if all are 0.
-fn average(points: &[Weighted]) -> Option<(f64, f64)> {
+pub(super) fn average(points: &[Weighted]) -> Option<(f64, f64)> {
     let mut positive = points.iter().filter(|point| point.upper > 0.0);
     let first = positive.next()?.at;
     let (low, high) = positive.fold((first, first), |(low, high), point| {
@@ -263,7 +263,7 @@ fn average(points: &[Weighted]) -> Option<(f64, f64)> {
 }
 
 /// Returns the interval of `sum(w x)` over all weights between their bounds; `None` if all are 0.
-fn sum(points: &[Weighted]) -> Option<(f64, f64)> {
+pub(super) fn sum(points: &[Weighted]) -> Option<(f64, f64)> {
     let (mut low, mut high) = (0.0, 0.0);
     for point in points {
         let (one, other) = (point.lower * point.at, point.upper * point.at);

@@ -42,6 +42,7 @@ mod rules;
 mod sequence;
 mod silent;
 mod strategy;
+mod uncertain;
 #[cfg(feature = "simd")]
 mod vectors;
 mod what_if;
@@ -54,6 +55,7 @@ pub use named::NamedOutcomes;
 pub use raising::Said;
 pub use sequence::Sequence;
 pub use silent::{Silence, SilentRule};
+pub use uncertain::{Enclosure, Interval, IntervalOutcome};
 pub use what_if::{Change, Effect};
 
 /// A compiled model. It is immutable and can be shared by any number of threads.
