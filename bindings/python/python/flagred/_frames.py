@@ -20,7 +20,7 @@ def is_frame(value: Any) -> bool:
     if _is_pandas(value):
         return True
     if hasattr(value, "__arrow_c_stream__") or hasattr(value, "__arrow_c_array__"):
-        return any(hasattr(value, name) for name in ("schema", "columns", "column_names", "keys")) or not any(
+        return any(hasattr(value, name) for name in ("schema", "columns", "column_names")) or not any(
             hasattr(value, name) for name in ("dtype", "type", "__array__")
         )
     return _library(value) == "polars" and hasattr(value, "collect")
