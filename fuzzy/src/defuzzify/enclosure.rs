@@ -9,7 +9,7 @@ use super::piece::{Integrals, Piece, unit};
 use super::reduction::{Reduction, Set, Weighted, average, has_area, sum};
 use super::workspace::Workspace;
 use super::{Joint, Strengths};
-use crate::model::{Defuzzifier, Output, Term};
+use crate::model::{Defuzzifier, Output, Term, TypeReduction};
 use crate::table::{
     finite,
     operators::{larger, smaller},
@@ -25,6 +25,8 @@ const EQUAL: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub(crate) struct Enclosing {
     method: Method,
+    /// Whether an end may be anywhere in the support, because the type reduction only approximates the interval.
+    is_wide: bool,
     low: f64,
     high: f64,
 }
@@ -70,6 +72,7 @@ impl Enclosing {
         };
         Enclosing {
             method,
+            is_wide: output.type_reduction == TypeReduction::WuMendel,
             low: output.variable.low,
             high: output.variable.high,
         }
@@ -99,33 +102,47 @@ impl Enclosing {
             high,
             is_certain,
         };
+        let least = if self.is_wide { EMPTY } else { lower };
         match &self.method {
             Method::Reduced(reduction @ (Reduction::Average | Reduction::Sum)) => {
                 let terms = 0..upper.offsets.len().saturating_sub(1);
                 let mut numbers = Vec::new();
                 for term in terms {
                     let total = |all: &[f64]| all.iter().sum::<f64>();
-                    let weights = (total(lower.of(term)), total(upper.of(term)));
+                    let weights = (total(least.of(term)), total(upper.of(term)));
                     if weights.1 > 0.0 {
                         numbers.push((number(term), weights));
                     }
                 }
                 let is_sum = matches!(reduction, Reduction::Sum);
                 let ends = weighted(&numbers, if is_sum { sum } else { average }, points)?;
-                let is_certain = numbers.iter().any(|(_, (lower, _))| *lower > 0.0);
+                let is_certain = lower.strengths.iter().any(|strength| *strength > 0.0);
                 Some(found(ends, is_certain))
             }
             Method::Reduced(reduction) => {
-                let (low, high) =
-                    reduction.interval(lower, upper, |_| f64::NAN, workspace, points)?;
+                let (low, high) = reduction.interval(
+                    TypeReduction::Exact,
+                    least,
+                    upper,
+                    |_| f64::NAN,
+                    workspace,
+                    points,
+                )?;
                 let is_certain = match reduction {
                     Reduction::Set(set) => set.lower_area(lower, workspace) > 0.0,
-                    _ => points.iter().any(|point| point.lower > 0.0),
+                    _ => lower.strengths.iter().any(|strength| *strength > 0.0),
                 };
                 Some(found((low, high), is_certain))
             }
             Method::Support(reduction) => {
-                let ends = reduction.interval(EMPTY, upper, |_| f64::NAN, workspace, points)?;
+                let ends = reduction.interval(
+                    TypeReduction::Exact,
+                    EMPTY,
+                    upper,
+                    |_| f64::NAN,
+                    workspace,
+                    points,
+                )?;
                 let is_certain = match reduction {
                     // A sample may miss the set.
                     Reduction::Set(_) => false,

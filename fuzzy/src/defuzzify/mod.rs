@@ -32,6 +32,7 @@ pub(crate) use reduction::{Reduction, Weighted};
 pub(crate) use weighted::Consequents;
 
 mod calculus;
+mod closed_reduction;
 mod curves;
 mod enclosure;
 mod integrated;

@@ -13,7 +13,7 @@ use super::{
     blocks::{self, COMPARISONS, METHODS},
     provenance, rules,
     variables::{INPUT_KEYS, OUTPUT_KEYS},
-    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS},
+    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, TYPE_REDUCTIONS},
 };
 use nodes::{
     Entries, about, any_of, degree, entry, list, named, number, numbers, object, one_of, reference,
@@ -227,6 +227,10 @@ fn variable_key(key: &str) -> Node {
         ),
         "clamp" => boolean(
             "Whether a value outside the range is clamped to it; only a weighted defuzzifier gives one",
+        ),
+        "type_reduction" => words(
+            "How the interval of an output with interval type-2 terms is computed; exact where absent",
+            &TYPE_REDUCTIONS,
         ),
         // All keys that are read have an entry above; a new key is at least allowed.
         _ => Node::mapping(Entries::new()),

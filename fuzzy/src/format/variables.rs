@@ -8,13 +8,13 @@ use super::{
     notation::{bare_numbers, colons_without_space, likely_defuzzifier, meant_by, peaks_in_list},
     optional_text, steps,
     terms::{terms, unread},
-    words::{AGGREGATIONS, DEFUZZIFIERS},
+    words::{AGGREGATIONS, DEFUZZIFIERS, TYPE_REDUCTIONS},
 };
 use crate::{
     diagnostic::{Diagnostic, all_of, duplicate},
     model::{
-        Defuzzifier, NoRuleFires, Output, Sampling, SamplingRule, Variable, between_peaks,
-        even_peaks,
+        Defuzzifier, NoRuleFires, Output, Sampling, SamplingRule, TypeReduction, Variable,
+        between_peaks, even_peaks,
     },
     tree::{Entry, Fields, Node, Value},
 };
@@ -28,7 +28,7 @@ pub(super) const INPUT_KEYS: [&str; 7] = [
     "steps",
     "terms",
 ];
-pub(super) const OUTPUT_KEYS: [&str; 12] = [
+pub(super) const OUTPUT_KEYS: [&str; 13] = [
     "description",
     "unit",
     "range",
@@ -41,6 +41,7 @@ pub(super) const OUTPUT_KEYS: [&str; 12] = [
     "when_no_rule_fires",
     "aggregation",
     "clamp",
+    "type_reduction",
 ];
 
 /// The suggestion for the inputs or the outputs; the first field is the key.
@@ -93,6 +94,7 @@ pub(super) fn outputs(
             when_no_rule_fires: NoRuleFires::Undefined,
             aggregation: None,
             clamp: false,
+            type_reduction: TypeReduction::Exact,
         };
         if let Some(fields) = fields {
             if let Some(node) = fields.get("defuzzifier") {
@@ -116,6 +118,11 @@ pub(super) fn outputs(
             if let Some(node) = fields.get("clamp") {
                 let clamp = node.boolean(&format!("`clamp` of {what}"), findings);
                 output.clamp = clamp.unwrap_or(false);
+            }
+            if let Some(node) = fields.get("type_reduction") {
+                let key = format!("the type reduction of {what}");
+                let word = node.choice(&key, &TYPE_REDUCTIONS, findings);
+                output.type_reduction = word.unwrap_or_default();
             }
         }
         spans.push(here);
