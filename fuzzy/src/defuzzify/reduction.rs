@@ -144,7 +144,10 @@ impl Reduction {
             Reduction::Set(set) if method == TypeReduction::Exact => {
                 set.interval(lower, upper, workspace)?
             }
-            Reduction::Set(set) => closed(method, set.summary(lower, upper, workspace)?)?,
+            Reduction::Set(set) => {
+                let summary = set.summary(lower, upper, workspace, &mut |_, _| {})?;
+                closed(method, summary)?
+            }
             Reduction::Singletons(singletons, joint) => {
                 points.extend(singletons.chunk_by(|a, b| a.at == b.at).filter_map(|same| {
                     let degree = |strengths: Strengths<'_>, height: fn(&Singleton) -> f64| {
@@ -182,12 +185,14 @@ impl Reduction {
 }
 
 impl Set {
-    /// Returns the areas and centroids of both sets; `None` if the upper one is empty.
+    /// Returns the areas and centroids of both sets; `None` if the upper one is empty. Calls `visit` for the pieces of the
+    /// upper set, and then for those of the lower one.
     fn summary(
         &self,
         lower: Strengths<'_>,
         upper: Strengths<'_>,
         workspace: &mut Workspace,
+        visit: &mut dyn FnMut(Bound, &Piece<'_>),
     ) -> Option<Summary> {
         let Set { low, high, .. } = *self;
         let mut whole = [Integrals::about(low + 0.5 * (high - low), unit(high - low)); 2];
@@ -195,6 +200,7 @@ impl Set {
         self.upper
             .pieces(upper, self.joint, workspace, &mut |piece| {
                 whole[1].add(piece);
+                visit(Bound::Upper, piece);
                 if has_area(piece) {
                     support = (smaller(support.0, piece.from), piece.to);
                 }
@@ -202,6 +208,7 @@ impl Set {
         self.lower
             .pieces(lower, self.joint, workspace, &mut |piece| {
                 whole[0].add(piece);
+                visit(Bound::Lower, piece);
             });
         let of_lower = whole[0].centroid();
         Some(Summary {
@@ -217,13 +224,36 @@ impl Set {
         upper: Strengths<'_>,
         workspace: &mut Workspace,
     ) -> Option<(f64, f64)> {
-        let Set { low, high, .. } = *self;
-        let unit = unit(high - low);
-        let summary = self.summary(lower, upper, workspace)?;
-        if summary.lower.is_none() {
-            return Some(summary.support);
-        }
-        let start = summary.upper.1;
+        // The pieces do not depend on the position of the search. Straight ones are computed once.
+        let mut lines = core::mem::take(&mut workspace.lines);
+        lines.clear();
+        let (mut of_upper, mut are_kept) = (0, true);
+        let summary = self.summary(lower, upper, workspace, &mut |bound, piece| {
+            are_kept &= piece.curve.is_none() && lines.len() < lines.capacity();
+            if are_kept {
+                lines.push([piece.from, piece.to, piece.left, piece.right]);
+                of_upper += usize::from(bound == Bound::Upper);
+            }
+        });
+        let kept = are_kept.then(|| lines.split_at(of_upper));
+        let ends = summary.map(|summary| match summary.lower {
+            None => summary.support,
+            Some(_) => self.search(summary, (lower, upper), kept, workspace),
+        });
+        workspace.lines = lines;
+        ends
+    }
+
+    /// Searches for both ends. `kept` contains the pieces of the upper and of the lower set if all are straight.
+    fn search(
+        &self,
+        summary: Summary,
+        (lower, upper): (Strengths<'_>, Strengths<'_>),
+        kept: Option<(&[[f64; 4]], &[[f64; 4]])>,
+        workspace: &mut Workspace,
+    ) -> (f64, f64) {
+        let range = (self.low, self.high);
+        let unit = unit(self.high - self.low);
         let mut sums = |end: End, x: f64| {
             let mut sums = Integrals::about(x, unit);
             let below = (f64::NEG_INFINITY, x);
@@ -232,6 +262,21 @@ impl Set {
                 End::Left => (below, above),
                 End::Right => (above, below),
             };
+            if let Some((upper, lower)) = kept {
+                for (lines, part) in [(upper, of_upper), (lower, of_lower)] {
+                    for [from, to, left, right] in lines {
+                        let piece = Piece {
+                            from: *from,
+                            to: *to,
+                            left: *left,
+                            right: *right,
+                            curve: None,
+                        };
+                        sums.add_between(&piece, part);
+                    }
+                }
+                return (sums.area, sums.moment);
+            }
             self.upper
                 .pieces(upper, self.joint, workspace, &mut |piece| {
                     sums.add_between(piece, of_upper);
@@ -242,10 +287,10 @@ impl Set {
                 });
             (sums.area, sums.moment)
         };
-        let range = (low, high);
+        let start = summary.upper.1;
         let left = search(End::Left, start, range, |x| sums(End::Left, x));
         let right = search(End::Right, start, range, |x| sums(End::Right, x));
-        Some((left, right))
+        (left, right)
     }
 }
 

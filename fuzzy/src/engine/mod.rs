@@ -385,7 +385,14 @@ impl Stage {
                 strongest: vec![Strongest::NONE; self.outputs.len()],
             },
             // A term crosses two levels of its implication, on its rising and on its falling side.
-            workspace: Workspace::new(strengths, 5 * strengths + cuts.max().unwrap_or(0)),
+            workspace: {
+                let cuts = 5 * strengths + cuts.max().unwrap_or(0);
+                let workspace = Workspace::new(strengths, cuts);
+                match bounds {
+                    None => workspace,
+                    Some(_) => workspace.with_lines(),
+                }
+            },
             bounds: bounds.map(|bounds| Box::new(bounds.scratch())),
         }
     }

@@ -139,7 +139,7 @@ impl RangedStage {
             lower: vec![0.0; self.strengths],
             upper: vec![0.0; self.strengths],
             points: Vec::new(),
-            workspace: Workspace::new(self.strengths, cuts),
+            workspace: Workspace::new(self.strengths, cuts).with_lines(),
         }
     }
 
