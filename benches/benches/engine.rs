@@ -1,10 +1,11 @@
 //! Time and allocations of single evaluations, batches, maps and tables.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use flagred_benches::{four_inputs, points, published, tipper};
+use flagred_benches::{four_inputs, points, published, published_type2, tipper};
+use fuzzy::engine::Interval;
 use fuzzy::engine::{Engine, Outcome};
 use fuzzy::map::{DecisionMap, Grid};
-use fuzzy::model::Model;
+use fuzzy::model::{Model, TypeReduction};
 
 #[global_allocator]
 static ALLOCATOR: divan::AllocProfiler = divan::AllocProfiler::system();
@@ -47,8 +48,42 @@ fn single_bw_published_weighted(bencher: Bencher<'_, '_>) {
 }
 
 #[divan::bench]
+fn single_b2_published_type2(bencher: Bencher<'_, '_>) {
+    single(bencher, &published_type2());
+}
+
+#[divan::bench]
+fn single_b2_published_nie_tan(bencher: Bencher<'_, '_>) {
+    let mut model = published_type2();
+    for output in &mut model.outputs {
+        output.type_reduction = TypeReduction::NieTan;
+    }
+    single(bencher, &model);
+}
+
+#[divan::bench]
 fn single_c_four_inputs(bencher: Bencher<'_, '_>) {
     single(bencher, &four_inputs());
+}
+
+/// Intervals of the inputs, a twentieth of their range wide, at each of 16 points.
+#[divan::bench]
+fn intervals_b_published(bencher: Bencher<'_, '_>) {
+    let engine = Engine::new(&published(false)).unwrap();
+    let enclosure = engine.enclosure();
+    let points = points(engine.model(), 16);
+    let at = |point: &Vec<f64>| -> Vec<Interval> {
+        let inputs = point.iter().zip(&engine.model().inputs);
+        inputs
+            .map(|(value, input)| Interval::around(*value, 0.025 * (input.high - input.low)))
+            .collect()
+    };
+    let points: Vec<Vec<Interval>> = points.iter().map(at).collect();
+    bencher.counter(ItemsCount::new(16_u32)).bench_local(|| {
+        for point in &points {
+            black_box(enclosure.evaluate(black_box(point)).unwrap());
+        }
+    });
 }
 
 /// 65536 rows in one call, on one thread.

@@ -1,6 +1,7 @@
 //! The reference systems as files for other programs, and our times for the comparison with them.
 //!
-//! `write FOLDER`: each system in fuzzylite's language, points, and the exact values there.
+//! `write FOLDER`: each system in fuzzylite's language, points, and the exact values there. Of the type-2 system only the
+//! points, since that language has no such terms.
 //! `time`: our time for each system, as `system,program,ns`.
 
 use std::fmt::Write as _;
@@ -8,7 +9,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use flagred_benches::{
-    four_inputs, gaussians, larsen, overlapping, points, published, takagi_sugeno, tipper,
+    four_inputs, gaussians, larsen, overlapping, points, published, published_type2, takagi_sugeno,
+    tipper,
 };
 use fuzzy::engine::Outcome;
 use fuzzy::map::{DecisionMap, Grid};
@@ -35,11 +37,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             for (name, model) in &systems {
                 write(Path::new(folder), name, model)?;
             }
+            write_points(Path::new(folder), "b2", &published_type2())?;
         }
         ["time"] => {
             for (name, model) in &systems {
                 time(name, model)?;
             }
+            time("b2", &published_type2())?;
         }
         _ => return Err("use `write FOLDER` or `time`".into()),
     }
@@ -48,12 +52,28 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn write(folder: &Path, name: &str, model: &Model) -> Result<(), Box<dyn std::error::Error>> {
     std::fs::write(folder.join(format!("{name}.fll")), fll(model))?;
+    write_points(folder, name, model)
+}
+
+/// Points with the exact values there, and with interval type-2 terms with the ends of the exact intervals.
+fn write_points(
+    folder: &Path,
+    name: &str,
+    model: &Model,
+) -> Result<(), Box<dyn std::error::Error>> {
     let engine = Engine::new(model)?;
     let mut text = String::new();
     for point in points(model, POINTS) {
         let numbers: Vec<String> = point.iter().map(f64::to_string).collect();
-        let value = engine.evaluate(&point)?[0].value().unwrap_or(f64::NAN);
-        writeln!(text, "{} {value}", numbers.join(" "))?;
+        let outcome = engine.evaluate(&point)?[0];
+        let value = outcome.value().unwrap_or(f64::NAN);
+        write!(text, "{} {value}", numbers.join(" "))?;
+        if let (Some(low), Some(high)) = (outcome.low(), outcome.high())
+            && model.has_type2_terms()
+        {
+            write!(text, " {low} {high}")?;
+        }
+        writeln!(text)?;
     }
     std::fs::write(folder.join(format!("{name}.points")), text)?;
     Ok(())

@@ -1,4 +1,4 @@
-"""Times scikit-fuzzy and simpful on the system (bw): peers.py FOLDER
+"""Times scikit-fuzzy and simpful on the system (bw), and PyIT2FLS on (b2): peers.py FOLDER
 
 Prints `system,program,ns per call,largest error in % of the range`.
 """
@@ -87,7 +87,52 @@ def simpful_():
     report(f"simpful {importlib.metadata.version('simpful')} (Python) 100 points", evaluate)
 
 
-for peer in (scikit_fuzzy, simpful_):
+def pyit2fls_():
+    import pyit2fls
+
+    points = [[float(x) for x in line.split()] for line in open(sys.argv[1] + "/b2.points")]
+    points = [point for point in points if len(point) == 5][:128]
+
+    def variable(high, by, terms):
+        domain, sets = np.linspace(0, high, 101), {}
+        for term, corners in terms.items():
+            if len(corners) == 3:
+                peak, step = corners[1], high / 4 if high == 100 else 0.1
+                if corners[0] == corners[1]:
+                    corners = (peak - step, peak, peak + step)
+                if corners[1] == corners[2]:
+                    corners = (peak - step, peak, peak + step)
+                left, peak, right = corners
+                function, upper, lower = pyit2fls.tri_mf, [left - by, peak, right + by, 1.0], [left + by, peak, right - by, 0.9]
+            else:
+                left, top = corners[:2]
+                function = pyit2fls.trapezoid_mf
+                upper, lower = [left - by, top, high, 1.2 * high + by, 1.0], [left + by, top, high, 1.2 * high - by, 0.9]
+            sets[term] = pyit2fls.IT2FS(domain, function, upper, function, lower)
+        return sets
+
+    margin, spread, risk = variable(0.5, 0.01, MARGIN), variable(0.5, 0.01, SPREAD), variable(100, 2.5, RISK)
+    for algorithm in ("KM", "EIASC", "NT", "WM"):
+        system = pyit2fls.IT2Mamdani(pyit2fls.min_t_norm, pyit2fls.max_s_norm, method="Centroid", algorithm=algorithm)
+        system.add_input_variable("margin")
+        system.add_input_variable("spread")
+        system.add_output_variable("risk")
+        for m, s, r, _ in rules:
+            system.add_rule([("margin", margin[m]), ("spread", spread[s])], [("risk", risk[r])])
+        best, worst = float("inf"), 0.0
+        for _ in range(3):
+            begun = time.perf_counter()
+            found = [system.evaluate({"margin": point[0], "spread": point[1]})[1]["risk"] for point in points]
+            best = min(best, time.perf_counter() - begun)
+        for point, ends in zip(points, found):
+            if algorithm in ("KM", "EIASC"):
+                worst = max(worst, abs(ends[0] - point[3]), abs(ends[1] - point[4]))
+        error = f"{worst:.2g}" if algorithm in ("KM", "EIASC") else ""
+        version = importlib.metadata.version("pyit2fls")
+        print(f"b2,PyIT2FLS {version} (Python) 101 points {algorithm},{best * 1e9 / len(points):.0f},{error}")
+
+
+for peer in (scikit_fuzzy, simpful_, pyit2fls_):
     try:
         peer()
     except Exception as error:  # The error of a peer is printed, and the others continue.

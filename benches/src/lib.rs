@@ -1,7 +1,7 @@
 //! The systems that are timed here and in `benches/peers`.
 
 use fuzzy::model::{
-    Defuzzifier, Implication, MembershipFunction, Model, ModelBuilder, Output, Variable,
+    Defuzzifier, Implication, Lower, MembershipFunction, Model, ModelBuilder, Output, Variable,
 };
 use fuzzy::rule::{Condition, Rule};
 
@@ -101,6 +101,42 @@ pub fn published(weighted: bool) -> Model {
         let condition = Condition::is("margin", margin).and(Condition::is("spread", spread));
         let rule = Rule::new(condition, "risk", risk).with(if weighted { degree } else { 1.0 });
         model.rules.push(rule.into());
+    }
+    model
+}
+
+/// (b2): as (b), with interval type-2 terms. The feet of the upper membership functions are a tenth of the distance of two
+/// terms further outside, those of the lower ones, whose height is 0.9, as far inside.
+pub fn published_type2() -> Model {
+    let mut model = published(false);
+    let widen = |variable: &mut Variable, by: f64| {
+        let end = variable.high;
+        for term in &mut variable.terms {
+            let moved = |by: f64| match term.membership_function {
+                MembershipFunction::Triangle { left, peak, right } => {
+                    triangle(left - by, peak, right + by)
+                }
+                // The other programs have trapezoids only.
+                MembershipFunction::RightShoulder { foot, top } => MembershipFunction::Trapezoid {
+                    left: foot - by,
+                    left_top: top,
+                    right_top: end,
+                    right: 1.2 * end + by,
+                },
+                ref other => other.clone(),
+            };
+            term.lower = Some(Lower {
+                membership_function: moved(-by),
+                height: 0.9,
+            });
+            term.membership_function = moved(by);
+        }
+    };
+    for input in &mut model.inputs {
+        widen(input, 0.01);
+    }
+    for output in &mut model.outputs {
+        widen(&mut output.variable, 2.5);
     }
     model
 }

@@ -113,3 +113,122 @@ fn words_have_their_published_centroids() {
         "{very_little:?}"
     );
 }
+
+#[test]
+fn short_forms_have_the_interval_of_their_pairs() {
+    let interval = |food: &str, tip: &str| {
+        let text = format!(
+            "
+fuzzy: 1
+name: dinner
+inputs: {{food: {{range: [0, 10], {food}}}}}
+outputs: {{tip: {{range: [0, 30], {tip}}}}}
+rules: [IF food IS bad THEN tip IS small, IF food IS good THEN tip IS large]
+"
+        );
+        let model: Model = text.parse().unwrap();
+        let outcome = Engine::new(&model).unwrap().evaluate(&[4.0]).unwrap()[0];
+        (outcome.low().unwrap(), outcome.high().unwrap())
+    };
+    let short = interval(
+        "partition: [bad, good], blur: 0.1",
+        "terms: {small: {triangle: [0, 6, 18], blur: 0.05}, large: {triangle: [12, 24, 30], lower_scale: 0.9, lower_lag: [0.5, 0.25]}}",
+    );
+    let pairs = interval(
+        "terms: {bad: {upper: {left_shoulder: [1, 11]}, lower: {left_shoulder: [-1, 9]}}, good: {upper: {right_shoulder: [-1, 9]}, lower: {right_shoulder: [1, 11]}}}",
+        "terms: {small: {upper: {trapezoid: [-1.5, 4.5, 7.5, 19.5]}, lower: {triangle: [1.5, 6.5, 16.5], height: 0.8333333333333334}},
+                 large: {upper: {triangle: [12, 24, 30]}, lower: {triangle: [18, 24, 28.5], height: 0.9}}}",
+    );
+    assert!((short.0 - pairs.0).abs() < 1e-12 && (short.1 - pairs.1).abs() < 1e-12);
+    assert!(short.0 < short.1);
+}
+
+/// Sums over samples, as the papers print them, of a set between a trapezoid from 1 to 9 and a triangle of height 0.5.
+#[test]
+fn type_reductions_have_their_published_formulas() {
+    let text = |method: &str| {
+        format!(
+            "
+fuzzy: 1
+name: word
+inputs: {{x: {{range: [0, 1], partition: [no, yes]}}}}
+outputs: {{word: {{range: [0, 10], type_reduction: {method}, terms: {{it: {{upper: {{trapezoid: [1, 2, 4, 9]}}, lower: {{triangle: [2, 3, 6], height: 0.5}}}}}}}}}}
+rules: [IF x IS any THEN word IS it]
+"
+        )
+    };
+    let outcome = |method: &str| {
+        let model: Model = text(method).parse().unwrap();
+        assert_eq!(
+            fuzzy::yaml::to_string(&model).parse::<Model>().unwrap(),
+            model
+        );
+        Engine::new(&model).unwrap().evaluate(&[0.0]).unwrap()[0]
+    };
+    const SAMPLES: u32 = 100_000;
+    // Only the support [1, 9] of the upper set has samples with a degree.
+    let xs = (0..SAMPLES).map(|i| 1.0 + 8.0 * (f64::from(i) + 0.5) / f64::from(SAMPLES));
+    let xs: Vec<f64> = xs.collect();
+    let upper = |x: f64| (x - 1.0).min(1.0).min((9.0 - x) / 5.0);
+    let lower = |x: f64| (0.5 * (x - 2.0).min((6.0 - x) / 3.0)).max(0.0);
+    let sum = |f: &dyn Fn(f64) -> f64| xs.iter().map(|x| f(*x)).sum::<f64>();
+    let (of_lower, of_upper) = (sum(&lower), sum(&upper));
+    let y_lower = sum(&|x| lower(x) * x) / of_lower;
+    let y_upper = sum(&|x| upper(x) * x) / of_upper;
+    let nie_tan = sum(&|x| (lower(x) + upper(x)) * x) / (of_lower + of_upper);
+    let near = |value: f64, expected: f64| {
+        assert!((value - expected).abs() < 1e-7, "{value}, not {expected}")
+    };
+    near(outcome("nie_tan").value().unwrap(), nie_tan);
+    near(
+        outcome("begian_melek_mendel").value().unwrap(),
+        0.5 * y_lower + 0.5 * y_upper,
+    );
+    let gap =
+        |a: f64, b: f64| sum(&|x| upper(x) - lower(x)) / (of_upper * of_lower) * (a * b / (a + b));
+    let left = gap(
+        sum(&|x| lower(x) * (x - 1.0)),
+        sum(&|x| upper(x) * (9.0 - x)),
+    );
+    let right = gap(
+        sum(&|x| upper(x) * (x - 1.0)),
+        sum(&|x| lower(x) * (9.0 - x)),
+    );
+    let wu_mendel = outcome("wu_mendel");
+    near(wu_mendel.low().unwrap(), y_lower.min(y_upper) - 0.5 * left);
+    near(
+        wu_mendel.high().unwrap(),
+        y_lower.max(y_upper) + 0.5 * right,
+    );
+    // The exact ends lie between the bounds whose middles these are.
+    let exact = outcome("exact");
+    let inner = (y_lower.min(y_upper), y_lower.max(y_upper));
+    assert!((inner.0 - left..=inner.0).contains(&exact.low().unwrap()));
+    assert!((inner.1..=inner.1 + right).contains(&exact.high().unwrap()));
+}
+
+#[test]
+fn type_reductions_need_type2_terms_and_no_sum() {
+    let refused = |input: &str, output: &str| {
+        let text = format!(
+            "{{fuzzy: 1, name: n, inputs: {{x: {{range: [0, 1], {input}}}}}, outputs: {{y: {{range: [0, 9], type_reduction: nie_tan, {output}}}}}, rules: [IF x IS no THEN y IS a]}}"
+        );
+        let findings = text.parse::<Model>().unwrap_err();
+        findings
+            .0
+            .iter()
+            .map(|it| it.message.clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        refused("partition: [no, yes]", "partition: [a, b]"),
+        ["output `y` has a `type_reduction`, but the rule set has no type-2 terms"]
+    );
+    assert_eq!(
+        refused(
+            "partition: [no, yes], blur: 0.1",
+            "defuzzifier: weighted_sum, terms: {a: {constant: 1}}"
+        ),
+        ["`type_reduction` of output `y` is not defined for `weighted_sum`"]
+    );
+}

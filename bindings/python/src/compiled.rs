@@ -9,7 +9,7 @@ use arrow_array::Array;
 use fuzzy::{
     Engine,
     diagnostic::suggest,
-    engine::{EvaluateError, Outcome as Raw, Scratch},
+    engine::{EvaluateError, Interval, Outcome as Raw, Scratch},
 };
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::{
@@ -24,7 +24,7 @@ use crate::{
     arrow,
     errors::data_error,
     evaluate::Evaluator,
-    outcome::{Outcome, Outcomes},
+    outcome::{IntervalOutcome, Outcome, Outcomes},
     table::{self, Table},
 };
 
@@ -78,22 +78,7 @@ impl Compiled {
         args: &Bound<'py, PyTuple>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Inputs<'py>> {
-        // `model({"service": 8, "food": 9})`, for names that are not Python identifiers.
-        let mapping = match named {
-            None if args.len() == 1 => args.get_item(0)?.cast_into::<PyDict>().ok(),
-            _ => None,
-        };
-        let values: Vec<Bound<'py, PyAny>> = match mapping.as_ref().or(named) {
-            Some(named) if args.is_empty() || mapping.is_some() => self.by_name(py, named)?,
-            Some(_) => {
-                let help = "write `model(8, 9)` or `model(service=8, food=9)`".to_owned();
-                return Err(data_error(
-                    "values are given both by position and by name",
-                    Some(help),
-                ));
-            }
-            _ => args.iter().collect(),
-        };
+        let values = self.values(py, args, named)?;
         let numbers: Option<Vec<f64>> = values.iter().map(number).collect();
         match numbers {
             Some(numbers) => Ok(Inputs::Numbers(numbers)),
@@ -101,6 +86,31 @@ impl Compiled {
                 [one] if named.is_none() && is_frame(py, one)? => Ok(Inputs::Frame(one.clone())),
                 _ => Ok(Inputs::Arrays(values)),
             },
+        }
+    }
+
+    /// Returns the values in the order of the inputs, or a single argument as it is.
+    fn values<'py>(
+        &self,
+        py: Python<'py>,
+        args: &Bound<'py, PyTuple>,
+        named: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        // `model({"service": 8, "food": 9})`, for names that are not Python identifiers.
+        let mapping = match named {
+            None if args.len() == 1 => args.get_item(0)?.cast_into::<PyDict>().ok(),
+            _ => None,
+        };
+        match mapping.as_ref().or(named) {
+            Some(named) if args.is_empty() || mapping.is_some() => self.by_name(py, named),
+            Some(_) => {
+                let help = "write `model(8, 9)` or `model(service=8, food=9)`".to_owned();
+                Err(data_error(
+                    "values are given both by position and by name",
+                    Some(help),
+                ))
+            }
+            _ => Ok(args.iter().collect()),
         }
     }
 
@@ -149,6 +159,31 @@ impl Compiled {
                 self.by_output(py, values)
             }
         })?
+    }
+
+    /// Evaluates values of which each is a number or a pair of ends.
+    pub(crate) fn intervals<'py>(
+        &self,
+        py: Python<'py>,
+        args: &Bound<'py, PyTuple>,
+        named: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let values = self.values(py, args, named)?;
+        let intervals = values.iter().map(|value| match number(value) {
+            Some(number) => Ok(Interval::from(number)),
+            None => match value.extract::<(f64, f64)>() {
+                Ok((low, high)) => Ok(Interval::new(low, high)),
+                Err(_) => Err(data_error(
+                    format!("{} is not an interval", value.repr()?),
+                    Some("give a number, or the two ends: `(7.5, 8.5)`".into()),
+                )),
+            },
+        });
+        let intervals: Vec<Interval> = intervals.collect::<PyResult<_>>()?;
+        let engine = &self.engine;
+        let outcomes = py.detach(|| engine.evaluate_interval(&intervals));
+        let outcomes = outcomes.map_err(|error| data_error(error, None))?;
+        self.by_output(py, outcomes.into_iter().map(IntervalOutcome::from))
     }
 
     fn outcomes<T>(&self, numbers: &[f64], take: impl FnOnce(&[Raw]) -> T) -> PyResult<T> {
@@ -264,8 +299,7 @@ impl Compiled {
             }
         });
         let places: Vec<usize> = places.collect::<PyResult<_>>()?;
-        let outputs: Vec<String> = self.engine.output_names().map(str::to_owned).collect();
-        let schema = table::schema(&outputs, with_reasons);
+        let schema = table::schema(self.engine.model(), with_reasons);
         let mut evaluator = Evaluator::new(&self.engine, threads, with_reasons)?;
         let mut batches = Vec::new();
         // The interpreter is released, because a stream that is implemented in Python acquires it

@@ -14,7 +14,7 @@ use rayon::{ThreadPool, prelude::*};
 
 use crate::{
     errors::data_error,
-    outcome::{Columns, Reasons, rule_number},
+    outcome::{Columns, Ends, Reasons, rule_number},
     threads,
 };
 
@@ -38,6 +38,7 @@ struct Block<'a> {
 
 struct BlockOutput<'a> {
     value: &'a mut [f64],
+    ends: Option<(&'a mut [f64], &'a mut [f64])>,
     reasons: Option<(&'a mut [f64], &'a mut [i32], &'a mut [bool])>,
 }
 
@@ -71,11 +72,16 @@ impl<'e> Evaluator<'e> {
             let message = "the rule set has no inputs, so it takes no rows";
             return Err(data_error(message, Some("call it without values".into())));
         }
-        let outputs = self.engine.output_names().len();
-        let mut results: Vec<Columns> = (0..outputs)
-            .map(|_| Columns {
+        let model = self.engine.model();
+        let outputs = model.outputs.iter();
+        let mut results: Vec<Columns> = outputs
+            .map(|output| Columns {
                 value: vec![0.0; rows],
                 reasons: self.with_reasons.then(|| Reasons {
+                    ends: model.has_interval(output).then(|| Ends {
+                        low: vec![0.0; rows],
+                        high: vec![0.0; rows],
+                    }),
                     coverage: vec![0.0; rows],
                     dominant_rule: vec![0; rows],
                     clamped: vec![false; rows],
@@ -135,17 +141,29 @@ fn blocks(rows: usize, results: &mut [Columns]) -> Vec<Block<'_>> {
         })
         .collect();
     for result in results {
-        let mut reasons = result.reasons.as_mut().map(|reasons| {
-            reasons
-                .coverage
+        let (ends, reasons) = match &mut result.reasons {
+            None => (None, None),
+            Some(reasons) => (
+                reasons.ends.as_mut(),
+                Some((
+                    &mut reasons.coverage,
+                    &mut reasons.dominant_rule,
+                    &mut reasons.clamped,
+                )),
+            ),
+        };
+        let mut ends = ends.map(|ends| ends.low.chunks_mut(BLOCK).zip(ends.high.chunks_mut(BLOCK)));
+        let mut reasons = reasons.map(|(coverage, rules, clamped)| {
+            coverage
                 .chunks_mut(BLOCK)
-                .zip(reasons.dominant_rule.chunks_mut(BLOCK))
-                .zip(reasons.clamped.chunks_mut(BLOCK))
+                .zip(rules.chunks_mut(BLOCK))
+                .zip(clamped.chunks_mut(BLOCK))
         });
         for (block, value) in blocks.iter_mut().zip(result.value.chunks_mut(BLOCK)) {
             let reasons = reasons.as_mut().and_then(Iterator::next);
             block.outputs.push(BlockOutput {
                 value,
+                ends: ends.as_mut().and_then(Iterator::next),
                 reasons: reasons.map(|((coverage, rule), clamped)| (coverage, rule, clamped)),
             });
         }
@@ -172,6 +190,14 @@ impl Block<'_> {
             let outcomes = outcomes.iter().skip(i).step_by(each);
             for (to, outcome) in output.value.iter_mut().zip(outcomes.clone()) {
                 *to = outcome.value().unwrap_or(f64::NAN);
+            }
+            if let Some((low, high)) = &mut output.ends {
+                for ((low, high), outcome) in
+                    low.iter_mut().zip(high.iter_mut()).zip(outcomes.clone())
+                {
+                    *low = outcome.low().unwrap_or(f64::NAN);
+                    *high = outcome.high().unwrap_or(f64::NAN);
+                }
             }
             let Some((coverage, rule, clamped)) = &mut output.reasons else {
                 continue;

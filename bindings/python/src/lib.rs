@@ -43,7 +43,7 @@ mod _core {
         learn::_learn,
         map::DecisionMap,
         monitor::{MonitorData, Update},
-        outcome::{Outcome, Outcomes},
+        outcome::{IntervalOutcome, Outcome, Outcomes},
         profile::{_built_in, Profile},
         rule_set::RuleSet,
         simplify::_simplify,

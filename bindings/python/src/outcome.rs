@@ -12,6 +12,10 @@ use crate::errors::data_error;
 pub(crate) struct Outcome {
     /// The value; None if it is unknown.
     value: Option<f64>,
+    /// The lower end of the interval of an output that depends on type-2 terms; otherwise the value.
+    low: Option<f64>,
+    /// The upper end of that interval.
+    high: Option<f64>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: f64,
     /// The rule number with that strength, from 1; None if no rule fires.
@@ -32,6 +36,7 @@ impl Outcome {
     #[staticmethod]
     fn _of(
         value: Option<f64>,
+        ends: (Option<f64>, Option<f64>),
         coverage: f64,
         dominant_rule: Option<usize>,
         clamped: bool,
@@ -40,6 +45,8 @@ impl Outcome {
         let state = STATES.iter().find(|known| **known == state);
         Ok(Outcome {
             value,
+            low: ends.0,
+            high: ends.1,
             coverage,
             dominant_rule,
             clamped,
@@ -52,11 +59,19 @@ impl Outcome {
         slf: &Bound<'py, Self>,
     ) -> PyResult<(
         Bound<'py, PyAny>,
-        (Option<f64>, f64, Option<usize>, bool, &'static str),
+        (
+            Option<f64>,
+            (Option<f64>, Option<f64>),
+            f64,
+            Option<usize>,
+            bool,
+            &'static str,
+        ),
     )> {
         let it = slf.get();
         let fields = (
             it.value,
+            (it.low, it.high),
             it.coverage,
             it.dominant_rule,
             it.clamped,
@@ -71,8 +86,16 @@ impl Outcome {
         let coverage = shown(self.coverage.into_pyobject(py)?.into_any().unbind())?;
         let rule = shown(self.dominant_rule.into_pyobject(py)?.unbind())?;
         let clamped = if self.clamped { "True" } else { "False" };
+        let ends = match self.low == self.high {
+            true => String::new(),
+            false => {
+                let low = shown(self.low.into_pyobject(py)?.unbind())?;
+                let high = shown(self.high.into_pyobject(py)?.unbind())?;
+                format!("low={low}, high={high}, ")
+            }
+        };
         Ok(format!(
-            "Outcome(value={value}, coverage={coverage}, dominant_rule={rule}, clamped={clamped}, state='{}')",
+            "Outcome(value={value}, {ends}coverage={coverage}, dominant_rule={rule}, clamped={clamped}, state='{}')",
             self.state
         ))
     }
@@ -91,6 +114,8 @@ impl From<engine::Outcome> for Outcome {
     fn from(outcome: engine::Outcome) -> Self {
         Outcome {
             value: outcome.value(),
+            low: outcome.low(),
+            high: outcome.high(),
             coverage: outcome.coverage,
             dominant_rule: outcome.dominant_rule.map(|rule| rule + 1),
             clamped: outcome.clamped,
@@ -110,6 +135,10 @@ impl From<engine::Outcome> for Outcome {
 pub(crate) struct Outcomes {
     /// The values; NaN if they are unknown.
     value: Py<PyArrayDyn<f64>>,
+    /// The lower ends of the intervals of an output that depends on type-2 terms; otherwise the values.
+    low: Py<PyArrayDyn<f64>>,
+    /// The upper ends of these intervals.
+    high: Py<PyArrayDyn<f64>>,
     /// The largest firing strength of a rule, in [0, 1].
     coverage: Py<PyArrayDyn<f64>>,
     /// The rule numbers with that strength, from 1; masked if no rule fires.
@@ -125,8 +154,16 @@ pub(crate) struct Columns {
     pub(crate) reasons: Option<Reasons>,
 }
 
+/// The lower and the upper ends of intervals; NaN is unknown.
+pub(crate) struct Ends {
+    pub(crate) low: Vec<f64>,
+    pub(crate) high: Vec<f64>,
+}
+
 /// The reasons of values.
 pub(crate) struct Reasons {
+    /// `None` if no type-2 term affects the output.
+    pub(crate) ends: Option<Ends>,
     pub(crate) coverage: Vec<f64>,
     /// [`NO_RULE`] if no rule fires.
     pub(crate) dominant_rule: Vec<i32>,
@@ -151,12 +188,84 @@ impl Outcomes {
         let rules = reasons.dominant_rule.into_pyarray(py).reshape(shape)?;
         let masked = py.import("numpy")?.getattr("ma")?;
         let masked = masked.call_method1("masked_equal", (rules, NO_RULE))?;
+        let value = value.into_pyarray(py).reshape(shape)?;
+        let (low, high) = match reasons.ends {
+            None => (value.clone(), value.clone()),
+            Some(Ends { low, high }) => (
+                low.into_pyarray(py).reshape(shape)?,
+                high.into_pyarray(py).reshape(shape)?,
+            ),
+        };
         Ok(Outcomes {
-            value: value.into_pyarray(py).reshape(shape)?.unbind(),
+            value: value.unbind(),
+            low: low.unbind(),
+            high: high.unbind(),
             coverage: reasons.coverage.into_pyarray(py).reshape(shape)?.unbind(),
             dominant_rule: masked.unbind(),
             clamped: reasons.clamped.into_pyarray(py).reshape(shape)?.unbind(),
         })
+    }
+}
+
+/// The values of an output for inputs that are intervals.
+#[pyclass(frozen, get_all, eq, module = "flagred.types")]
+#[derive(Clone, PartialEq)]
+pub(crate) struct IntervalOutcome {
+    /// The lower end of an interval that contains every value; None if the output has no value.
+    low: Option<f64>,
+    /// The upper end of that interval.
+    high: Option<f64>,
+    /// Whether the output may have no value for some of the inputs, because no rule fires.
+    may_be_undefined: bool,
+    /// Whether an interval of an input was partly outside its range and was clamped to it.
+    clamped: bool,
+}
+
+impl From<engine::IntervalOutcome> for IntervalOutcome {
+    fn from(outcome: engine::IntervalOutcome) -> Self {
+        IntervalOutcome {
+            low: outcome.values.map(|values| values.low),
+            high: outcome.values.map(|values| values.high),
+            may_be_undefined: outcome.may_be_undefined,
+            clamped: outcome.clamped,
+        }
+    }
+}
+
+#[pymethods]
+impl IntervalOutcome {
+    #[staticmethod]
+    fn _of(low: Option<f64>, high: Option<f64>, may_be_undefined: bool, clamped: bool) -> Self {
+        IntervalOutcome {
+            low,
+            high,
+            may_be_undefined,
+            clamped,
+        }
+    }
+
+    #[expect(clippy::type_complexity, reason = "what pickle takes")]
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Option<f64>, Option<f64>, bool, bool))> {
+        let it = slf.get();
+        let fields = (it.low, it.high, it.may_be_undefined, it.clamped);
+        Ok((slf.getattr("_of")?, fields))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let shown = |value: Option<f64>| {
+            let value = value.into_pyobject(py)?;
+            Ok::<_, PyErr>(value.repr()?.to_string())
+        };
+        let truth = |value: bool| if value { "True" } else { "False" };
+        Ok(format!(
+            "IntervalOutcome(low={}, high={}, may_be_undefined={}, clamped={})",
+            shown(self.low)?,
+            shown(self.high)?,
+            truth(self.may_be_undefined),
+            truth(self.clamped)
+        ))
     }
 }
 

@@ -189,6 +189,16 @@ impl RuleSet {
         self.model(|model| model.outputs.iter().map(name).collect())
     }
 
+    /// The names of the outputs with an interval, because type-2 terms affect them.
+    fn _interval_names(&self) -> Vec<String> {
+        let name = |output: &fuzzy::model::Output| output.variable.name.clone();
+        self.model(|model| {
+            let outputs = model.outputs.iter();
+            let outputs = outputs.filter(|output| model.has_interval(output));
+            outputs.map(name).collect()
+        })
+    }
+
     /// The names of the variables with values in rows of data: the inputs, and the measured output.
     fn _measured_names(&self) -> Vec<String> {
         let name = |variable: &fuzzy::model::Variable| variable.name.clone();
@@ -378,7 +388,8 @@ impl RuleSet {
     /// -------
     /// Outcome, Outcomes or frame
     ///     Value, coverage, dominant rule and whether an input was clamped: of a point, as arrays, or as columns of a
-    ///     frame. With several outputs, a dict by their names.
+    ///     frame. Outputs that depend on type-2 terms also have the ends of their interval, ``low`` and ``high``; in
+    ///     frames the columns ``tip_low`` and ``tip_high``. With several outputs, a dict by their names.
     ///
     /// Examples
     /// --------
@@ -392,6 +403,39 @@ impl RuleSet {
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         answer(slf, args, named, threads, true)
+    }
+
+    /// Evaluates inputs of which only intervals are known.
+    ///
+    /// Parameters
+    /// ----------
+    /// values
+    ///     A number, or a pair ``(low, high)``, for each input, in their order or by their names.
+    ///
+    /// Returns
+    /// -------
+    /// IntervalOutcome
+    ///     An interval that contains every value of the output for inputs inside these intervals, and whether the output
+    ///     may have no value. With several outputs, a dict by their names.
+    ///
+    /// Raises
+    /// ------
+    /// DataError
+    ///     An input has no value, an end is not a finite number, or the ends are in the wrong order.
+    ///
+    /// Examples
+    /// --------
+    /// >>> tip = model.evaluate_interval(service=(7.5, 8.5), food=9)
+    /// >>> tip.low < model(7.5, 9) < model(8.5, 9) < tip.high
+    /// True
+    #[pyo3(signature = (*args, **named))]
+    fn evaluate_interval<'py>(
+        slf: &Bound<'py, Self>,
+        args: &Bound<'py, PyTuple>,
+        named: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (py, source) = (slf.py(), slf.get().source());
+        source.compiled(py)?.intervals(py, args, named)
     }
 
     /// Evaluates a table from Arrow's C interface.

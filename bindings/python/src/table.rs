@@ -8,6 +8,7 @@ use arrow_array::{
     types::{Float64Type, Int32Type},
 };
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
+use fuzzy::Model;
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::{
     exceptions::PyKeyError,
@@ -171,18 +172,24 @@ impl Table {
 }
 
 /// The names and types of the columns of results, in the order of [`batch`].
-pub(crate) fn schema(outputs: &[String], with_reasons: bool) -> SchemaRef {
+pub(crate) fn schema(model: &Model, with_reasons: bool) -> SchemaRef {
     let mut fields = Vec::new();
     let reasons = [
         ("coverage", DataType::Float64),
         ("dominant_rule", DataType::Int32),
         ("clamped", DataType::Boolean),
     ];
-    for output in outputs {
+    for output in &model.outputs {
+        let has_interval = with_reasons && model.has_interval(output);
+        let output = &output.variable.name;
         fields.push(Field::new(output, DataType::Float64, true));
+        for end in ["low", "high"].iter().filter(|_| has_interval) {
+            let name = format!("{output}_{end}");
+            fields.push(Field::new(name, DataType::Float64, true));
+        }
         for (reason, kind) in reasons.iter().filter(|_| with_reasons) {
-            let name = match outputs {
-                [_] => (*reason).to_owned(),
+            let name = match model.outputs.len() {
+                1 => (*reason).to_owned(),
                 _ => format!("{output}_{reason}"),
             };
             fields.push(Field::new(name, kind.clone(), true));
@@ -199,6 +206,9 @@ pub(crate) fn batch(schema: &SchemaRef, results: Vec<Columns>) -> PyResult<Recor
         let Some(reasons) = result.reasons else {
             continue;
         };
+        if let Some(ends) = reasons.ends {
+            columns.extend([known(ends.low), known(ends.high)]);
+        }
         let rules = reasons.dominant_rule.into_iter();
         let rules = rules.map(|rule| (rule != NO_RULE).then_some(rule));
         columns.push(Arc::new(Float64Array::from(reasons.coverage)));

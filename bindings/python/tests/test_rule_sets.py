@@ -476,3 +476,60 @@ def test_help_lists_the_main_names_and_types_the_rest():
     assert not {"Cause", "Peak", "Share", "Step"} & set(flagred.__all__)
     for name in flagred.types.__all__:
         assert isinstance(getattr(flagred.types, name), type)
+
+
+TYPE2 = """
+fuzzy: 1
+name: dinner
+inputs: {food: {range: [0, 10], partition: [bad, good], blur: 0.1}}
+outputs:
+  tip: {range: [0, 30], partition: [small, large], blur: 0.05}
+  wine: {range: [0, 1], defuzzifier: weighted_average, terms: {red: {constant: 0}, white: {constant: 1}}}
+rules:
+  - IF food IS bad THEN tip IS small AND wine IS red
+  - IF food IS good THEN tip IS large AND wine IS white
+"""
+
+
+def test_outcomes_of_type2_rule_sets_have_an_interval():
+    model = flagred.loads(TYPE2)
+    outcome = model.evaluate(food=6)["tip"]
+    assert outcome.low < outcome.value < outcome.high
+    assert outcome.value == pytest.approx((outcome.low + outcome.high) / 2)
+    assert f"low={outcome.low}" in repr(outcome)
+    assert pickle.loads(pickle.dumps(outcome)) == outcome
+    outcomes = model.evaluate(np.array([6.0, np.nan]))["tip"]
+    assert (outcomes.low[0], outcomes.high[0]) == (outcome.low, outcome.high)
+    assert np.isnan(outcomes.low[1])
+    # Without type-2 terms, both ends are the value.
+    ordinary = flagred.loads(TYPE2.replace(", blur: 0.1", "").replace(", blur: 0.05", "")).evaluate(food=6)["tip"]
+    assert ordinary.low == ordinary.value == ordinary.high
+    assert "low" not in repr(ordinary)
+
+
+def test_frames_have_columns_for_the_ends():
+    model = flagred.loads(TYPE2)
+    pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
+    expected = model.evaluate(food=6)
+    for frame in (pandas.DataFrame({"food": [6.0]}), polars.DataFrame({"food": [6.0]})):
+        result = model.evaluate(frame)
+        assert list(result.columns)[:3] == ["tip", "tip_low", "tip_high"]
+        assert result["tip_low"][0] == expected["tip"].low
+        assert result["wine_high"][0] == expected["wine"].high
+
+
+def test_uncertain_inputs():
+    model = flagred.loads(TYPE2)
+    tip = model.evaluate_interval(food=(5.5, 6.5))["tip"]
+    for food in np.linspace(5.5, 6.5, 21):
+        outcome = model.evaluate(food=food)["tip"]
+        assert tip.low <= outcome.low and outcome.high <= tip.high
+    assert not tip.may_be_undefined and not tip.clamped
+    assert pickle.loads(pickle.dumps(tip)) == tip
+    assert model.evaluate_interval((5.5, 6.5))["tip"] == model.evaluate_interval({"food": (5.5, 6.5)})["tip"] == tip
+    point = model.evaluate_interval(food=6)["tip"]
+    assert point.low == model.evaluate(food=6)["tip"].low
+    with pytest.raises(flagred.DataError, match="the interval of input `food` ends below its start"):
+        model.evaluate_interval(food=(6, 5))
+    with pytest.raises(flagred.DataError, match="'x' is not an interval"):
+        model.evaluate_interval(food="x")

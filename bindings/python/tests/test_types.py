@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import flagred
-from flagred.types import Explanation, Outcome, Outcomes
+from flagred.types import Explanation, IntervalOutcome, Outcome, Outcomes
 
 
 class Frame:
@@ -39,6 +39,7 @@ assert_type(model(frame), Frame)
 assert_type(model.evaluate(8, 9), Outcome)
 assert_type(model.evaluate(array, array), Outcomes)
 assert_type(model.evaluate(frame), Frame)
+assert_type(model.evaluate_interval(8, (9, 10)), IntervalOutcome)
 assert_type(model.explain(8, 9), Explanation)
 assert_type(model.explain(frame), Frame)
 term = model.inputs["margin"]["low"]

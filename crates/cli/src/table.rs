@@ -102,8 +102,10 @@ pub(crate) struct Format {
     pub(crate) skip_bad_rows: bool,
 }
 
-fn pair(text: &str) -> Result<(String, String), String> {
-    let (name, column) = text.split_once('=').ok_or("write `NAME=COLUMN`")?;
+pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
+    let (name, column) = text
+        .split_once('=')
+        .ok_or("write a name and a value: `NAME=VALUE`")?;
     Ok((name.trim().to_owned(), column.trim().to_owned()))
 }
 

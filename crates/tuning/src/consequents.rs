@@ -223,6 +223,7 @@ fn probe(model: &Model) -> Option<(Model, Vec<usize>)> {
         variable: Variable::new(strength_of(*term), 0.0, 1.0).term(ONE, one.clone()),
         defuzzifier: Defuzzifier::WeightedSum,
         clamp: false,
+        type_reduction: fuzzy::model::TypeReduction::Exact,
         when_no_rule_fires: fuzzy::model::NoRuleFires::Value(0.0),
         ..output.clone()
     });

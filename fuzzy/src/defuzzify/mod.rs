@@ -22,6 +22,7 @@ use alloc::vec::Vec;
 use crate::model::{Aggregation, Implication, Output, Term};
 use crate::table::Moment;
 use curves::Curves;
+pub(crate) use enclosure::Enclosing;
 pub(crate) use integrated::Integrated;
 pub(crate) use layers::Layered;
 pub(crate) use partition::Partition;
@@ -31,7 +32,9 @@ pub(crate) use reduction::{Reduction, Weighted};
 pub(crate) use weighted::Consequents;
 
 mod calculus;
+mod closed_reduction;
 mod curves;
+mod enclosure;
 mod integrated;
 mod layers;
 mod maxima;
@@ -60,7 +63,7 @@ pub(crate) struct Strengths<'a> {
 }
 
 impl<'a> Strengths<'a> {
-    fn of(&self, term: usize) -> &'a [f64] {
+    pub(crate) fn of(&self, term: usize) -> &'a [f64] {
         match (self.offsets.get(term), self.offsets.get(term + 1)) {
             (Some(&first), Some(&end)) => self.strengths.get(first..end).unwrap_or_default(),
             (None, _) | (_, None) => &[],

@@ -19,11 +19,12 @@
 
 use alloc::{boxed::Box, vec::Vec};
 
+use super::closed_reduction::{Summary, closed};
 use super::curves::Curves;
 use super::piece::{Integrals, Piece, unit};
 use super::workspace::Workspace;
 use super::{Joint, Strengths};
-use crate::model::{Defuzzifier, Output, Term, type2::Bound};
+use crate::model::{Defuzzifier, Output, Term, TypeReduction, type2::Bound};
 use crate::table::operators::{larger, smaller};
 
 /// The maximum number of steps of the search for an end. A few are enough, unless the lower set is almost empty. Then a
@@ -46,11 +47,11 @@ pub(crate) enum Reduction {
 /// The terms of a fuzzy output.
 #[derive(Debug, Clone)]
 pub(crate) struct Set {
-    low: f64,
-    high: f64,
-    joint: Joint,
-    lower: Curves,
-    upper: Curves,
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) joint: Joint,
+    pub(super) lower: Curves,
+    pub(super) upper: Curves,
 }
 
 /// A term that is a single point.
@@ -65,9 +66,9 @@ pub(crate) struct Singleton {
 /// A number with the bounds of its weight.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Weighted {
-    at: f64,
-    lower: f64,
-    upper: f64,
+    pub(super) at: f64,
+    pub(super) lower: f64,
+    pub(super) upper: f64,
 }
 
 /// An end of the interval.
@@ -131,6 +132,7 @@ impl Reduction {
     /// of a term of a Takagi-Sugeno output. `points` is memory for one element per term.
     pub(crate) fn interval(
         &self,
+        method: TypeReduction,
         lower: Strengths<'_>,
         upper: Strengths<'_>,
         number: impl Fn(usize) -> f64,
@@ -139,7 +141,13 @@ impl Reduction {
     ) -> Option<(f64, f64)> {
         points.clear();
         let (left, right) = match self {
-            Reduction::Set(set) => set.interval(lower, upper, workspace)?,
+            Reduction::Set(set) if method == TypeReduction::Exact => {
+                set.interval(lower, upper, workspace)?
+            }
+            Reduction::Set(set) => {
+                let summary = set.summary(lower, upper, workspace, &mut |_, _| {})?;
+                closed(method, summary)?
+            }
             Reduction::Singletons(singletons, joint) => {
                 points.extend(singletons.chunk_by(|a, b| a.at == b.at).filter_map(|same| {
                     let degree = |strengths: Strengths<'_>, height: fn(&Singleton) -> f64| {
@@ -155,7 +163,7 @@ impl Reduction {
                         upper: degree(upper, |one| one.upper_height),
                     })
                 }));
-                average(points)?
+                ends_of(method, points)?
             }
             Reduction::Average | Reduction::Sum => {
                 let total = |all: &[f64]| all.iter().sum::<f64>();
@@ -168,7 +176,7 @@ impl Reduction {
                 }));
                 match self {
                     Reduction::Sum => sum(points)?,
-                    _ => average(points)?,
+                    _ => ends_of(method, points)?,
                 }
             }
         };
@@ -177,19 +185,22 @@ impl Reduction {
 }
 
 impl Set {
-    fn interval(
+    /// Returns the areas and centroids of both sets; `None` if the upper one is empty. Calls `visit` for the pieces of the
+    /// upper set, and then for those of the lower one.
+    fn summary(
         &self,
         lower: Strengths<'_>,
         upper: Strengths<'_>,
         workspace: &mut Workspace,
-    ) -> Option<(f64, f64)> {
+        visit: &mut dyn FnMut(Bound, &Piece<'_>),
+    ) -> Option<Summary> {
         let Set { low, high, .. } = *self;
-        let unit = unit(high - low);
-        let mut whole = [Integrals::about(low + 0.5 * (high - low), unit); 2];
+        let mut whole = [Integrals::about(low + 0.5 * (high - low), unit(high - low)); 2];
         let mut support = (high, low);
         self.upper
             .pieces(upper, self.joint, workspace, &mut |piece| {
                 whole[1].add(piece);
+                visit(Bound::Upper, piece);
                 if has_area(piece) {
                     support = (smaller(support.0, piece.from), piece.to);
                 }
@@ -197,11 +208,52 @@ impl Set {
         self.lower
             .pieces(lower, self.joint, workspace, &mut |piece| {
                 whole[0].add(piece);
+                visit(Bound::Lower, piece);
             });
-        let start = whole[1].centroid()?;
-        if whole[0].area <= 0.0 {
-            return Some(support);
-        }
+        let of_lower = whole[0].centroid();
+        Some(Summary {
+            lower: of_lower.map(|centroid| (whole[0].area, centroid)),
+            upper: (whole[1].area, whole[1].centroid()?),
+            support,
+        })
+    }
+
+    pub(super) fn interval(
+        &self,
+        lower: Strengths<'_>,
+        upper: Strengths<'_>,
+        workspace: &mut Workspace,
+    ) -> Option<(f64, f64)> {
+        // The pieces do not depend on the position of the search. Straight ones are computed once.
+        let mut lines = core::mem::take(&mut workspace.lines);
+        lines.clear();
+        let (mut of_upper, mut are_kept) = (0, true);
+        let summary = self.summary(lower, upper, workspace, &mut |bound, piece| {
+            are_kept &= piece.curve.is_none() && lines.len() < lines.capacity();
+            if are_kept {
+                lines.push([piece.from, piece.to, piece.left, piece.right]);
+                of_upper += usize::from(bound == Bound::Upper);
+            }
+        });
+        let kept = are_kept.then(|| lines.split_at(of_upper));
+        let ends = summary.map(|summary| match summary.lower {
+            None => summary.support,
+            Some(_) => self.search(summary, (lower, upper), kept, workspace),
+        });
+        workspace.lines = lines;
+        ends
+    }
+
+    /// Searches for both ends. `kept` contains the pieces of the upper and of the lower set if all are straight.
+    fn search(
+        &self,
+        summary: Summary,
+        (lower, upper): (Strengths<'_>, Strengths<'_>),
+        kept: Option<(&[[f64; 4]], &[[f64; 4]])>,
+        workspace: &mut Workspace,
+    ) -> (f64, f64) {
+        let range = (self.low, self.high);
+        let unit = unit(self.high - self.low);
         let mut sums = |end: End, x: f64| {
             let mut sums = Integrals::about(x, unit);
             let below = (f64::NEG_INFINITY, x);
@@ -210,6 +262,21 @@ impl Set {
                 End::Left => (below, above),
                 End::Right => (above, below),
             };
+            if let Some((upper, lower)) = kept {
+                for (lines, part) in [(upper, of_upper), (lower, of_lower)] {
+                    for [from, to, left, right] in lines {
+                        let piece = Piece {
+                            from: *from,
+                            to: *to,
+                            left: *left,
+                            right: *right,
+                            curve: None,
+                        };
+                        sums.add_between(&piece, part);
+                    }
+                }
+                return (sums.area, sums.moment);
+            }
             self.upper
                 .pieces(upper, self.joint, workspace, &mut |piece| {
                     sums.add_between(piece, of_upper);
@@ -220,20 +287,47 @@ impl Set {
                 });
             (sums.area, sums.moment)
         };
-        let range = (low, high);
+        let start = summary.upper.1;
         let left = search(End::Left, start, range, |x| sums(End::Left, x));
         let right = search(End::Right, start, range, |x| sums(End::Right, x));
-        Some((left, right))
+        (left, right)
     }
 }
 
-fn has_area(piece: &Piece<'_>) -> bool {
+pub(super) fn has_area(piece: &Piece<'_>) -> bool {
     let inside = |curve: super::piece::Curve<'_>| (curve.degree)(0.5) > 0.0;
     piece.left > 0.0 || piece.right > 0.0 || piece.curve.is_some_and(inside)
 }
 
+/// Returns the interval of weighted numbers by a method of type reduction.
+fn ends_of(method: TypeReduction, points: &[Weighted]) -> Option<(f64, f64)> {
+    if method == TypeReduction::Exact {
+        return average(points);
+    }
+    let mut positive = points.iter().filter(|point| point.upper > 0.0);
+    let origin = positive.next()?.at;
+    let sums = |weight: fn(&Weighted) -> f64| {
+        let (mut total, mut moment) = (0.0, 0.0);
+        for point in points {
+            total += weight(point);
+            moment += weight(point) * (point.at - origin);
+        }
+        (total > 0.0).then(|| (total, origin + moment / total))
+    };
+    let support = points.iter().filter(|point| point.upper > 0.0);
+    let support = support.fold((origin, origin), |(low, high), point| {
+        (smaller(low, point.at), larger(high, point.at))
+    });
+    let summary = Summary {
+        lower: sums(|point| point.lower),
+        upper: sums(|point| point.upper)?,
+        support,
+    };
+    closed(method, summary)
+}
+
 /// Returns the interval of `sum(w x) / sum(w)` over all weights between their bounds; `None` if all are 0.
-fn average(points: &[Weighted]) -> Option<(f64, f64)> {
+pub(super) fn average(points: &[Weighted]) -> Option<(f64, f64)> {
     let mut positive = points.iter().filter(|point| point.upper > 0.0);
     let first = positive.next()?.at;
     let (low, high) = positive.fold((first, first), |(low, high), point| {
@@ -263,7 +357,7 @@ fn average(points: &[Weighted]) -> Option<(f64, f64)> {
 }
 
 /// Returns the interval of `sum(w x)` over all weights between their bounds; `None` if all are 0.
-fn sum(points: &[Weighted]) -> Option<(f64, f64)> {
+pub(super) fn sum(points: &[Weighted]) -> Option<(f64, f64)> {
     let (mut low, mut high) = (0.0, 0.0);
     for point in points {
         let (one, other) = (point.lower * point.at, point.upper * point.at);
@@ -322,6 +416,76 @@ mod tests {
         let open = points(&[(4.0, 0.0, 0.5), (8.0, 0.0, 0.1), (9.0, 0.0, 0.0)]);
         assert_eq!(average(&open), Some((4.0, 8.0)));
         assert_eq!(average(&points(&[(4.0, 0.0, 0.0)])), None);
+    }
+
+    /// The uncertainty bounds of the left end as Wu and Mendel print them, for rules in ascending order: the bound below
+    /// and the bound above it.
+    fn wu_mendel_left(points: &[Weighted]) -> (f64, f64) {
+        let sum = |f: &dyn Fn(&Weighted) -> f64| points.iter().map(f).sum::<f64>();
+        let (lower, upper) = (sum(&|p| p.lower), sum(&|p| p.upper));
+        let (y_0, y_m) = (
+            sum(&|p| p.lower * p.at) / lower,
+            sum(&|p| p.upper * p.at) / upper,
+        );
+        let (first, last) = (points[0].at, points[points.len() - 1].at);
+        let above = y_0.min(y_m);
+        let a = sum(&|p| p.lower * (p.at - first));
+        let b = sum(&|p| p.upper * (last - p.at));
+        let gap = sum(&|p| p.upper - p.lower) / (upper * lower) * (a * b / (a + b));
+        (above - gap, above)
+    }
+
+    #[test]
+    fn the_uncertainty_bounds_enclose_the_exact_ends() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for _ in 0..2000 {
+            let all: Vec<Weighted> = (0..4)
+                .map(|i| {
+                    let upper = 0.1 + 0.9 * random();
+                    Weighted {
+                        at: f64::from(i) + random(),
+                        lower: upper * random(),
+                        upper,
+                    }
+                })
+                .collect();
+            let mirrored: Vec<Weighted> = all
+                .iter()
+                .rev()
+                .map(|point| Weighted {
+                    at: -point.at,
+                    ..*point
+                })
+                .collect();
+            let (low, high) = average(&all).unwrap();
+            let left = wu_mendel_left(&all);
+            let right = wu_mendel_left(&mirrored);
+            assert!(left.0 <= low + 1e-12 && low <= left.1 + 1e-12);
+            assert!(-right.1 <= high + 1e-12 && high <= -right.0 + 1e-12);
+            let (wu_low, wu_high) = ends_of(TypeReduction::WuMendel, &all).unwrap();
+            let middle = |(a, b): (f64, f64)| 0.5 * (a + b);
+            assert!((wu_low - middle(left).max(all[0].at)).abs() < 1e-12);
+            assert!((wu_high + middle(right).max(-all[3].at)).abs() < 1e-12);
+            let total = |f: &dyn Fn(&Weighted) -> f64| all.iter().map(f).sum::<f64>();
+            let nie_tan = total(&|p| (p.lower + p.upper) * p.at) / total(&|p| p.lower + p.upper);
+            let begian = 0.5
+                * (total(&|p| p.lower * p.at) / total(&|p| p.lower)
+                    + total(&|p| p.upper * p.at) / total(&|p| p.upper));
+            for (method, expected) in [
+                (TypeReduction::NieTan, nie_tan),
+                (TypeReduction::BegianMelekMendel, begian),
+            ] {
+                let (value, same) = ends_of(method, &all).unwrap();
+                assert!(value == same && (value - expected).abs() < 1e-12);
+                assert!((low - 1e-12..=high + 1e-12).contains(&value));
+            }
+        }
     }
 
     #[test]

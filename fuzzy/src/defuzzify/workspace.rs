@@ -13,6 +13,8 @@ pub(crate) struct Workspace {
     pub(super) most_cuts: usize,
     pub(super) runs: Vec<Run>,
     pub(super) parts: Vec<Part>,
+    /// The ends and the degrees there of straight pieces; without capacity unless there is a type reduction.
+    pub(super) lines: Vec<[f64; 4]>,
     pub(crate) steps: Steps,
 }
 
@@ -41,6 +43,10 @@ impl Steps {
     }
 }
 
+/// The maximum number of straight pieces of a lower and an upper set together that a type reduction keeps. More pieces are
+/// computed again in each step of the search.
+const MOST_LINES: usize = 256;
+
 /// The approximate number of evaluations of each term that the integration of a curved piece takes.
 pub(super) const STEPS_OF_A_CURVE: usize = 16;
 
@@ -53,14 +59,25 @@ impl Workspace {
             most_cuts,
             runs: Vec::with_capacity(activations),
             parts: Vec::with_capacity(activations),
+            lines: Vec::new(),
             steps: Steps::UNBOUNDED,
         }
+    }
+
+    /// Allocates memory for the straight pieces of a type reduction.
+    pub(crate) fn with_lines(mut self) -> Self {
+        self.lines.reserve_exact(MOST_LINES);
+        self
     }
 }
 
 /// Creates an empty workspace with the same capacities. A derived clone would have no spare capacity.
 impl Clone for Workspace {
     fn clone(&self) -> Self {
-        Workspace::new(self.parts.capacity(), self.most_cuts)
+        let new = Workspace::new(self.parts.capacity(), self.most_cuts);
+        match self.lines.capacity() {
+            0 => new,
+            _ => new.with_lines(),
+        }
     }
 }

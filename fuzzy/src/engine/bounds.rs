@@ -11,7 +11,9 @@ use alloc::{boxed::Box, format, string::String, vec::Vec};
 use super::arrays::OwnedTable;
 use super::{CompiledOutput, Outcome, RowBuffers, Stage, StageScratch, State};
 use crate::defuzzify::{Joint, Reduction, Strengths, Weighted};
-use crate::model::{Defuzzifier, MembershipFunction, Model, Output, Variable, type2::Bound};
+use crate::model::{
+    Defuzzifier, MembershipFunction, Model, Output, TypeReduction, Variable, type2::Bound,
+};
 use crate::rule::{Condition, Proposition};
 use crate::table::operators::{larger, smaller};
 use crate::table::{self, Arrays};
@@ -22,7 +24,7 @@ pub(super) struct Bounds {
     /// The stage that has the lower bounds of the firing strengths.
     lower: Stage,
     /// The type reduction of each output; `None` for outputs that no type-2 term affects.
-    reductions: Vec<Option<Reduction>>,
+    reductions: Vec<Option<(TypeReduction, Reduction)>>,
 }
 
 /// The working memory of [`Bounds`].
@@ -59,7 +61,7 @@ impl Stage {
                 aggregation: operators.aggregation,
             };
             let has_interval = model.has_interval(output);
-            has_interval.then(|| Reduction::new(output, joint))
+            has_interval.then(|| (output.type_reduction, Reduction::new(output, joint)))
         };
         let bounds = Bounds {
             lower: Stage::plain(&bound(model, Bound::Lower)),
@@ -167,7 +169,8 @@ impl Bounds {
     /// Returns the maximum number of cuts of an evaluation, not counting those of its activations.
     pub(super) fn cuts(&self) -> usize {
         let reductions = self.reductions.iter().flatten();
-        reductions.map(Reduction::cuts).max().unwrap_or(0)
+        let cuts = reductions.map(|(_, reduction)| reduction.cuts());
+        cuts.max().unwrap_or(0)
     }
 
     /// Evaluates a stage with its upper and its lower firing strengths.
@@ -197,12 +200,20 @@ impl Bounds {
         let of_outputs = stage.outputs.iter().zip(&self.lower.outputs);
         let reductions = self.reductions.iter().zip(of_outputs).zip(outcomes);
         for (index, ((reduction, (of_upper, of_lower)), outcome)) in reductions.enumerate() {
-            let (Some(reduction), State::Defined(_)) = (reduction, outcome.state) else {
+            let (Some((method, reduction)), State::Defined(_)) = (reduction, outcome.state) else {
                 continue;
             };
             let number = |term: usize| number(&stage.arrays, index, term, upper);
             let strengths = (strengths(of_lower, lower), strengths(of_upper, upper));
-            let interval = reduction.interval(strengths.0, strengths.1, number, workspace, points);
+            let (of_lower_rules, of_upper_rules) = strengths;
+            let interval = reduction.interval(
+                *method,
+                of_lower_rules,
+                of_upper_rules,
+                number,
+                workspace,
+                points,
+            );
             outcome.state = match interval {
                 None => State::NoRuleFired,
                 Some((low, high)) => {
@@ -210,9 +221,14 @@ impl Bounds {
                         true => larger(of_upper.low, smaller(of_upper.high, end)),
                         false => end,
                     };
-                    State::Interval {
-                        low: end(low),
-                        high: end(high),
+                    match method {
+                        TypeReduction::NieTan | TypeReduction::BegianMelekMendel => {
+                            State::Defined(end(low))
+                        }
+                        TypeReduction::Exact | TypeReduction::WuMendel => State::Interval {
+                            low: end(low),
+                            high: end(high),
+                        },
                     }
                 }
             };

@@ -168,7 +168,7 @@ impl<'m> Compiler<'m> {
     /// Returns the rules as literals, steps and actions, sorted by their content, so that the order of rules in a rule
     /// set does not affect the bits of a result. Rules with an activation method keep their order, because some methods
     /// depend on it.
-    fn drafts(&self) -> Vec<Draft> {
+    pub(super) fn drafts(&self) -> Vec<Draft> {
         let model = self.model;
         let inputs_of: Vec<usize> = self.literals.keys().map(|key| key.0).collect();
         let mut drafts = Vec::new();
@@ -329,7 +329,7 @@ impl<'m> Compiler<'m> {
     }
 
     /// Compiles an output, and assigns firing strengths to the drafts' actions on it.
-    fn output(
+    pub(super) fn output(
         &self,
         index: usize,
         output: &Output,

@@ -43,6 +43,11 @@ pub enum EvaluateError {
         /// The name of the input.
         name: Arc<str>,
     },
+    /// The interval of an input ends below its start.
+    InvertedInterval {
+        /// The name of the input.
+        input: Arc<str>,
+    },
     /// The value is not a struct or map of numbers.
     NoFields {
         /// The error message, which states the expected type.
@@ -94,6 +99,9 @@ impl fmt::Display for EvaluateError {
             EvaluateError::UnknownInput { name } => write!(f, "there is no input `{name}`"),
             EvaluateError::MissingInput { name } => write!(f, "input `{name}` has no value"),
             EvaluateError::RepeatedInput { name } => write!(f, "input `{name}` has two values"),
+            EvaluateError::InvertedInterval { input } => {
+                write!(f, "the interval of input `{input}` ends below its start")
+            }
             EvaluateError::NoFields { message } => f.write_str(message),
             EvaluateError::InputNotFinite => f.write_str("an input is not a finite number"),
             EvaluateError::TooManyCells { cells, most } => match *cells {

@@ -42,6 +42,7 @@ mod rules;
 mod sequence;
 mod silent;
 mod strategy;
+mod uncertain;
 #[cfg(feature = "simd")]
 mod vectors;
 mod what_if;
@@ -54,6 +55,7 @@ pub use named::NamedOutcomes;
 pub use raising::Said;
 pub use sequence::Sequence;
 pub use silent::{Silence, SilentRule};
+pub use uncertain::{Enclosure, Interval, IntervalOutcome};
 pub use what_if::{Change, Effect};
 
 /// A compiled model. It is immutable and can be shared by any number of threads.
@@ -383,7 +385,14 @@ impl Stage {
                 strongest: vec![Strongest::NONE; self.outputs.len()],
             },
             // A term crosses two levels of its implication, on its rising and on its falling side.
-            workspace: Workspace::new(strengths, 5 * strengths + cuts.max().unwrap_or(0)),
+            workspace: {
+                let cuts = 5 * strengths + cuts.max().unwrap_or(0);
+                let workspace = Workspace::new(strengths, cuts);
+                match bounds {
+                    None => workspace,
+                    Some(_) => workspace.with_lines(),
+                }
+            },
             bounds: bounds.map(|bounds| Box::new(bounds.scratch())),
         }
     }

@@ -14,6 +14,7 @@ use crate::{
 
 mod allow;
 mod blocks;
+mod footprints;
 mod lists;
 mod notation;
 mod provenance;

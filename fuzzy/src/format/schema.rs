@@ -13,7 +13,7 @@ use super::{
     blocks::{self, COMPARISONS, METHODS},
     provenance, rules,
     variables::{INPUT_KEYS, OUTPUT_KEYS},
-    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS},
+    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, TYPE_REDUCTIONS},
 };
 use nodes::{
     Entries, about, any_of, degree, entry, list, named, number, numbers, object, one_of, reference,
@@ -163,6 +163,9 @@ fn variable_key(key: &str) -> Node {
                 ),
             ]),
         ),
+        "blur" => distance(
+            "Makes each term of a partition an interval type-2 term: the distance by which it is moved to both sides, as a share of the range",
+        ),
         "steps" => about(
             "Terms that divide the range at crisp limits: the upper limit of each term, and null for the last one",
             [
@@ -239,6 +242,10 @@ fn variable_key(key: &str) -> Node {
         ),
         "clamp" => boolean(
             "Whether a value outside the range is clamped to it; only weighted and Tsukamoto outputs have such values",
+        ),
+        "type_reduction" => words(
+            "How the interval of an output with interval type-2 terms is computed (default: `exact`)",
+            &TYPE_REDUCTIONS,
         ),
         // All keys that are read have an entry above; a new key is at least allowed.
         _ => Node::mapping(Entries::new()),
@@ -376,7 +383,86 @@ fn function() -> Node {
     Node::mapping(entries)
 }
 
-/// Returns the schema of a term: a membership function, or an upper and a lower one.
+/// Returns the schema of a share of a range.
+fn distance(description: &str) -> Node {
+    about(
+        description,
+        [
+            ("type", Node::text("number")),
+            ("minimum", Node::number(0.0)),
+            ("exclusiveMaximum", Node::number(1.0)),
+        ],
+    )
+}
+
+/// Returns the schema of a number, or of the two ends of an interval.
+fn ends(description: &str, number: Node) -> Node {
+    let items = [
+        ("type", Node::text("array")),
+        ("items", number.clone()),
+        ("minItems", Node::number(2.0)),
+        ("maxItems", Node::number(2.0)),
+    ];
+    any_of(description, Vec::from([number, Node::mapping(items)]))
+}
+
+/// Returns the schema of the short forms of interval type-2 terms.
+fn short_term() -> Node {
+    let shapes = MembershipFunction::FORMS.iter();
+    let shapes = shapes.map(|form| match form.name {
+        "gaussian" => {
+            let number = |least: &str| {
+                Node::mapping([("type", Node::text("number"))].into_iter().chain(
+                    (!least.is_empty()).then(|| ("exclusiveMinimum", Node::number(0.0))),
+                ))
+            };
+            let properties = [
+                ("mean", ends("The mean, or its interval", number(""))),
+                (
+                    "sd",
+                    ends("The standard deviation, or its interval", number("positive")),
+                ),
+            ];
+            let gaussian = object(
+                "A Gaussian; a mean or a standard deviation that is an interval makes it an interval type-2 term",
+                properties,
+                &["mean", "sd"],
+            );
+            (form.name, Node::mapping(gaussian))
+        }
+        name => (name, reference(&format!("function/properties/{name}"))),
+    });
+    let lag = distance("The lag of both flanks");
+    let keys = [
+        ("height", degree("The largest degree of membership")),
+        (
+            "blur",
+            distance(
+                "The distance by which the membership function is moved to both sides, as a share of the range: the upper membership function is the maximum of all copies, the lower one their minimum",
+            ),
+        ),
+        (
+            "lower_scale",
+            degree(
+                "The lower membership function is the upper one times this number; 1 where absent",
+            ),
+        ),
+        (
+            "lower_lag",
+            ends(
+                "The degree of the upper membership function at which the lower one starts to rise, or one for the left and one for the right flank; 0 where absent",
+                lag,
+            ),
+        ),
+    ];
+    Node::mapping(object(
+        "An interval type-2 term in short: a membership function with `blur`, with `lower_scale` and `lower_lag`, or a Gaussian with intervals",
+        shapes.chain(keys),
+        &[],
+    ))
+}
+
+/// Returns the schema of a term: a membership function, or an upper and a lower one, or a short form of these.
 fn term() -> Node {
     let bounds = ["upper", "lower"].map(|bound| (bound, reference("function")));
     let interval = object(
@@ -385,8 +471,8 @@ fn term() -> Node {
         &["upper", "lower"],
     );
     any_of(
-        "A term: a membership function, or an upper and a lower one",
-        Vec::from([reference("function"), Node::mapping(interval)]),
+        "A term: a membership function, an upper and a lower one, or a short form of both",
+        Vec::from([reference("function"), Node::mapping(interval), short_term()]),
     )
 }
 

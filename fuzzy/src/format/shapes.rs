@@ -6,6 +6,7 @@ use alloc::{
     vec::Vec,
 };
 
+use super::footprints;
 use crate::{
     diagnostic::{Diagnostic, all_of, suggest},
     model::{Form, Formula, MembershipFunction, Parts, document::TermSpans},
@@ -24,7 +25,7 @@ pub(super) fn read(
     let mut shapes = fields
         .entries()
         .iter()
-        .filter(|entry| entry.key != "height");
+        .filter(|entry| entry.key != "height" && !footprints::KEYS.contains(&entry.key));
     let Some(shape) = shapes.next() else {
         let message = format!("{term} has no membership function");
         findings.push(

@@ -6,10 +6,10 @@ use alloc::{
     vec::Vec,
 };
 
-use super::{TermSpans, VariableSpans, shapes};
+use super::{TermSpans, VariableSpans, footprints, shapes};
 use crate::{
     diagnostic::Diagnostic,
-    model::{Lower, MembershipFunction, Term, Variable},
+    model::{Lower, MembershipFunction, Term, Variable, footprint::Footprint},
     tree::{Entry, Fields, Node, Value},
 };
 
@@ -34,7 +34,7 @@ pub(super) fn terms(
             name: entry.key_span.clone(),
             ..TermSpans::default()
         };
-        let term = term(what, entry, &mut here, findings);
+        let term = term(what, entry, variable, &mut here, findings);
         here.unread = term.is_none();
         variable
             .terms
@@ -46,6 +46,7 @@ pub(super) fn terms(
 fn term(
     what: &str,
     entry: &Entry<'_>,
+    variable: &Variable,
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Term> {
@@ -70,13 +71,45 @@ fn term(
     if ["upper", "lower"].iter().any(|key| keys.contains(key)) {
         return interval(&term, name, &fields, spans, findings);
     }
+    if let Some(gaussian) = fields.get("gaussian")
+        && let Some(footprint) =
+            footprints::uncertain_gaussian(&term, gaussian, variable, spans, findings)
+    {
+        return uncertain(&term, name, &fields, footprint, spans, findings);
+    }
     let (membership_function, height) = function(&term, &fields, spans, findings)?;
-    Some(Term {
+    let ordinary = Term {
         name,
         membership_function,
         height,
         lower: None,
-    })
+    };
+    footprints::extended(&term, ordinary, &fields, variable, spans, findings)
+}
+
+/// Returns the term of a Gaussian with intervals, which has no key but `height` beside it.
+fn uncertain(
+    term: &str,
+    name: String,
+    fields: &Fields<'_>,
+    footprint: Option<Footprint>,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Term> {
+    let mut others = fields.entries().iter();
+    if let Some(other) = others.find(|entry| !["gaussian", "height"].contains(&entry.key)) {
+        let message = format!(
+            "{term} has `{}` beside a gaussian with intervals",
+            other.key
+        );
+        let help =
+            "remove one: the intervals already define the upper and the lower membership function";
+        let finding = Diagnostic::error("duplicate-key", other.key_span.clone(), message);
+        findings.push(finding.help(help));
+        return None;
+    }
+    let height = height(term, fields, spans, findings);
+    Some(footprints::of_footprint(name, footprint?, height?, spans))
 }
 
 fn keys_of(pairs: &[(Node, Node)]) -> Vec<&str> {
@@ -90,12 +123,21 @@ fn function(
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<(MembershipFunction, f64)> {
-    let height = fields.get("height").map_or(Some(1.0), |node| {
-        spans.height = node.span.clone();
-        node.finite(&format!("the height of {what}"), findings)
-    });
+    let height = height(what, fields, spans, findings);
     let membership_function = shapes::read(what, fields, spans, findings);
     Some((membership_function?, height?))
+}
+
+fn height(
+    what: &str,
+    fields: &Fields<'_>,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<f64> {
+    fields.get("height").map_or(Some(1.0), |node| {
+        spans.height = node.span.clone();
+        node.finite(&format!("the height of {what}"), findings)
+    })
 }
 
 /// Reads `{upper: {triangle: [0, 2, 4]}, lower: {triangle: [1, 2, 3], height: 0.8}}`: an interval type-2 term.
@@ -129,6 +171,9 @@ fn interval(
             return None;
         };
         let fields = node.fields(&what, &keys_of(pairs), HELP, findings)?;
+        if footprints::misplaced(&what, &fields, findings) {
+            return None;
+        }
         function(&what, &fields, spans, findings)
     };
     let upper = read("upper", upper, spans);

@@ -4,34 +4,36 @@ use alloc::{collections::BTreeMap, format, string::String, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    TermSpans, VariableSpans,
+    TermSpans, VariableSpans, footprints,
     notation::{bare_numbers, colons_without_space, likely_defuzzifier, meant_by, peaks_in_list},
     optional_text, steps,
     terms::{terms, unread},
-    words::{AGGREGATIONS, DEFUZZIFIERS},
+    words::{AGGREGATIONS, DEFUZZIFIERS, TYPE_REDUCTIONS},
 };
 use crate::{
     diagnostic::{Diagnostic, all_of, duplicate},
     model::{
-        Defuzzifier, NoRuleFires, Output, Sampling, SamplingRule, Variable, between_peaks,
-        even_peaks,
+        Defuzzifier, NoRuleFires, Output, Sampling, SamplingRule, TypeReduction, Variable,
+        between_peaks, even_peaks,
     },
     tree::{Entry, Fields, Node, Value},
 };
 
-pub(super) const INPUT_KEYS: [&str; 6] = [
+pub(super) const INPUT_KEYS: [&str; 7] = [
     "description",
     "unit",
     "range",
     "partition",
+    "blur",
     "steps",
     "terms",
 ];
-pub(super) const OUTPUT_KEYS: [&str; 11] = [
+pub(super) const OUTPUT_KEYS: [&str; 13] = [
     "description",
     "unit",
     "range",
     "partition",
+    "blur",
     "steps",
     "terms",
     "defuzzifier",
@@ -39,6 +41,7 @@ pub(super) const OUTPUT_KEYS: [&str; 11] = [
     "when_no_rule_fires",
     "aggregation",
     "clamp",
+    "type_reduction",
 ];
 
 /// The suggestion for the inputs or the outputs; the first field is the key.
@@ -91,6 +94,7 @@ pub(super) fn outputs(
             when_no_rule_fires: NoRuleFires::Undefined,
             aggregation: None,
             clamp: false,
+            type_reduction: TypeReduction::Exact,
         };
         if let Some(fields) = fields {
             if let Some(node) = fields.get("defuzzifier") {
@@ -114,6 +118,11 @@ pub(super) fn outputs(
             if let Some(node) = fields.get("clamp") {
                 let clamp = node.boolean(&format!("`clamp` of {what}"), findings);
                 output.clamp = clamp.unwrap_or(false);
+            }
+            if let Some(node) = fields.get("type_reduction") {
+                let key = format!("the type reduction of {what}");
+                let word = node.choice(&key, &TYPE_REDUCTIONS, findings);
+                output.type_reduction = word.unwrap_or_default();
             }
         }
         spans.push(here);
@@ -280,6 +289,21 @@ fn variable(
                     finding.help =
                         Some(format!("indent {} under `{}:`", all_of(&stray), empty.key));
                 }
+            }
+        }
+    }
+    if let Some(blur) = fields.entry("blur") {
+        match fields.entry("partition") {
+            Some(_) => {
+                footprints::blur_partition(what, blur.value, &mut variable, &mut spans, findings);
+            }
+            None if fields.misspells("partition") => {}
+            None => {
+                let message = format!("{what} has `blur` but no `partition`");
+                let finding = Diagnostic::error("unknown-key", blur.key_span.clone(), message);
+                findings.push(
+                    finding.help("write `blur` in each term: `{triangle: [0, 2, 4], blur: 0.1}`"),
+                );
             }
         }
     }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use crate::{
     diagnostic::Diagnostic,
-    model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Operators},
+    model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Operators, TypeReduction},
     tree::Node,
 };
 
@@ -48,6 +48,13 @@ pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); Defuzzifier::ALL.len()] = [
     ("weighted_average", Defuzzifier::WeightedAverage),
     ("weighted_sum", Defuzzifier::WeightedSum),
     ("tsukamoto", Defuzzifier::Tsukamoto),
+];
+
+pub(super) const TYPE_REDUCTIONS: [(&str, TypeReduction); TypeReduction::ALL.len()] = [
+    ("exact", TypeReduction::Exact),
+    ("nie_tan", TypeReduction::NieTan),
+    ("begian_melek_mendel", TypeReduction::BegianMelekMendel),
+    ("wu_mendel", TypeReduction::WuMendel),
 ];
 
 /// Returns the word for a value; every value has one.

@@ -4,12 +4,12 @@ use alloc::{string::String, vec::Vec};
 
 use super::{
     VERSION, allow, blocks, provenance, rules, shapes,
-    words::{self, AGGREGATIONS, DEFUZZIFIERS, word_of},
+    words::{self, AGGREGATIONS, DEFUZZIFIERS, TYPE_REDUCTIONS, word_of},
 };
 use crate::{
     model::{
         Activation, LEAST_STRENGTH, MembershipFunction, Model, NoRuleFires, Output, SamplingRule,
-        Variable, even_peaks,
+        TypeReduction, Variable, even_peaks,
     },
     tree::Node,
 };
@@ -86,6 +86,10 @@ fn output(output: &Output) -> Node {
     }
     if output.clamp {
         entries.push(("clamp", Node::scalar("true".into(), false)));
+    }
+    if output.type_reduction != TypeReduction::Exact {
+        let word = word_of(&TYPE_REDUCTIONS, output.type_reduction);
+        entries.push(("type_reduction", Node::text(word)));
     }
     Node::mapping(entries)
 }

@@ -4,7 +4,8 @@ use alloc::{boxed::Box, string::String, vec::Vec};
 
 use super::{
     Activation, Aggregation, Block, Defuzzifier, LEAST_STRENGTH, MembershipFunction, Model,
-    NoRuleFires, Operators, Output, Rule, Sampling, Term, Variable, between_peaks, even_peaks,
+    NoRuleFires, Operators, Output, Rule, Sampling, Term, TypeReduction, Variable, between_peaks,
+    even_peaks,
 };
 use crate::rule::{self, Condition, Consequent, Proposition};
 
@@ -237,6 +238,7 @@ impl Output {
             when_no_rule_fires: NoRuleFires::Undefined,
             aggregation: None,
             clamp: false,
+            type_reduction: TypeReduction::Exact,
         }
     }
 
@@ -251,6 +253,13 @@ impl Output {
     #[must_use]
     pub fn clamp(mut self) -> Self {
         self.clamp = true;
+        self
+    }
+
+    /// Sets the type reduction, for interval type-2 terms.
+    #[must_use]
+    pub fn type_reduction(mut self, type_reduction: TypeReduction) -> Self {
+        self.type_reduction = type_reduction;
         self
     }
 

@@ -9,6 +9,7 @@ mod blocks;
 mod builder;
 pub(crate) mod chain;
 pub(crate) mod document;
+pub(crate) mod footprint;
 mod partition;
 #[cfg(any(feature = "check", feature = "learn"))]
 mod plateau;
@@ -28,7 +29,7 @@ pub use builder::ModelBuilder;
 pub(crate) use partition::{between_peaks, even_peaks};
 pub use provenance::{DataFile, LossChange, Step};
 pub(crate) use steps::between_limits;
-pub use type2::Lower;
+pub use type2::{Lower, TypeReduction};
 
 /// A rule set: inputs, outputs, operators and rules.
 ///
@@ -128,6 +129,8 @@ pub struct Output {
     pub aggregation: Option<Aggregation>,
     /// Whether a value outside the range is clamped to it. Only Takagi-Sugeno outputs can leave their range.
     pub clamp: bool,
+    /// The type reduction of an output that interval type-2 terms affect.
+    pub type_reduction: TypeReduction,
 }
 
 /// The value of an output where no rule fires.

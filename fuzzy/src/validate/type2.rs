@@ -4,7 +4,7 @@ use alloc::{format, vec::Vec};
 
 use super::{Validator, or};
 use crate::model::{
-    Defuzzifier, MembershipFunction, Output, Term, Variable,
+    Defuzzifier, MembershipFunction, Output, Term, TypeReduction, Variable,
     document::{Spans, TermSpans, VariableSpans},
 };
 
@@ -89,10 +89,34 @@ impl Validator<'_> {
     /// Requires that the interval of an output that type-2 terms affect can be computed.
     pub(super) fn interval_outputs(&mut self, spans: &Spans) {
         let model = self.model;
+        let no_spans = VariableSpans::default();
+        for (i, output) in model.outputs.iter().enumerate() {
+            let here = &spans.outputs.get(i).unwrap_or(&no_spans).name;
+            let name = &output.variable.name;
+            if output.type_reduction == TypeReduction::Exact {
+                continue;
+            }
+            if !model.has_type2_terms() {
+                let message = format!(
+                    "output `{name}` has a `type_reduction`, but the rule set has no type-2 terms"
+                );
+                self.error(
+                    "unsupported-type-2",
+                    here,
+                    message,
+                    "remove `type_reduction`",
+                );
+            } else if output.defuzzifier == Defuzzifier::WeightedSum {
+                let message = format!(
+                    "`type_reduction` of output `{name}` is not defined for `weighted_sum`"
+                );
+                let help = "remove `type_reduction`: the interval of a sum is exact";
+                self.error("unsupported-type-2", here, message, help);
+            }
+        }
         if !model.has_type2_terms() {
             return;
         }
-        let no_spans = VariableSpans::default();
         for (i, output) in model.outputs.iter().enumerate() {
             if !model.has_interval(output) {
                 continue;

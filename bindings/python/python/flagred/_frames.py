@@ -20,7 +20,7 @@ def is_frame(value: Any) -> bool:
     if _is_pandas(value):
         return True
     if hasattr(value, "__arrow_c_stream__") or hasattr(value, "__arrow_c_array__"):
-        return any(hasattr(value, name) for name in ("schema", "columns", "column_names", "keys")) or not any(
+        return any(hasattr(value, name) for name in ("schema", "columns", "column_names")) or not any(
             hasattr(value, name) for name in ("dtype", "type", "__array__")
         )
     return _library(value) == "polars" and hasattr(value, "collect")
@@ -110,10 +110,14 @@ def _pandas(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: bo
     if not with_reasons:
         return pandas.DataFrame(found, index=frame.index)
     made: dict[str, Any] = {}
+    with_ends = rule_set._interval_names()
     for name, outcomes in found.items():
         prefix = "" if len(outputs) == 1 else f"{name}_"
         rules = outcomes.dominant_rule
         made[name] = outcomes.value
+        if name in with_ends:
+            made[f"{name}_low"] = outcomes.low
+            made[f"{name}_high"] = outcomes.high
         made[f"{prefix}coverage"] = outcomes.coverage
         made[f"{prefix}dominant_rule"] = pandas.arrays.IntegerArray(
             np.ma.getdata(rules), np.ma.getmaskarray(rules).copy()

@@ -134,6 +134,11 @@ impl<'d> Place<'d> {
         if !self.spans.steps.is_empty() {
             return self.limit().into_iter().collect();
         }
+        let own = self.spans.terms.get(self.index_of_term);
+        if self.term.lower.is_some() && own.is_none_or(|spans| spans.numbers.is_empty()) {
+            // The numbers in the text are those of a short form.
+            return Vec::new();
+        }
         let shape = &self.term.membership_function;
         if let MembershipFunction::Piecewise { points } = shape {
             return (0..points.len())

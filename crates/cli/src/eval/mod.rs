@@ -4,6 +4,7 @@ mod errors;
 mod pipeline;
 mod rows;
 mod tally;
+mod uncertain;
 
 use std::{
     borrow::Cow,
@@ -49,6 +50,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
     with: Vec<With>,
 
+    /// An input that is known up to a half-width, a number or a column: `heat=0.5`; may be repeated.
+    /// Adds an interval of each output that contains its values for all inputs within
+    #[arg(long, value_name = "INPUT=HALF_WIDTH", value_parser = table::pair)]
+    uncertain: Vec<(String, String)>,
+
     #[command(flatten)]
     format: Format,
 }
@@ -87,8 +93,10 @@ struct Plan {
     input_of: Vec<Option<usize>>,
     with: Vec<With>,
     suffix: String,
-    /// Whether each output is the middle of an interval, whose ends have columns of their own.
+    /// Whether each output has an interval, whose ends have columns of their own.
     intervals: Vec<bool>,
+    /// For each input, its half-width; empty if all inputs are numbers.
+    half_widths: Vec<Option<uncertain::HalfWidth>>,
     /// For each output, the column with its measured values.
     measured: Vec<Option<usize>>,
     delimiter: u8,
@@ -122,6 +130,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             with.push(*column);
         }
     }
+    let half_widths = uncertain::half_widths(&arguments.uncertain, &engine, &header)?;
     let plan = Plan {
         input_of: (0..header.names.len())
             .map(|column| inputs.iter().position(|input| *input == column))
@@ -138,8 +147,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         intervals: {
             let model = engine.model();
             let outputs = model.outputs.iter();
-            outputs.map(|output| model.has_interval(output)).collect()
+            let is_uncertain = !half_widths.is_empty();
+            outputs
+                .map(|output| is_uncertain || model.has_interval(output))
+                .collect()
         },
+        half_widths,
         engine,
         header,
         with,

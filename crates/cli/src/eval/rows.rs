@@ -1,9 +1,9 @@
 //! Rows of a table, evaluated and written as CSV.
 
 use csv::ByteRecord;
-use fuzzy::engine::{Outcome, Sequence, State};
+use fuzzy::engine::{Enclosure, IntervalOutcome, Outcome, Sequence, State};
 
-use super::{Plan, With, tally::Tally};
+use super::{Plan, With, tally::Tally, uncertain};
 use crate::{
     failure::Failure,
     output::{cell, number_or_cell},
@@ -50,8 +50,12 @@ pub(super) struct Evaluator<'p> {
     plan: &'p Plan,
     /// Set if outputs of the rule set keep their previous value.
     sequence: Option<Sequence<'p>>,
+    /// Set if inputs are uncertain.
+    enclosure: Option<Enclosure<'p>>,
     /// The values of each input.
     columns: Vec<Vec<f64>>,
+    /// The half-widths of each input, if inputs are uncertain.
+    half_widths: Vec<Vec<f64>>,
     /// The outcomes of the first row, then those of the second, and so on.
     outcomes: Vec<Outcome>,
     /// The problem of each row, if it has one.
@@ -63,7 +67,9 @@ impl<'p> Evaluator<'p> {
         Evaluator {
             plan,
             sequence: (plan.engine.model().keeps_previous()).then(|| Sequence::new(&plan.engine)),
+            enclosure: (!plan.half_widths.is_empty()).then(|| plan.engine.enclosure()),
             columns: vec![Vec::new(); plan.inputs.len()],
+            half_widths: vec![Vec::new(); plan.half_widths.len()],
             outcomes: Vec::new(),
             problems: Vec::new(),
         }
@@ -74,6 +80,7 @@ impl<'p> Evaluator<'p> {
         let plan = self.plan;
         let records = block.records.get(..block.rows).unwrap_or_default();
         self.columns.iter_mut().for_each(Vec::clear);
+        self.half_widths.iter_mut().for_each(Vec::clear);
         self.problems.clear();
         for record in records {
             let problem = self.read(record);
@@ -134,6 +141,13 @@ impl<'p> Evaluator<'p> {
                 }
             };
             values.push(value);
+        }
+        for (all, half_width) in self.half_widths.iter_mut().zip(&self.plan.half_widths) {
+            let here = uncertain::in_row(*half_width, record, header);
+            all.push(here.unwrap_or_else(|problem| {
+                problems.push(problem);
+                f64::NAN
+            }));
         }
         if !record.as_slice().is_ascii() {
             let mut cells = record.iter().enumerate();
@@ -229,10 +243,22 @@ impl<'p> Evaluator<'p> {
                 writer.write_field(number_or_cell(&String::from_utf8_lossy(text)).as_bytes())?;
             }
         }
-        for (outcome, is_interval) in outcomes.iter().zip(&self.plan.intervals) {
-            let ends = [outcome.low(), outcome.high()];
+        let enclosed = self.enclosed(row);
+        for (output, (outcome, is_interval)) in
+            outcomes.iter().zip(&self.plan.intervals).enumerate()
+        {
+            let ends = match (&self.enclosure, &enclosed) {
+                (None, _) => [outcome.low(), outcome.high()],
+                (Some(_), None) => [None; 2],
+                (Some(_), Some(enclosed)) => {
+                    let values = enclosed.get(output).and_then(|outcome| outcome.values);
+                    let ends = values.map(|values| [values.low, values.high].map(Some));
+                    ends.unwrap_or_default()
+                }
+            };
             let ends = ends.into_iter().filter(|_| *is_interval);
             for value in std::iter::once(outcome.value()).chain(ends) {
+                let value = value.filter(|value| value.is_finite());
                 let value = value.map_or("", |value| digits(&mut number, value));
                 writer.write_field(value)?;
             }
@@ -265,14 +291,30 @@ impl<'p> Evaluator<'p> {
                         inputs.filter_map(|input| self.plan.engine.input_names().nth(input));
                     writer.write_field(cell(&names.collect::<Vec<_>>().join("|")).as_bytes())?;
                 }
-                With::Error => writer.write_field(cell(&self.error(row, outcomes)).as_bytes())?,
+                With::Error => {
+                    let error = self.error(row, outcomes, enclosed.as_deref());
+                    writer.write_field(cell(&error).as_bytes())?;
+                }
             }
         }
         writer.write_record(None::<&[u8]>)
     }
 
-    /// Returns the reason why a row, or one of its outputs, has no value.
-    fn error(&self, row: usize, outcomes: &[Outcome]) -> String {
+    /// Returns the intervals of the outputs; `None` if the inputs are numbers or unknown.
+    fn enclosed(&self, row: usize) -> Option<Vec<IntervalOutcome>> {
+        let enclosure = self.enclosure.as_ref()?;
+        let at = |values: &Vec<f64>| values.get(row).copied().unwrap_or(f64::NAN);
+        let half_widths = self.half_widths.iter().map(at);
+        uncertain::enclose(enclosure, self.columns.iter().map(at).zip(half_widths))
+    }
+
+    /// Returns the reason why a row, or one of its outputs, has no value, or may have none.
+    fn error(
+        &self,
+        row: usize,
+        outcomes: &[Outcome],
+        enclosed: Option<&[IntervalOutcome]>,
+    ) -> String {
         if let Some(Some(problem)) = self.problems.get(row) {
             return problem.clone();
         }
@@ -287,7 +329,19 @@ impl<'p> Evaluator<'p> {
             1 => "no rule fires".to_owned(),
             _ => format!("no rule fires for `{name}`"),
         });
-        unknown.chain(silent).collect::<Vec<_>>().join("; ")
+        let partly = engine.output_names().zip(enclosed.unwrap_or_default());
+        let partly = partly.zip(outcomes).filter(|((_, enclosed), outcome)| {
+            enclosed.may_be_undefined && outcome.state != State::NoRuleFired
+        });
+        let partly = partly.map(|((name, _), _)| match outcomes.len() {
+            1 => "no rule fires for some values within the half-widths".to_owned(),
+            _ => format!("no rule fires for `{name}` for some values within the half-widths"),
+        });
+        unknown
+            .chain(silent)
+            .chain(partly)
+            .collect::<Vec<_>>()
+            .join("; ")
     }
 }
 

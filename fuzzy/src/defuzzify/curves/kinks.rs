@@ -36,6 +36,7 @@ impl Curves {
             runs,
             parts,
             steps,
+            lines: _,
         } = workspace;
         cuts.clear();
         cuts.extend([from, to]);

@@ -254,6 +254,11 @@ pub(super) fn any_model() -> impl Strategy<Value = Model> {
                         };
                     }
                 }
+                let has_type2 = inputs
+                    .iter()
+                    .chain([&variable])
+                    .any(Variable::has_type2_terms);
+                let is_sum = defuzzifier == Defuzzifier::WeightedSum;
                 let when_no_rule_fires = match otherwise {
                     0 => NoRuleFires::Undefined,
                     1 => NoRuleFires::Error,
@@ -333,6 +338,12 @@ pub(super) fn any_model() -> impl Strategy<Value = Model> {
                         when_no_rule_fires,
                         aggregation: aggregation.map(|(_, aggregation)| aggregation),
                         clamp,
+                        type_reduction: match has_type2 && !is_sum {
+                            true => {
+                                TypeReduction::ALL[otherwise as usize % TypeReduction::ALL.len()]
+                            }
+                            false => TypeReduction::Exact,
+                        },
                     }]),
                     operators,
                     activation,
