@@ -71,6 +71,9 @@ pub(crate) struct Weighted {
     pub(super) upper: f64,
 }
 
+/// A straight piece: its ends, and the degrees there.
+type Line = [f64; 4];
+
 /// An end of the interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
@@ -249,7 +252,7 @@ impl Set {
         &self,
         summary: Summary,
         (lower, upper): (Strengths<'_>, Strengths<'_>),
-        kept: Option<(&[[f64; 4]], &[[f64; 4]])>,
+        kept: Option<(&[Line], &[Line])>,
         workspace: &mut Workspace,
     ) -> (f64, f64) {
         let range = (self.low, self.high);

@@ -26,6 +26,10 @@ mod stage;
 /// The maximum number of parts of the inputs that are evaluated for each end of an output.
 const MOST_BOXES: usize = 400;
 
+/// The number of steps of integrations after which the inputs are not divided further. It bounds the time for sets of many
+/// curved terms; all other rule sets stay far below it.
+const MOST_STEPS: u64 = 20_000_000;
+
 /// The distance of a bound from a value that occurs at which the search ends, as a share of the interval of all such
 /// values.
 const CLOSE: f64 = 0.005;
@@ -396,7 +400,9 @@ impl Search<'_> {
     fn search(&mut self, output: usize, end: End, whole: &[Interval]) -> Known {
         let mut parts = BinaryHeap::from([self.part(output, end, whole.to_vec())]);
         let mut count = 1;
-        while count < MOST_BOXES {
+        let steps = |stages: &[RangedScratch]| stages.iter().map(RangedScratch::steps).sum::<u64>();
+        let before = steps(&self.stages);
+        while count < MOST_BOXES && steps(&self.stages) - before < MOST_STEPS {
             let Some(mut worst) = parts.peek_mut() else {
                 break;
             };

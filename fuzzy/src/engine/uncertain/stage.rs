@@ -72,6 +72,13 @@ pub(super) struct RangedScratch {
     workspace: Workspace,
 }
 
+impl RangedScratch {
+    /// Returns the number of steps of integrations so far.
+    pub(super) fn steps(&self) -> u64 {
+        self.workspace.steps.taken
+    }
+}
+
 impl RangedStage {
     pub(super) fn new(stage: &chain::Stage<'_>) -> Self {
         let model = &*stage.model;
