@@ -1,6 +1,6 @@
 //! Terms that are defined by their limits: `steps: {fine: 36, stretched: 43, over: }`.
 
-use alloc::{format, vec::Vec};
+use alloc::{format, string::String, vec::Vec};
 
 use super::{TermSpans, VariableSpans, terms::unread};
 use crate::{
