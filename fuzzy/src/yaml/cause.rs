@@ -158,10 +158,14 @@ pub(super) fn line(text: &str, finding: &Diagnostic) -> Option<Diagnostic> {
         return Some(finding.help("write `key: [value, value]`"));
     }
     // For example `range:[0, 40]` in this line or the one above, or a line above without its colon.
-    if let Some(finding) = brackets_behind_colon(text, start) {
+    if let Some(finding) = brackets_behind_colon(text, finding.span.start, start) {
         return Some(finding);
     }
-    if let Some(finding) = key_without_colon(before, rest) {
+    let above = before.get(..start).map_or(0, |before| {
+        before.trim_end().rfind('\n').map_or(0, |at| at + 1)
+    });
+    let bare = [start, above].into_iter();
+    if let Some(finding) = bare.filter_map(|at| key_without_colon(text, at)).next() {
         return Some(finding);
     }
     // For example `unit:°C` in the line above.
@@ -187,37 +191,38 @@ fn is_key(key: &str) -> bool {
             .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
 }
 
-/// Returns a finding if a line that starts at `start`, or the one before it, begins with a key whose colon is followed
-/// by a bracket.
-fn brackets_behind_colon(text: &str, start: usize) -> Option<Diagnostic> {
+/// Returns a finding if a colon at `at` is followed by a bracket, or a key at the beginning of the line that starts at
+/// `start` or of the line before it.
+fn brackets_behind_colon(text: &str, at: usize, start: usize) -> Option<Diagnostic> {
+    let finding = |colon: usize| {
+        let message = String::from("a space is missing after a colon");
+        let help = "write `key: [value, value]`, with a space after the colon";
+        Diagnostic::error("yaml-syntax", colon..colon + 1, message).help(help)
+    };
+    let here = text.get(at..)?;
+    if here.starts_with(":[") || here.starts_with(":{") {
+        return Some(finding(at));
+    }
     let above = text.get(..start.saturating_sub(1))?;
     let above = above.rfind('\n').map_or(0, |at| at + 1);
     [start, above].into_iter().find_map(|at| {
         let line = text.get(at..)?.lines().next()?;
         let content = line.trim_start();
         let (key, value) = content.split_once(':')?;
-        (is_key(key) && value.starts_with(['[', '{'])).then(|| {
-            let colon = at + line.len() - content.len() + key.len();
-            let message = String::from("a space is missing after a colon");
-            let help = "write `key: [value, value]`, with a space after the colon";
-            Diagnostic::error("yaml-syntax", colon..colon + 1, message).help(help)
-        })
+        let is_meant = is_key(key) && value.starts_with(['[', '{']);
+        is_meant.then(|| finding(at + line.len() - content.len() + key.len()))
     })
 }
 
-/// Returns a finding if a line that consists only of a key without a colon is followed by an indented `key: value`.
-fn key_without_colon(before: &str, rest: &str) -> Option<Diagnostic> {
-    let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-    let here = before.get(line_start..)?;
-    let above = before.get(..line_start)?.trim_end();
-    let at = above.rfind('\n').map_or(0, |at| at + 1);
-    let line = above.get(at..)?;
-    let content = line.trim_start();
-    let indent = line.len() - content.len();
-    let is_below = here.len() - here.trim_start().len() > indent;
-    let has_value = here.contains(':') || rest.starts_with(':');
-    (is_key(content) && is_below && has_value).then(|| {
-        let at = at + indent;
+/// Returns a finding if the line that starts at `start` consists only of a key without a colon, and the next line is
+/// an indented `key: value`.
+fn key_without_colon(text: &str, start: usize) -> Option<Diagnostic> {
+    let mut lines = text.get(start..)?.lines();
+    let (line, below) = (lines.next()?, lines.next()?);
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let (at, content) = (start + indent(line), line.trim());
+    let is_meant = is_key(content) && indent(below) > indent(line) && below.contains(':');
+    is_meant.then(|| {
         let message = String::from("a colon is missing after a key");
         Diagnostic::error("yaml-syntax", at..at + content.len(), message).help("write `key:`")
     })
