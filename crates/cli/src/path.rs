@@ -9,7 +9,7 @@ use fuzzy::diagnostic::nearest;
 /// Extensions of rule sets and profiles, here and in other programs.
 pub(crate) const RULES: &[&str] = &["yaml", "yml", "fis", "fll", "fcl", "fml"];
 
-/// Returns whether the extension of a path is one of these, in small or capital letters.
+/// Returns whether the extension of a path is one of these, in lower or upper case.
 pub(crate) fn has_ending(path: &Path, extensions: &[&str]) -> bool {
     let ending = path.extension();
     ending.is_some_and(|ending| extensions.iter().any(|e| ending.eq_ignore_ascii_case(e)))

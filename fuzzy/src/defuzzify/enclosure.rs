@@ -102,7 +102,12 @@ impl Enclosing {
             high,
             is_certain,
         };
-        let least = if self.is_wide { EMPTY } else { lower };
+        let fires = |lower: Strengths<'_>| lower.strengths.iter().any(|strength| *strength > 0.0);
+        let least = match self.method {
+            Method::Support(_) => EMPTY,
+            _ if self.is_wide => EMPTY,
+            _ => lower,
+        };
         match &self.method {
             Method::Reduced(reduction @ (Reduction::Average | Reduction::Sum)) => {
                 let terms = 0..upper.offsets.len().saturating_sub(1);
@@ -116,11 +121,10 @@ impl Enclosing {
                 }
                 let is_sum = matches!(reduction, Reduction::Sum);
                 let ends = weighted(&numbers, if is_sum { sum } else { average }, points)?;
-                let is_certain = lower.strengths.iter().any(|strength| *strength > 0.0);
-                Some(found(ends, is_certain))
+                Some(found(ends, fires(lower)))
             }
-            Method::Reduced(reduction) => {
-                let (low, high) = reduction.interval(
+            Method::Reduced(reduction) | Method::Support(reduction) => {
+                let ends = reduction.interval(
                     TypeReduction::Exact,
                     least,
                     upper,
@@ -128,25 +132,11 @@ impl Enclosing {
                     workspace,
                     points,
                 )?;
-                let is_certain = match reduction {
-                    Reduction::Set(set) => set.lower_area(lower, workspace) > 0.0,
-                    _ => lower.strengths.iter().any(|strength| *strength > 0.0),
-                };
-                Some(found((low, high), is_certain))
-            }
-            Method::Support(reduction) => {
-                let ends = reduction.interval(
-                    TypeReduction::Exact,
-                    EMPTY,
-                    upper,
-                    |_| f64::NAN,
-                    workspace,
-                    points,
-                )?;
-                let is_certain = match reduction {
+                let is_certain = match (&self.method, reduction) {
                     // A sample may miss the set.
-                    Reduction::Set(_) => false,
-                    _ => lower.strengths.iter().any(|strength| *strength > 0.0),
+                    (Method::Support(_), Reduction::Set(_)) => false,
+                    (_, Reduction::Set(set)) => set.lower_area(lower, workspace) > 0.0,
+                    _ => fires(lower),
                 };
                 Some(found(ends, is_certain))
             }

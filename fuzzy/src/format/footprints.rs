@@ -194,7 +194,7 @@ pub(super) fn uncertain_gaussian(
         };
         findings.push(
             Diagnostic::error("wrong-parameter", node.span.clone(), wrong)
-                .help("write the least value first, then the greatest"),
+                .help("write the minimum first, then the maximum"),
         );
         None
     };
@@ -436,7 +436,7 @@ mod tests {
         refused(
             "terms: {warm: {gaussian: {mean: [22, 18], sd: 3}}}",
             "`mean` of the gaussian of term `warm` of input `x` begins at 22 and ends at 18",
-            "write the least value first, then the greatest",
+            "write the minimum first, then the maximum",
         );
         refused(
             "terms: {warm: {gaussian: {mean: 22, sd: [0, 1]}}}",

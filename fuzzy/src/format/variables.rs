@@ -400,8 +400,7 @@ fn partition(
                     finding.help = Some(format!("for even spacing write a list: `[{names}]`"));
                 }
                 // `{warm: 20,5}` is parsed as a term `5` without a peak.
-                if entry.value.is_null()
-                    && entry.key.bytes().all(|c| c.is_ascii_digit())
+                if entry.is_rest_of_a_number()
                     && let Some(finding) = findings.get_mut(before)
                 {
                     let whole = entries

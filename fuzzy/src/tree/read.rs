@@ -43,7 +43,7 @@ pub struct Entry<'a> {
 
 impl Entry<'_> {
     /// Returns whether the key is the part of a number behind a decimal comma: `{window_s: 2,5}` has a key `5`.
-    fn is_rest_of_a_number(&self) -> bool {
+    pub(crate) fn is_rest_of_a_number(&self) -> bool {
         self.value.is_null() && self.key.bytes().all(|c| c.is_ascii_digit())
     }
 

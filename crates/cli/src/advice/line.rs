@@ -13,7 +13,14 @@ pub(super) struct Line<'a> {
     pub(super) words: &'a [String],
 }
 
-impl Line<'_> {
+impl<'a> Line<'a> {
+    /// Splits the words of a command line after the program; `None` if they do not begin with a command.
+    pub(super) fn of(words: &'a [String], program: &'a Command) -> Option<Self> {
+        let (command, words) = words.split_first()?;
+        let command = program.find_subcommand(command)?;
+        Some(Line { command, words })
+    }
+
     /// Advice for an option that the command does not have.
     pub(super) fn option(&self, option: &str, program: &Command) -> Option<String> {
         let name = self.command.get_name();

@@ -108,7 +108,7 @@ fn advice(error: &clap::Error, program: &Command, words: &[String]) -> Option<St
         }
         ErrorKind::UnknownArgument => {
             let word = wrong(ContextKind::InvalidArg)?;
-            let Some(command) = words.first().and_then(|word| program.find_subcommand(word)) else {
+            let Some(line) = Line::of(words, program) else {
                 if error.get(ContextKind::SuggestedArg).is_some() {
                     return None;
                 }
@@ -116,10 +116,6 @@ fn advice(error: &clap::Error, program: &Command, words: &[String]) -> Option<St
                     "options are written after the command; `flagred --version` prints the version"
                         .to_owned(),
                 );
-            };
-            let line = Line {
-                command,
-                words: words.get(1..).unwrap_or_default(),
             };
             match word.starts_with('-') {
                 true => line.option(word, program),
@@ -140,22 +136,18 @@ fn advice(error: &clap::Error, program: &Command, words: &[String]) -> Option<St
 
 /// Explains the arguments that are missing, by their help.
 fn required(error: &clap::Error, program: &Command, words: &[String]) -> Vec<String> {
-    let command = words.first().and_then(|word| program.find_subcommand(word));
-    let (Some(command), Some(ContextValue::Strings(missing))) =
-        (command, error.get(ContextKind::InvalidArg))
+    let (Some(line), Some(ContextValue::Strings(missing))) =
+        (Line::of(words, program), error.get(ContextKind::InvalidArg))
     else {
         return Vec::new();
-    };
-    let line = Line {
-        command,
-        words: words.get(1..).unwrap_or_default(),
     };
     let positionals = line.positionals();
     let missing = missing.iter().filter_map(|shown| {
         if shown.contains('|') {
             return Some("choose one of these options".to_owned());
         }
-        let argument = command
+        let argument = line
+            .command
             .get_arguments()
             .find(|argument| argument.to_string() == *shown)?;
         let name = argument.get_value_names()?.first()?;

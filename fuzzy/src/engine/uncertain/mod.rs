@@ -124,15 +124,15 @@ pub struct Enclosure<'e> {
     stages: Vec<RangedStage>,
 }
 
-/// What is known about an output.
+/// Bounds of the values of an output.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Known {
+struct OutputBounds {
     values: Option<Interval>,
     may_be_undefined: bool,
 }
 
-impl Known {
-    const UNDEFINED: Known = Known {
+impl OutputBounds {
+    const UNDEFINED: OutputBounds = OutputBounds {
         values: None,
         may_be_undefined: true,
     };
@@ -142,7 +142,7 @@ impl Known {
 struct Search<'s> {
     enclosure: &'s Enclosure<'s>,
     stages: Vec<RangedScratch>,
-    known: Vec<Known>,
+    known: Vec<OutputBounds>,
     engine: Scratch,
     outcomes: Vec<Outcome>,
     /// The smallest and the largest value of each output that occurred.
@@ -153,7 +153,7 @@ struct Search<'s> {
 #[derive(Debug, Clone)]
 struct Part {
     inputs: Vec<Interval>,
-    known: Known,
+    known: OutputBounds,
     /// The bound that matters, with the sign of its end: the part with the largest one is divided first.
     urgency: f64,
     scores: Vec<f64>,
@@ -277,7 +277,7 @@ impl Enclosure<'_> {
         let mut search = Search {
             enclosure: self,
             stages: self.stages.iter().map(RangedStage::scratch).collect(),
-            known: vec![Known::UNDEFINED; count],
+            known: vec![OutputBounds::UNDEFINED; count],
             engine: engine.scratch(),
             outcomes: vec![Outcome::default(); count],
             inner: vec![None; count],
@@ -289,7 +289,7 @@ impl Enclosure<'_> {
                     .map(|interval| interval.low)
                     .collect::<Vec<_>>(),
             );
-            let known = search.inner.iter().map(|values| Known {
+            let known = search.inner.iter().map(|values| OutputBounds {
                 values: *values,
                 may_be_undefined: values.is_none(),
             });
@@ -368,7 +368,11 @@ impl Search<'_> {
                 false => 0.0,
             };
         }
-        let known = self.known.get(output).copied().unwrap_or(Known::UNDEFINED);
+        let known = self
+            .known
+            .get(output)
+            .copied()
+            .unwrap_or(OutputBounds::UNDEFINED);
         Part {
             inputs,
             known,
@@ -378,11 +382,11 @@ impl Search<'_> {
     }
 
     /// Returns the bounds of an output over all inputs.
-    fn enclose(&mut self, output: usize, whole: &[Interval]) -> Known {
+    fn enclose(&mut self, output: usize, whole: &[Interval]) -> OutputBounds {
         let low = self.search(output, End::Low, whole);
         let high = self.search(output, End::High, whole);
         // Both searches divide the same inputs, so each of them may prove that the output is defined.
-        let mut known = Known {
+        let mut known = OutputBounds {
             values: None,
             may_be_undefined: low.may_be_undefined && high.may_be_undefined,
         };
@@ -397,7 +401,7 @@ impl Search<'_> {
     }
 
     /// Divides the inputs where an end of an output is farthest out. Returns the bounds of all parts together.
-    fn search(&mut self, output: usize, end: End, whole: &[Interval]) -> Known {
+    fn search(&mut self, output: usize, end: End, whole: &[Interval]) -> OutputBounds {
         let mut parts = BinaryHeap::from([self.part(output, end, whole.to_vec())]);
         let mut count = 1;
         let steps = |stages: &[RangedScratch]| stages.iter().map(RangedScratch::steps).sum::<u64>();
@@ -437,7 +441,7 @@ impl Search<'_> {
                 count += 1;
             }
         }
-        let mut all = Known {
+        let mut all = OutputBounds {
             values: None,
             may_be_undefined: false,
         };

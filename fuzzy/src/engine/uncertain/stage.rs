@@ -6,7 +6,7 @@ use super::super::compile::Compiler;
 use super::super::rules::{Draft, Firing};
 use super::degrees::RangedLiteral;
 use super::formula::{self, Span};
-use super::{Interval, Known};
+use super::{Interval, OutputBounds};
 use crate::defuzzify::{Enclosing, Joint, Strengths, Weighted, workspace::Workspace};
 use crate::model::{
     Activation, Conjunction, Defuzzifier, Disjunction, MembershipFunction, Model, NoRuleFires,
@@ -155,7 +155,7 @@ impl RangedStage {
         &self,
         inputs: &[Interval],
         scratch: &mut RangedScratch,
-        known: &mut [Known],
+        known: &mut [OutputBounds],
     ) {
         scratch.values.clear();
         scratch.values.extend_from_slice(inputs);
@@ -168,7 +168,7 @@ impl RangedStage {
             let Some(values) = read.values else {
                 for output in &self.outputs {
                     if let Some(known) = known.get_mut(*output) {
-                        *known = Known::UNDEFINED;
+                        *known = OutputBounds::UNDEFINED;
                     }
                 }
                 return;
@@ -335,7 +335,7 @@ impl RangedOutput {
         }
     }
 
-    fn enclose(&self, scratch: &mut RangedScratch) -> Known {
+    fn enclose(&self, scratch: &mut RangedScratch) -> OutputBounds {
         let RangedScratch {
             values,
             lower,
@@ -394,7 +394,7 @@ impl RangedOutput {
             let of_fallback = Interval::new(fallback, fallback);
             values = Some(values.map_or(of_fallback, |values| values.hull(of_fallback)));
         }
-        Known {
+        OutputBounds {
             values,
             may_be_undefined: !is_certain && fallback.is_none(),
         }

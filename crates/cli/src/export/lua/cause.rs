@@ -32,12 +32,8 @@ impl Causes {
         let output = estimator.profile().output.as_str();
         let (area, centre) = consequent_of(estimator, rule, output).unwrap_or_default();
         let proposition = distinguishing(estimator, &rule.condition);
-        let is_output = |proposition: &&Proposition| {
-            let mut outputs = estimator.model().outputs.iter();
-            outputs.any(|output| output.variable.name == proposition.variable.text)
-        };
         let about = match proposition {
-            Some(proposition) if is_output(&proposition) => {
+            Some(proposition) if output_named(estimator, &proposition.variable.text).is_some() => {
                 self.leads.push(leads(estimator, proposition));
                 format!("nil, nil, false, {}", self.leads.len())
             }
@@ -67,9 +63,14 @@ impl Causes {
 fn consequent_of(estimator: &Estimator, rule: &Rule, output: &str) -> Option<(f64, f64)> {
     let mut consequents = rule.consequents.iter().rev();
     let consequent = consequents.find(|consequent| consequent.output.text == output)?;
+    let variable = output_named(estimator, output)?;
+    Some(area_and_centre(variable, &consequent.term.text))
+}
+
+fn output_named<'e>(estimator: &'e Estimator, name: &str) -> Option<&'e Variable> {
     let mut outputs = estimator.model().outputs.iter();
-    let output = outputs.find(|known| known.variable.name == output)?;
-    Some(area_and_centre(&output.variable, &consequent.term.text))
+    let output = outputs.find(|output| output.variable.name == name)?;
+    Some(&output.variable)
 }
 
 /// Returns the rules whose consequents are about the output of a proposition, as pairs of a rule's number and the
@@ -79,11 +80,10 @@ fn leads(estimator: &Estimator, proposition: &Proposition) -> String {
     const NOT_AT_ALL: f64 = 1e-9;
     let output = proposition.variable.text.as_str();
     let model = estimator.model();
-    let mut outputs = model.outputs.iter();
-    let variable = outputs.find(|known| known.variable.name == output);
+    let variable = output_named(estimator, output);
     let degree = |x: f64| {
         let named = proposition.term.as_ref();
-        let terms = variable.map(|output| &output.variable.terms);
+        let terms = variable.map(|output| &output.terms);
         let term = terms
             .zip(named)
             .and_then(|(terms, named)| terms.iter().find(|term| term.name == named.text));

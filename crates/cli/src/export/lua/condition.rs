@@ -2,17 +2,11 @@
 
 use fuzzy::{
     Model,
-    model::{Conjunction, Disjunction, Operators, Variable},
+    model::{Conjunction, Disjunction, Operators},
     rule::{Condition, Hedge, Proposition},
 };
 
 use super::{Unsupported, comment, number};
-
-/// Iterates over the variables that conditions can name: inputs, then outputs. The values in the script have the same order.
-pub(super) fn variables(model: &Model) -> impl Iterator<Item = &Variable> {
-    let outputs = model.outputs.iter().map(|output| &output.variable);
-    model.inputs.iter().chain(outputs)
-}
 
 /// Converts conditions to expressions over the degrees of terms.
 pub(super) struct Expressions<'m> {
@@ -75,7 +69,7 @@ impl<'m> Expressions<'m> {
         let degree = match &proposition.term {
             None => "1.0".to_owned(),
             Some(term) => {
-                let mut variables = variables(self.model).enumerate();
+                let mut variables = self.model.variables().enumerate();
                 let found =
                     variables.find(|(_, variable)| variable.name == proposition.variable.text);
                 let place = found.and_then(|(index, variable)| {
@@ -166,7 +160,7 @@ pub(super) fn corners(
         true => "input",
         false => "output",
     };
-    let variable = variables(model).nth(variable);
+    let variable = model.variables().nth(variable);
     let Some((variable, term)) = variable.and_then(|of| Some((of, of.terms.get(term)?))) else {
         return Ok(<_>::default());
     };
