@@ -323,6 +323,11 @@ impl<'p> Evaluator<'p> {
         let unknown =
             unknown.filter(|(_, values)| values.get(row).is_some_and(|value| value.is_nan()));
         let unknown = unknown.map(|(name, _)| format!("`{name}` is unknown"));
+        let unbounded = engine.input_names().zip(&self.half_widths);
+        let unbounded =
+            unbounded.filter(|(_, widths)| widths.get(row).is_some_and(|width| width.is_nan()));
+        let unbounded =
+            unbounded.map(|(name, _)| format!("the half-width of `{name}` is unknown"));
         let silent = engine.output_names().zip(outcomes);
         let silent = silent.filter(|(_, outcome)| outcome.state == State::NoRuleFired);
         let silent = silent.map(|(name, _)| match outcomes.len() {
@@ -338,6 +343,7 @@ impl<'p> Evaluator<'p> {
             _ => format!("no rule fires for `{name}` for some values within the half-widths"),
         });
         unknown
+            .chain(unbounded)
             .chain(silent)
             .chain(partly)
             .collect::<Vec<_>>()
