@@ -5,7 +5,7 @@ use flagred::{
     flight::{Cause, Finding, Words},
     verdict::Measure,
 };
-use flagred_flightlog::Motor;
+use flagred_flightlog::{Flight, Motor};
 use fuzzy::drawing::number;
 
 use crate::clock::Clock;
@@ -116,9 +116,10 @@ impl<'a> Teller<'a> {
             parts.extend(self.description(cause).map(str::to_owned));
         }
         let mut raised = format!(
-            "{} over {} %, raised at {}",
+            "{} over {} %, {} at {}",
             finding.measure,
             number(finding.threshold_pct, 2),
+            finding.failed_s.map_or("raised", |_| "WARN"),
             clock.at(finding.raised_s)
         );
         if finding.measure == Measure::Reserve {
@@ -131,7 +132,7 @@ impl<'a> Teller<'a> {
         if let (Some(motor), Some(found)) = (self.motor(finding), &finding.motor) {
             parts.push(match finding.is_of_risk() {
                 true => format!(
-                    "output {}, margin {:.2} on average, {:.2} at least",
+                    "output {}, margin {:.2} on average, smallest {:.2}",
                     motor.output, found.margin_mean, found.margin_min
                 ),
                 false => format!("output {}", motor.output),
@@ -152,6 +153,27 @@ impl<'a> Teller<'a> {
         let input = inputs.find(|input| input.name == cause.input)?;
         input.description.as_deref()
     }
+}
+
+/// The finding in which another risk than the profile's own was highest; `None` if it has no findings.
+pub(crate) fn highest_of<'f>(output: &str, findings: &'f [Finding]) -> Option<&'f Finding> {
+    let of_risk = findings
+        .iter()
+        .filter(|finding| finding.risk_output.as_deref() == Some(output));
+    of_risk.max_by(|a, b| a.value_pct.total_cmp(&b.value_pct))
+}
+
+/// Where the motors are that a finding names: `Motor 3 is at the front left.` `None` without motors or a known geometry.
+pub(crate) fn positions(finding: &Finding, flight: &Flight) -> Option<String> {
+    let (named, geometry) = (finding.motor?, flight.geometry.as_ref()?);
+    let places = [Some(named.number), named.or_number].into_iter().flatten();
+    let sentences = places.filter_map(|place| {
+        let index = place.checked_sub(1)?;
+        let (motor, position) = (flight.motors.get(index)?, geometry.position(index)?);
+        Some(format!("Motor {} is at the {position}.", motor.number))
+    });
+    let sentences: Vec<String> = sentences.collect();
+    (!sentences.is_empty()).then(|| sentences.join(" "))
 }
 
 /// The finding with the autopilot's motor numbers instead of the positions in the samples.

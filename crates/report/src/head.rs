@@ -1,11 +1,13 @@
 //! The head of a report: the verdict in a sentence, findings, vehicle and figures.
 
 use flagred::{
+    estimator::Estimator,
     flight::{Assessment, Peak, Verdict},
     loaded::Loaded,
     profile::{Followed, Reliability},
     verdict::Measure,
 };
+use fuzzy::drawing::visible;
 use maud::{Markup, html};
 
 use crate::{
@@ -30,7 +32,7 @@ pub(crate) fn about(subject: &Subject, loaded: &Loaded) -> Markup {
         flight, assessed, ..
     } = subject;
     html! {
-        (figures(subject))
+        (figures(subject, &loaded.estimator))
         p.soft { (words::vehicle(flight)) }
         @if !flight.report.is_clean() {
             p.soft { (words::damage(&flight.report)) }
@@ -118,6 +120,7 @@ pub(crate) fn findings(subject: &Subject, loaded: &Loaded) -> Markup {
                     span.what { b { (line.worst.severity) } " " (teller.words(line.worst).text) }
                     br;
                     (teller.words(line.worst).advice)
+                    @if let Some(positions) = finding::positions(line.worst, &subject.flight) { " " (positions) }
                     br;
                     span.soft { (line.when(clock)) ". " (teller.details_by(line.worst, clock)) }
                 }
@@ -134,16 +137,16 @@ pub(crate) fn findings(subject: &Subject, loaded: &Loaded) -> Markup {
     }
 }
 
-fn figures(subject: &Subject) -> Markup {
+fn figures(subject: &Subject, estimator: &Estimator) -> Markup {
     let summary = &subject.assessed.summary;
     let clock = Clock::Since(subject.stretch().start_s);
     let of_air = |part_s: f64| share((summary.in_air_s > 0.0).then(|| part_s / summary.in_air_s));
     let has_motors = !subject.flight.motors.is_empty();
     let time = (
-        in_the_air(has_motors),
+        in_the_air(has_motors).to_owned(),
         Clock::Since(0.0).at(subject.in_air_s()),
     );
-    let figures = [
+    let risks = [
         (
             "Highest risk",
             highest(&subject.assessed).map(|peak| at(peak, clock)),
@@ -157,12 +160,18 @@ fn figures(subject: &Subject) -> Markup {
             summary.elevated_risk_max.map(|peak| at(peak, clock)),
         ),
     ];
-    let figures = figures
-        .into_iter()
-        .filter_map(|(name, value)| Some((name, value?)));
+    let risks = risks.into_iter();
+    let risks = risks.filter_map(|(name, value)| Some((name.to_owned(), value?)));
+    let others = estimator.profile().other_risks.iter().filter_map(|risk| {
+        let worst = finding::highest_of(&risk.output, &subject.assessed.findings)?;
+        let span = clock.span(worst.from_s, worst.to_s);
+        let value = format!("{:.0} %, within {span}", worst.value_pct);
+        Some((format!("Highest {}", visible(&risk.output)), value))
+    });
+    let figures = risks.chain(others).chain([time]);
     html! {
         dl.figures {
-            @for (name, value) in figures.chain([time]) { div { dt { (name) } dd { (value) } } }
+            @for (name, value) in figures { div { dt { (name) } dd { (value) } } }
         }
         @if summary.risk_max.is_some() {
             p.soft {
@@ -174,6 +183,8 @@ fn figures(subject: &Subject) -> Markup {
                 } @else {
                     " Mean and elevated risk are without the first seconds in use and the last ones before a stop."
                 }
+                " Times are minutes since " (if has_motors { "take-off" } else { "the start of use" })
+                ", which was at " (Clock::Log.at(subject.stretch().start_s)) " on the log's clock."
             }
         }
     }

@@ -13,6 +13,7 @@ use flagred_flightlog::Flight;
 use fuzzy::drawing::{number, visible};
 
 use crate::{
+    clock::Clock,
     curve::over_time_text,
     finding::{self, Teller},
 };
@@ -57,7 +58,7 @@ pub fn write(
             .iter()
             .map(|s| format!("{:.1} to {:.1} s", s.start_s, s.end_s));
         let mut text = format!(
-            "{} {:.1} s ({})",
+            "{} {:.1} s ({} on the log's clock)",
             in_the_air(flight),
             assessed.summary.in_air_s,
             first_spans(when)
@@ -73,7 +74,12 @@ pub fn write(
     if assessed.summary.assessed_s > 0.0 {
         indented(out, &summary(&assessed.summary, verbose))?;
         for risk in &estimator.profile().other_risks {
-            if let Some(text) = highest_of(&risk.output, &assessed.findings) {
+            if let Some(worst) = finding::highest_of(&risk.output, &assessed.findings) {
+                let (name, span) = (
+                    visible(&risk.output),
+                    Clock::Log.span(worst.from_s, worst.to_s),
+                );
+                let text = format!("{name}: highest {:.0} %, within {span}", worst.value_pct);
                 indented(out, &text)?;
             }
         }
@@ -91,13 +97,13 @@ pub fn write(
             let code = teller.words(finding).code;
             let text = format!("{} [{code}]", teller.finding(finding));
             line(out, finding.severity, &text)?;
-            indented(out, &teller.words(finding).advice)?;
+            indented(out, &advice(&teller, finding, flight))?;
             indented(out, &teller.details(finding))?;
         }
     } else {
         for one in finding::lines(&assessed.findings) {
             line(out, one.worst.severity, &teller.line(&one))?;
-            indented(out, &teller.words(one.worst).advice)?;
+            indented(out, &advice(&teller, one.worst, flight))?;
         }
     }
     if !assessed.findings.is_empty() {
@@ -108,7 +114,12 @@ pub fn write(
         .map(|step| (step.t_s, step.estimate.map(|e| e.risk_pct)))
         .collect();
     if points.iter().any(|(_, risk)| risk.is_some()) {
-        writeln!(out, "risk over time")?;
+        let others = estimator.profile().other_risks.iter();
+        let others: Vec<_> = others.map(|risk| visible(&risk.output)).collect();
+        match others.is_empty() {
+            true => writeln!(out, "risk over time")?,
+            false => writeln!(out, "risk over time, without {}", others.join(" and "))?,
+        }
         writeln!(out, "{}", over_time_text(&points, PICTURE_COLUMNS))?;
     }
     Ok(())
@@ -329,19 +340,13 @@ pub fn conversion(name: &str, flight: &Flight) -> Vec<String> {
     damage.into_iter().chain(left_out).collect()
 }
 
-/// The highest value of another risk in its findings; `None` without any.
-fn highest_of(output: &str, findings: &[Finding]) -> Option<String> {
-    let of_risk = findings
-        .iter()
-        .filter(|finding| finding.risk_output.as_deref() == Some(output));
-    let highest = of_risk.max_by(|a, b| a.value_pct.total_cmp(&b.value_pct))?;
-    Some(format!(
-        "{}: highest {:.0} % between {:.1} and {:.1} s",
-        visible(output),
-        highest.value_pct,
-        highest.from_s,
-        highest.to_s
-    ))
+/// The advice of a finding, and where its motors are.
+fn advice(teller: &Teller<'_>, finding: &Finding, flight: &Flight) -> String {
+    let advice = teller.words(finding).advice;
+    match finding::positions(finding, flight) {
+        Some(positions) => format!("{advice} {positions}"),
+        None => advice,
+    }
 }
 
 fn summary(summary: &Summary, verbose: bool) -> String {

@@ -326,8 +326,7 @@ impl<'p> Evaluator<'p> {
         let unbounded = engine.input_names().zip(&self.half_widths);
         let unbounded =
             unbounded.filter(|(_, widths)| widths.get(row).is_some_and(|width| width.is_nan()));
-        let unbounded =
-            unbounded.map(|(name, _)| format!("the half-width of `{name}` is unknown"));
+        let unbounded = unbounded.map(|(name, _)| format!("the half-width of `{name}` is unknown"));
         let silent = engine.output_names().zip(outcomes);
         let silent = silent.filter(|(_, outcome)| outcome.state == State::NoRuleFired);
         let silent = silent.map(|(name, _)| match outcomes.len() {

@@ -98,17 +98,16 @@ fn motors(flight: &Flight) -> Vec<String> {
         "{}; {rows} rows of commands, {rate}",
         flight.motors.len()
     )];
-    let factors = flight.geometry.iter().flat_map(|g| &g.factors);
-    let mut factors = factors
-        .map(|[roll, pitch, yaw]| format!(", roll {roll:+.2}, pitch {pitch:+.2}, yaw {yaw:+.2}"));
-    lines.extend(flight.motors.iter().map(|motor| {
-        format!(
-            "motor {}, output {} ({}){}",
-            motor.number,
-            motor.output,
-            motor.source,
-            factors.next().unwrap_or_default()
-        )
+    lines.extend(flight.motors.iter().enumerate().map(|(index, motor)| {
+        let geometry = flight.geometry.as_ref();
+        let factors = geometry.and_then(|geometry| geometry.factors.get(index));
+        let factors = factors.map_or(String::new(), |[roll, pitch, yaw]| {
+            format!(", roll {roll:+.2}, pitch {pitch:+.2}, yaw {yaw:+.2}")
+        });
+        let position = geometry.and_then(|geometry| geometry.position(index));
+        let position = position.map_or(String::new(), |position| format!(", {position}"));
+        let (number, output, source) = (motor.number, &motor.output, &motor.source);
+        format!("motor {number}, output {output} ({source}){position}{factors}")
     }));
     lines
 }

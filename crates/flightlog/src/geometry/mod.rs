@@ -42,6 +42,34 @@ pub struct Geometry {
     pub doubt: Option<String>,
 }
 
+impl Geometry {
+    /// The position of a motor on the vehicle, seen from above with the nose in front: `front left`, `rear`. `None` if there is
+    /// no such motor, if it is in the middle, or if the geometry is not declared or in doubt: an inferred one may be rotated.
+    pub fn position(&self, motor: usize) -> Option<&'static str> {
+        // 20 degrees to the side of an axis still count as on the axis.
+        const ON_AXIS: f64 = 0.364;
+        let [roll, pitch, _] = *self.factors.get(motor)?;
+        if self.basis != Basis::Declared || self.doubt.is_some() {
+            return None;
+        }
+        let sign = |value: f64, other: f64| match value.abs() > ON_AXIS * other.abs() {
+            true => value.signum(),
+            false => 0.0,
+        };
+        Some(match (sign(pitch, roll), sign(roll, pitch)) {
+            (1.0, 1.0) => "front left",
+            (1.0, -1.0) => "front right",
+            (1.0, _) => "front",
+            (-1.0, 1.0) => "rear left",
+            (-1.0, -1.0) => "rear right",
+            (-1.0, _) => "rear",
+            (_, 1.0) => "left",
+            (_, -1.0) => "right",
+            _ => return None,
+        })
+    }
+}
+
 /// The first and last time of the data that is read from every log: the motor commands and the signals of the geometry.
 /// The choice of other signals must not change when the vehicle is armed or in the air. For a log without any of these
 /// data, the time span of all kept signals.

@@ -52,6 +52,35 @@ fn geometry(header: &str, frame: &str) -> super::Geometry {
 }
 
 #[test]
+fn declared_motors_have_positions() {
+    let positions = |frame: &str| {
+        let geometry = geometry(&format!("# frame: {frame}\n"), frame);
+        let motors = 0..=geometry.factors.len();
+        motors
+            .map(|motor| geometry.position(motor))
+            .collect::<Vec<_>>()
+    };
+    let quad = ["front right", "rear left", "front left", "rear right"].map(Some);
+    assert_eq!(positions("QUAD/X"), [&quad[..], &[None]].concat());
+    assert_eq!(
+        positions("QUAD/PLUS")[..4],
+        ["right", "left", "front", "rear"].map(Some)
+    );
+    let hexa = [
+        "right",
+        "left",
+        "front left",
+        "rear right",
+        "front right",
+        "rear left",
+    ]
+    .map(Some);
+    assert_eq!(positions("HEXA/X")[..6], hexa);
+    // The same commands fit HEXA/PLUS, rotated by 90 degrees.
+    assert_eq!(geometry("", "HEXA/X").position(0), None);
+}
+
+#[test]
 fn the_layout_of_six_and_eight_motors_is_found_by_their_commands() {
     for (frame, found) in [
         ("HEXA/X", "HEXA/X"),
