@@ -287,7 +287,7 @@ fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Ve
                 format!("`warn` at {measure} {warn} is above `fail` at {fail}: FAIL comes first");
             let place = of(&["warn", measure]);
             let finding = Diagnostic::warning("order", place, message)
-                .help(format!("lower `warn` to {fail} or below, or raise `fail` to {warn} or above"))
+                .help("WARN is the lower level; exchange the two")
                 .related(of(&["fail", measure]), "FAIL");
             found.push(finding);
         }
