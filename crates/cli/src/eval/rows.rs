@@ -3,7 +3,7 @@
 use csv::ByteRecord;
 use fuzzy::engine::{Enclosure, IntervalOutcome, Outcome, Sequence, State};
 
-use super::{Plan, With, tally::Tally, uncertain};
+use super::{ExplanationColumn, Plan, tally::Tally, uncertain};
 use crate::{
     failure::Failure,
     output::{cell, number_or_cell},
@@ -265,7 +265,7 @@ impl<'p> Evaluator<'p> {
         }
         for with in &self.plan.with {
             match with {
-                With::Coverage => {
+                ExplanationColumn::Coverage => {
                     for outcome in outcomes {
                         let is_known = outcome.state != State::InputNotFinite;
                         let coverage = if is_known {
@@ -276,7 +276,7 @@ impl<'p> Evaluator<'p> {
                         writer.write_field(coverage)?;
                     }
                 }
-                With::Rule => {
+                ExplanationColumn::Rule => {
                     for outcome in outcomes {
                         let rule = outcome
                             .dominant_rule
@@ -284,14 +284,14 @@ impl<'p> Evaluator<'p> {
                         writer.write_field(rule)?;
                     }
                 }
-                With::Clamped => {
+                ExplanationColumn::Clamped => {
                     let is_clamped = outcomes.first().is_some_and(|outcome| outcome.clamped);
                     let inputs = self.clamped(row).filter(|_| is_clamped);
                     let names =
                         inputs.filter_map(|input| self.plan.engine.input_names().nth(input));
                     writer.write_field(cell(&names.collect::<Vec<_>>().join("|")).as_bytes())?;
                 }
-                With::Error => {
+                ExplanationColumn::Error => {
                     let error = self.error(row, outcomes, enclosed.as_deref());
                     writer.write_field(cell(&error).as_bytes())?;
                 }
@@ -323,11 +323,6 @@ impl<'p> Evaluator<'p> {
         let unknown =
             unknown.filter(|(_, values)| values.get(row).is_some_and(|value| value.is_nan()));
         let unknown = unknown.map(|(name, _)| format!("`{name}` is unknown"));
-        let unbounded = engine.input_names().zip(&self.half_widths);
-        let unbounded =
-            unbounded.filter(|(_, widths)| widths.get(row).is_some_and(|width| width.is_nan()));
-        let unbounded =
-            unbounded.map(|(name, _)| format!("the half-width of `{name}` is unknown"));
         let silent = engine.output_names().zip(outcomes);
         let silent = silent.filter(|(_, outcome)| outcome.state == State::NoRuleFired);
         let silent = silent.map(|(name, _)| match outcomes.len() {
@@ -343,7 +338,6 @@ impl<'p> Evaluator<'p> {
             _ => format!("no rule fires for `{name}` for some values within the half-widths"),
         });
         unknown
-            .chain(unbounded)
             .chain(silent)
             .chain(partly)
             .collect::<Vec<_>>()
